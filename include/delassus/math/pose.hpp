@@ -1,0 +1,17 @@
+/// Where a body is and how it is turned.
+#pragma once
+
+#include <delassus/math/linear.hpp>
+
+namespace delassus {
+
+/// x_world = position + rotation · x_local. Lengths in m; `rotation` is orthonormal.
+struct Pose {
+  Vec3 position = Vec3::Zero();
+  Mat3 rotation = Mat3::Identity();
+
+  Vec3 to_world(const Vec3& local) const { return position + rotation * local; }
+  Vec3 to_local(const Vec3& world) const { return rotation.transpose() * (world - position); }
+};
+
+}  // namespace delassus
