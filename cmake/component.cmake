@@ -1,0 +1,40 @@
+# delassus_component(<name> PACKAGE <cmake package> VERSION <v> TARGET <its target> DEBIAN <apt package>)
+#
+# A component is the adapter headers of one third party, include/delassus/adapters/<name>*.hpp, and a link to it.
+# DELASSUS_WITH_<NAME> says what this build does: AUTO takes the package if it is found, ON insists, OFF drops the
+# component. Whether the package is found here decides nothing about installing: headers do not depend on the builder's
+# machine, so the installed package asks for the third party on the consumer's.
+
+set(DELASSUS_COMPONENTS "")
+
+macro(delassus_component name)
+  cmake_parse_arguments(component "" "PACKAGE;VERSION;TARGET;DEBIAN" "" ${ARGN})
+  string(TOUPPER ${name} NAME)
+  set(DELASSUS_WITH_${NAME} AUTO CACHE STRING "The component ${name}: AUTO, ON or OFF")
+  set_property(CACHE DELASSUS_WITH_${NAME} PROPERTY STRINGS AUTO ON OFF)
+  set(DELASSUS_${name}_PACKAGE ${component_PACKAGE})
+  set(DELASSUS_${name}_VERSION ${component_VERSION})
+  set(DELASSUS_${name}_DEBIAN ${component_DEBIAN})
+  list(APPEND DELASSUS_COMPONENTS ${name})
+
+  if(DELASSUS_WITH_${NAME})
+    set(missing "delassus: component '${name}' needs ${component_PACKAGE} ${component_VERSION}; on Debian: apt-get install ${component_DEBIAN}")
+    find_package(${component_PACKAGE} ${component_VERSION} CONFIG QUIET)
+    if(NOT ${component_PACKAGE}_FOUND)
+      if(DELASSUS_WITH_${NAME} STREQUAL "AUTO")
+        message(STATUS "${missing}")
+      else()
+        message(FATAL_ERROR "${missing}")
+      endif()
+    endif()
+
+    add_library(delassus_${name} INTERFACE)
+    set_target_properties(delassus_${name} PROPERTIES EXPORT_NAME ${name})
+    target_link_libraries(delassus_${name} INTERFACE delassus ${component_TARGET})
+    file(GLOB adapter_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/delassus/adapters/${name}*.hpp)
+    target_sources(delassus_${name} INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${adapter_headers})
+    if(${component_PACKAGE}_FOUND)
+      add_library(delassus::${name} ALIAS delassus_${name})
+    endif()
+  endif()
+endmacro()

@@ -1,0 +1,53 @@
+# How the programs of this repository are built: tests, examples, benchmarks, the demonstration. Nothing here is installed.
+
+option(DELASSUS_WARNINGS_AS_ERRORS "Stop at a warning in the tests, examples and benchmarks" OFF)
+
+if(PROJECT_IS_TOP_LEVEL)
+  find_program(DELASSUS_CCACHE ccache)
+  mark_as_advanced(DELASSUS_CCACHE)
+  if(DELASSUS_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${DELASSUS_CCACHE})
+  endif()
+endif()
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ${PROJECT_IS_TOP_LEVEL})
+
+add_library(delassus_warnings INTERFACE)
+target_compile_options(delassus_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wno-missing-field-initializers  # policies are set by designated initialisers: leaving a member out is the normal use
+  # Flow analysis of inlined Eigen expressions; sanitizers look at the same mistakes without guessing.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-stringop-overflow>
+  $<$<BOOL:${DELASSUS_WARNINGS_AS_ERRORS}>:-Werror>)
+
+# delassus_components_of(<variable> <source>...): the components whose adapters the sources include.
+# Editing such an include asks for a new configure.
+function(delassus_components_of variable)
+  set(found "")
+  foreach(source IN LISTS ARGN)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+    file(STRINGS ${source} includes REGEX "^#include <delassus/adapters/")
+    foreach(name IN LISTS DELASSUS_COMPONENTS)
+      if(includes MATCHES "<delassus/adapters/${name}")
+        list(APPEND found ${name})
+      endif()
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES found)
+  set(${variable} "${found}" PARENT_SCOPE)
+endfunction()
+
+# delassus_program(<name> <source>...): an executable with our warnings and the components its sources include.
+# Without one of them there is a line that says so, and no target.
+function(delassus_program name)
+  delassus_components_of(components ${ARGN})
+  foreach(component IN LISTS components)
+    if(NOT TARGET delassus::${component})
+      message(STATUS "${name} is left out: it needs the component ${component} (apt-get install ${DELASSUS_${component}_DEBIAN})")
+      return()
+    endif()
+  endforeach()
+  add_executable(${name} ${ARGN})
+  list(TRANSFORM components PREPEND delassus::)
+  target_link_libraries(${name} PRIVATE delassus::delassus ${components} delassus_warnings)
+endfunction()
