@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Compiles every header by itself, with each compiler, two at a time; syntax only.
+
+    scripts/check_headers.py [ROOT] --compiler g++ clang++ --system /usr/include/eigen3 [--absent fcl] [--cache DIR]
+
+A header that passed is not compiled again until it, or a delassus header it includes, has changed (--cache).
+Adapters of an absent component are skipped, and counted.
+"""
+import argparse
+import hashlib
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+INCLUDE = re.compile(r"^\s*#\s*include\s*<(delassus/[^>]+)>", re.MULTILINE)
+FLAGS = ["-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-missing-field-initializers"]
+
+
+def closure(include, header, seen):
+    """`header` and every delassus header it reaches, as paths below include/."""
+    if header not in seen and (include / header).exists():
+        seen.add(header)
+        for target in INCLUDE.findall((include / header).read_text(encoding="utf-8")):
+            closure(include, target, seen)
+    return seen
+
+
+def stamp_of(include, header, command):
+    """A name for this header, compiled by this command: equal names, equal outcome."""
+    digest = hashlib.sha256(repr(command).encode())
+    for part in sorted(closure(include, header, set())):
+        digest.update(part.encode() + (include / part).read_bytes())
+    return digest.hexdigest()
+
+
+def compile_alone(include, header, command, cache):
+    """Returns what the compiler said, or None if the header is fine."""
+    stamp = cache / stamp_of(include, header, command) if cache else None
+    if stamp and stamp.exists():
+        return None
+    # Included twice: the second time, #pragma once must make it vanish.
+    unit = f"#include <{header}>\n#include <{header}>\n"
+    done = subprocess.run(command + ["-x", "c++", "-"], input=unit, text=True, capture_output=True)
+    if done.returncode != 0:
+        return done.stderr
+    if stamp:
+        stamp.touch()
+    return None
+
+
+def check(include, compilers, system, absent, cache, jobs):
+    started = time.monotonic()
+    headers = sorted(p.relative_to(include).as_posix() for p in include.rglob("*.hpp"))
+    skipped = [h for h in headers if any(h.startswith(f"delassus/adapters/{name}") for name in absent)]
+    headers = [h for h in headers if h not in skipped]
+    if cache:
+        cache.mkdir(parents=True, exist_ok=True)
+    tasks = []
+    for compiler in compilers:
+        version = subprocess.run([compiler, "--version"], text=True, capture_output=True, check=True).stdout
+        command = [compiler, *FLAGS, f"-I{include}", *(f"-isystem{d}" for d in system),
+                   f"-DDELASSUS_CHECKED_BY_{hashlib.sha256(version.encode()).hexdigest()[:8]}"]
+        tasks += [(compiler, header, command) for header in headers]
+    with ThreadPoolExecutor(jobs) as pool:
+        said = list(pool.map(lambda task: compile_alone(include, task[1], task[2], cache), tasks))
+    failed = [(task, text) for task, text in zip(tasks, said) if text is not None]
+    for (compiler, header, _), text in failed:
+        print(f"{header} does not compile alone with {compiler}:\n{text}")
+    print(f"check_headers: {len(headers)} headers x {len(compilers)} compilers, {len(skipped)} skipped, "
+          f"{len(failed)} failed, {time.monotonic() - started:.1f} s")
+    return failed
+
+
+def self_test(compilers):
+    """A sound header passes; one that lacks an include, or its #pragma once, is told."""
+    wrong = 0
+    for name, text, fails in [("sound", "#pragma once\n#include <vector>\nstruct A { std::vector<int> x; };\n", False),
+                              ("lacks_include", "#pragma once\nstruct A { std::vector<int> x; };\n", True),
+                              ("lacks_once", "struct A {};\n", True)]:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "delassus").mkdir()
+            (Path(folder) / "delassus" / f"{name}.hpp").write_text(text)
+            failed = check(Path(folder), compilers, [], [], None, 1)
+            if len(failed) != (len(compilers) if fails else 0):
+                wrong += 1
+                print(f"self-test {name}: expected {'a failure' if fails else 'success'} of each compiler")
+    print(f"check_headers: 3 self-tests, {wrong} failed")
+    return wrong
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("root", nargs="?", type=Path, default=Path(__file__).resolve().parent.parent)
+    parser.add_argument("--compiler", nargs="+", default=["g++"])
+    parser.add_argument("--system", nargs="*", default=["/usr/include/eigen3"])
+    parser.add_argument("--absent", nargs="*", default=[])
+    parser.add_argument("--cache", type=Path)
+    parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1))
+    parser.add_argument("--self-test", action="store_true")
+    a = parser.parse_args()
+    if a.self_test:
+        return 1 if self_test(a.compiler) else 0
+    return 1 if check(a.root / "include", a.compiler, a.system, a.absent, a.cache, a.jobs) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

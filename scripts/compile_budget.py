@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Measures what the umbrella header and each example cost to compile, and holds the memory to its budget.
+
+    scripts/compile_budget.py           compiles each (-O0, object to /dev/null) and writes docs/compile_budget.md
+    scripts/compile_budget.py --check   compiles, prints, writes nothing
+
+Exit code 1 if one needs more memory than its budget. Seconds are printed and never fail: they depend on the machine.
+"""
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+# What is compiled -> (CPU seconds, MB). An example not listed has the budget of "any other".
+BUDGETS = {
+    "delassus.hpp": (1.5, 300),
+    "falling_box": (3, 500),
+    "any other": (8, 500),
+}
+
+
+def cost(command):
+    """Runs a compiler; returns (CPU seconds, peak MB) of it and its children, or exits with what it said."""
+    with tempfile.TemporaryFile() as said:
+        child = subprocess.Popen(command, stdout=said, stderr=said, env={**os.environ, "CCACHE_DISABLE": "1"})
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode != 0:
+            said.seek(0)
+            sys.exit(f"{' '.join(command)}\n{said.read().decode(errors='replace')}")
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def measure(root, compiler, system, absent):
+    """Rows (name, seconds, MB, budget seconds, budget MB)."""
+    command = [compiler, "-std=c++20", "-O0", f"-I{root / 'include'}", *(f"-isystem{d}" for d in system),
+               "-c", "-o", os.devnull]
+    units = []
+    if (root / "include/delassus/delassus.hpp").exists():
+        units.append(("delassus.hpp", ["-x", "c++", str(root / "include/delassus/delassus.hpp")]))
+    for path in sorted((root / "examples").glob("*.cpp")):
+        adapters = re.findall(r"^#include <delassus/adapters/(\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+        missing = [name for name in absent if any(a.startswith(name) for a in adapters)]
+        if missing:
+            print(f"{path.stem} is left out: it needs {', '.join(missing)}")
+        else:
+            units.append((path.stem, [str(path)]))
+    for name, arguments in units:
+        # The least of two: another program on the machine can only add time.
+        seconds, memory = min(cost(command + arguments) for _ in range(2))
+        yield name, seconds, memory, *BUDGETS.get(name, BUDGETS["any other"])
+
+
+def table(rows, compiler):
+    version = subprocess.run([compiler, "--version"], text=True, capture_output=True, check=True).stdout.splitlines()[0]
+    lines = [
+        "# What a program costs to compile", "",
+        f"{version}, `-std=c++20 -O0`, written by `scripts/compile_budget.py`. CPU seconds are the least of two runs on",
+        "one machine; the memory is the compiler's peak. The memory budget is a test, the seconds are a hint.", "",
+        "| program | CPU s | budget | peak MB | budget |", "|---|--:|--:|--:|--:|",
+    ]
+    for name, seconds, memory, most_seconds, most_memory in rows:
+        lines.append(f"| {name} | {seconds:.2f} | {most_seconds:g} | {memory:.0f} | {most_memory:g} |")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("root", nargs="?", type=Path, default=Path(__file__).resolve().parent.parent)
+    parser.add_argument("--compiler", default="g++")
+    parser.add_argument("--system", nargs="*", default=["/usr/include/eigen3"])
+    parser.add_argument("--absent", nargs="*", default=[])
+    parser.add_argument("--check", action="store_true")
+    a = parser.parse_args()
+
+    rows = list(measure(a.root, a.compiler, a.system, a.absent))
+    text = table(rows, a.compiler)
+    print(text, end="")
+    if not a.check:
+        (a.root / "docs/compile_budget.md").write_text(text, encoding="utf-8")
+    for name, seconds, _, most, _ in rows:
+        if seconds > most:
+            print(f"slow: {name} took {seconds:.2f} s of {most:g}")
+    over = [(name, memory, most) for name, _, memory, _, most in rows if memory > most]
+    for name, memory, most in over:
+        print(f"compile_budget: {name} needs {memory:.0f} MB, its budget is {most:g} MB")
+    return 1 if over else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
