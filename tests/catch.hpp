@@ -1,0 +1,9 @@
+/// Catch2, version 2 or 3, under one name. `Approx` needs no namespace in either.
+#pragma once
+
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+using Catch::Approx;
+#else
+#include <catch2/catch.hpp>
+#endif

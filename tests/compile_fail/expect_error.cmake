@@ -1,0 +1,34 @@
+# Compiles one wrong program and checks that it fails with exactly one error, which says the sentence it announces.
+#   cmake -DSOURCE=x.cpp -DCOMPILER=g++ -DINCLUDE=<dir> -DSYSTEM=<dirs> -P expect_error.cmake
+# The first line of the program reads `// expect: <sentence>`; the sentence is plain text, found as it stands.
+cmake_minimum_required(VERSION 3.25)
+
+# A NOTICE keeps its lines as they are; FATAL_ERROR would wrap them.
+function(complain text)
+  message(NOTICE "${SOURCE}: ${text}")
+  message(FATAL_ERROR "The program is not wrong in the way it says.")
+endfunction()
+
+file(STRINGS ${SOURCE} first_line LIMIT_COUNT 1)
+if(NOT first_line MATCHES "^// expect: (.+)$")
+  complain("its first line is not `// expect: <sentence>`")
+endif()
+set(sentence "${CMAKE_MATCH_1}")
+
+list(TRANSFORM SYSTEM PREPEND "-isystem")
+set(ENV{LC_ALL} C)
+execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I${INCLUDE} ${SYSTEM} ${SOURCE}
+  RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(status EQUAL 0)
+  complain("it compiles, but should say: ${sentence}")
+endif()
+
+string(REGEX MATCHALL " error: " errors "${output}")
+list(LENGTH errors count)
+if(NOT count EQUAL 1)
+  complain("${count} errors instead of one:\n${output}")
+endif()
+string(FIND "${output}" "${sentence}" place)
+if(place EQUAL -1)
+  complain("the sentence is missing: ${sentence}\n${output}")
+endif()

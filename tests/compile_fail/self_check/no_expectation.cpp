@@ -1,0 +1,2 @@
+static_assert(sizeof(int) == 1, "a sentence nobody announced");
+int main() {}

@@ -1,0 +1,5 @@
+#include <delassus/delassus.hpp>
+
+int second();
+
+int second() { return 0; }

@@ -1,0 +1,77 @@
+# Checks that compile little and run no physics: they look at the tree as a newcomer, a packager or a compiler meets it.
+find_package(Python3 COMPONENTS Interpreter QUIET)
+if(NOT Python3_FOUND)
+  message(FATAL_ERROR "The checks of the tree need Python 3 (apt-get install python3), or -DDELASSUS_TEST_TREE=OFF")
+endif()
+find_program(DELASSUS_CLANG NAMES clang++ clang++-19 clang++-16 clang++-14)
+mark_as_advanced(DELASSUS_CLANG)
+
+# The compilers the scripts use: the one of this build, and clang++ if it is another.
+set(compilers ${CMAKE_CXX_COMPILER})
+set(compiler_names ${CMAKE_CXX_COMPILER_ID})
+if(DELASSUS_CLANG AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  list(APPEND compilers ${DELASSUS_CLANG})
+  list(APPEND compiler_names Clang)
+endif()
+
+# The system include directories of Eigen and of the components that are here.
+set(include_dirs $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
+set(absent "")
+foreach(component IN LISTS DELASSUS_COMPONENTS)
+  if(NOT TARGET delassus::${component})
+    list(APPEND absent ${component})
+  endif()
+endforeach()
+
+function(delassus_tree_test name)
+  add_test(NAME ${name} COMMAND ${ARGN} COMMAND_EXPAND_LISTS)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS tree)
+endfunction()
+
+# --- rooms and levels -----------------------------------------------------------------------------------------------
+set(scripts ${PROJECT_SOURCE_DIR}/scripts)
+delassus_tree_test(tree/includes ${Python3_EXECUTABLE} ${scripts}/check_includes.py ${PROJECT_SOURCE_DIR})
+delassus_tree_test(tree/includes_self_test ${Python3_EXECUTABLE} ${scripts}/check_includes.py --self-test)
+
+# --- every header by itself -----------------------------------------------------------------------------------------
+delassus_tree_test(tree/headers_alone ${Python3_EXECUTABLE} ${scripts}/check_headers.py ${PROJECT_SOURCE_DIR}
+  --cache ${PROJECT_BINARY_DIR}/headers_alone --compiler ${compilers} --system ${include_dirs} --absent ${absent})
+delassus_tree_test(tree/headers_alone_self_test ${Python3_EXECUTABLE} ${scripts}/check_headers.py --self-test
+  --compiler ${compilers})
+set_tests_properties(tree/headers_alone PROPERTIES PROCESSORS 2)
+
+# --- what the examples cost to compile ------------------------------------------------------------------------------
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  delassus_tree_test(tree/compile_budget ${Python3_EXECUTABLE} ${scripts}/compile_budget.py ${PROJECT_SOURCE_DIR}
+    --check --compiler ${CMAKE_CXX_COMPILER} --system ${include_dirs} --absent ${absent})
+endif()
+
+# --- wrong programs and the sentence each must print ----------------------------------------------------------------
+function(delassus_compile_fail name source)
+  foreach(compiler compiler_name IN ZIP_LISTS compilers compiler_names)
+    add_test(NAME "${name} (${compiler_name})" COMMAND ${CMAKE_COMMAND} -DSOURCE=${source} -DCOMPILER=${compiler}
+      -DINCLUDE=${PROJECT_SOURCE_DIR}/include "-DSYSTEM=${include_dirs}"
+      -P ${PROJECT_SOURCE_DIR}/tests/compile_fail/expect_error.cmake)
+    set_tests_properties("${name} (${compiler_name})" PROPERTIES TIMEOUT 120 LABELS compile_fail ${ARGN})
+  endforeach()
+endfunction()
+
+file(GLOB sources CONFIGURE_DEPENDS compile_fail/*.cpp)
+foreach(source IN LISTS sources)
+  cmake_path(GET source STEM name)
+  delassus_compile_fail(compile_fail/${name} ${source})
+endforeach()
+
+# The driver itself must fail, and say why, on a program that compiles, errs twice, says another thing, expects nothing.
+set(self_check ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail/self_check)
+delassus_compile_fail(compile_fail/self_check/one_sentence ${self_check}/one_sentence.cpp)
+delassus_compile_fail(compile_fail/self_check/compiles ${self_check}/compiles.cpp
+  PASS_REGULAR_EXPRESSION "it compiles")
+delassus_compile_fail(compile_fail/self_check/two_errors ${self_check}/two_errors.cpp
+  PASS_REGULAR_EXPRESSION "2 errors instead of one")
+delassus_compile_fail(compile_fail/self_check/other_sentence ${self_check}/other_sentence.cpp
+  PASS_REGULAR_EXPRESSION "the sentence is missing")
+delassus_compile_fail(compile_fail/self_check/no_expectation ${self_check}/no_expectation.cpp
+  PASS_REGULAR_EXPRESSION "its first line is not `// expect: ")
+
+add_subdirectory(package)
