@@ -1,0 +1,90 @@
+/// Energy and momentum of a body set: what a step may and may not change.
+#pragma once
+
+#include <delassus/bodies/particles.hpp>
+#include <delassus/bodies/rigid_bodies.hpp>
+
+namespace delassus {
+
+/// ½ m v² + ½ ω·Iω, J, of all dynamic bodies.
+template <class T>
+double kinetic_energy(const BasicRigidBodies<T>& set) {
+  double sum = 0;
+  for (const Index b : set.active()) {
+    if (!set.moves(b)) continue;
+    const Vec<6> v = set.velocity()[b].template cast<double>();
+    const Vec3 rate = set.pose(b).rotation.transpose() * v.tail<3>();
+    sum += 0.5 * double(set.mass(b)) * v.head<3>().squaredNorm() +
+           0.5 * rate.dot(set.inertia(b).template cast<double>() * rate);
+  }
+  return sum;
+}
+
+/// −m g·x, J, of all dynamic bodies.
+template <class T>
+double potential_energy(const BasicRigidBodies<T>& set) {
+  double sum = 0;
+  for (const Index b : set.active())
+    if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
+  return sum;
+}
+
+/// Σ m v, kg·m/s.
+template <class T>
+Vec3 momentum(const BasicRigidBodies<T>& set) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index b : set.active())
+    if (set.moves(b)) sum += double(set.mass(b)) * set.velocity()[b].template head<3>().template cast<double>();
+  return sum;
+}
+
+/// Σ x × m v + R I Rᵀ ω about the world's origin, kg·m²/s.
+template <class T>
+Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index b : set.active()) {
+    if (!set.moves(b)) continue;
+    const Pose pose = set.pose(b);
+    const Vec<6> v = set.velocity()[b].template cast<double>();
+    const Vec3 rate = pose.rotation.transpose() * v.tail<3>();
+    sum += pose.position.cross(double(set.mass(b)) * v.head<3>()) +
+           pose.rotation * (set.inertia(b).template cast<double>() * rate);
+  }
+  return sum;
+}
+
+template <class T>
+double kinetic_energy(const BasicParticles<T>& set) {
+  double sum = 0;
+  for (const Index b : set.active())
+    if (set.moves(b)) sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm());
+  return sum;
+}
+
+/// −m g·x + ½ k (|x_a − x_b| − L)² of all springs, J.
+template <class T>
+double potential_energy(const BasicParticles<T>& set) {
+  double sum = set.spring_energy();
+  for (const Index b : set.active())
+    if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
+  return sum;
+}
+
+template <class T>
+Vec3 momentum(const BasicParticles<T>& set) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index b : set.active())
+    if (set.moves(b)) sum += double(set.mass(b)) * set.velocity()[b].template cast<double>();
+  return sum;
+}
+
+template <class T>
+Vec3 angular_momentum(const BasicParticles<T>& set) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index b : set.active())
+    if (set.moves(b))
+      sum += set.pose(b).position.cross(double(set.mass(b)) * set.velocity()[b].template cast<double>());
+  return sum;
+}
+
+}  // namespace delassus

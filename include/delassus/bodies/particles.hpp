@@ -1,0 +1,230 @@
+/// Point masses as a structure of arrays, with springs between them and to points of the world.
+#pragma once
+
+#include <delassus/bodies/springs.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/handle.hpp>
+#include <delassus/core/slots.hpp>
+#include <delassus/geometry/shape.hpp>
+#include <delassus/math/pose.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace delassus {
+
+/// A particle as it is added. SI units. `radius` > 0 (m) makes it a sphere for collision, without rotation.
+struct Particle {
+  Vec3 position = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+  std::optional<double> mass{};
+  double radius = 0;
+  bool is_fixed = false;
+  Index material = 0;
+  std::uint32_t group = 1;
+  std::uint32_t collides_with = ~0u;
+};
+
+/// q = x, v = ẋ. f = m g + loads + springs; A = mass M + damping D + stiffness K of the springs (`Springs`).
+template <class T>
+class BasicParticles {
+ public:
+  using Scalar = T;
+  using Body = Particle;
+  using Handle = delassus::Handle<BasicParticles>;
+  using Velocity = Vec<3, T>;
+  static constexpr int width = 3;
+
+  Vec3 gravity{0, 0, -9.81};
+
+  // --- editing -------------------------------------------------------------------------------------------------
+
+  /// Adds a particle; throws InvalidArgument when it cannot be one.
+  Handle add(const Particle& particle);
+
+  /// Takes a particle out, and with it the springs that hold it.
+  void remove(Handle particle) {
+    const Index b = checked(particle);
+    springs_.remove_of(b);
+    slots_.give_back(b);
+    inverse_mass_[b] = T(0);
+  }
+
+  /// A spring of stiffness k (N/m), damping c (N·s/m) and rest length (m; their distance now when not given).
+  void add_spring(Handle a, Handle b, double stiffness, double damping = 0, std::optional<double> rest = {}) {
+    const Index i = checked(a), j = checked(b);
+    const double now = (x_[i] - x_[j]).template cast<double>().norm();
+    springs_.add({i, j, Vec3::Zero(), stiffness, damping, rest.value_or(now)}, who(i));
+  }
+  /// The same to a point of the world (m).
+  void add_spring(Handle a, const Vec3& point, double stiffness, double damping = 0, std::optional<double> rest = {}) {
+    const Index i = checked(a);
+    const double now = (x_[i].template cast<double>() - point).norm();
+    springs_.add({i, -1, point, stiffness, damping, rest.value_or(now)}, who(i));
+  }
+
+  /// Adds a force (N) that acts during the next step only.
+  void apply_force(Handle particle, const Vec3& force) { load_[checked(particle)] += force.template cast<T>(); }
+
+  void set_velocity(Handle particle, const Vec3& velocity) {
+    DELASSUS_EXPECT(is_finite(velocity), who(particle.index) + ": velocity is not finite");
+    v_[checked(particle)] = velocity.template cast<T>();
+  }
+  void place(Handle particle, const Vec3& position) {
+    DELASSUS_EXPECT(is_finite(position), who(particle.index) + ": position is not finite");
+    x_[checked(particle)] = position.template cast<T>();
+  }
+
+  // --- reading -------------------------------------------------------------------------------------------------
+
+  Vec3 position(Handle particle) const { return x_[checked(particle)].template cast<double>(); }
+  Vec3 velocity(Handle particle) const { return v_[checked(particle)].template cast<double>(); }
+  bool contains(Handle particle) const {
+    return particle.owner == owner_ && slots_.is_current(particle.index, particle.generation);
+  }
+  Handle handle(Index block) const { return {block, slots_.generation(block), owner_}; }
+  const std::vector<Index>& active() const { return slots_.active(); }
+  T mass(Index b) const { return mass_[b]; }
+  double spring_energy() const { return springs_.energy(x_); }
+
+  // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
+
+  Index blocks() const { return slots_.size(); }
+  bool is_alive(Index b) const { return slots_.is_alive(b); }
+  bool moves(Index b) const { return inverse_mass_[b] > T(0); }
+
+  void factor(SystemScale scale) { springs_.factor(scale, x_, mass_, inverse_mass_, slots_.active()); }
+
+  void add_forces(std::vector<Velocity>& p) const {
+    const Velocity g = gravity.template cast<T>();
+    for (const Index b : slots_.active())
+      if (moves(b)) p[b] += load_[b] + mass_[b] * g;
+    springs_.add_forces(p, x_, v_);
+  }
+  /// p += s ∂f/∂q v: what the forces change while the set moves with its present velocity.
+  void add_stiffness_times_velocity(std::vector<Velocity>& p, double s) const {
+    springs_.add_stiffness_times_velocity(p, x_, v_, T(s));
+  }
+
+  /// p += s M v.
+  void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
+    for (const Index b : slots_.active()) p[b] += T(s) * mass_[b] * v_[b];
+  }
+
+  /// True when A has entries between particles: then only `solve` is right, never `solve_block`.
+  bool is_coupled() const { return springs_.is_coupled(); }
+  /// x ← A⁻¹ x for the whole set.
+  void solve(std::vector<Velocity>& x) const { springs_.solve(x); }
+  template <int C>
+  Mat<3, C, T> solve_block(Index b, const Mat<3, C, T>& x) const {
+    return springs_.solve_block(b, x);
+  }
+
+  int anchor_blocks(const Anchor& a) const { return moves(a.block) ? 1 : 0; }
+  Index anchor_block(const Anchor& a, int) const { return a.block; }
+  Velocity along(const Anchor&, int, const Vec3&, const Vec3& direction) const { return direction.template cast<T>(); }
+  Vec3 point(const Anchor& a) const { return x_[a.block].template cast<double>(); }
+
+  void begin_step(double) {}
+  /// x₊ = x + h v_next. A particle whose v_next is not finite stays where it is.
+  void advance(double h) { advance_with(h, T(0)); }
+  /// x₊ = x + h (v + v_next)/2.
+  void advance_midpoint(double h) { advance_with(h, T(0.5)); }
+
+  /// How many particles the last advance left where they were.
+  Index held() const { return held_; }
+  /// Moves particle b by a small displacement (m) without touching its velocity.
+  void displace(Index b, const Velocity& by) { x_[b] += by; }
+
+  const std::vector<Velocity>& velocity() const { return v_; }
+  std::vector<Velocity>& velocity() { return v_; }
+  std::vector<Velocity> v_free, v_next;
+
+  void shift(double h) {
+    shifted_x_ = x_;
+    for (const Index b : slots_.active())
+      if (moves(b)) x_[b] += T(h) * v_[b];
+  }
+  void restore() { x_ = shifted_x_; }
+
+  Index collider_count() const { return blocks(); }
+  bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
+  Shape shape(Index b) const { return Sphere{radius_[b]}; }
+  Pose pose(Index b) const { return {x_[b].template cast<double>(), Mat3::Identity()}; }
+  Index material(Index b) const { return material_[b]; }
+  std::uint32_t group(Index b) const { return group_[b]; }
+  std::uint32_t collides_with(Index b) const { return collides_with_[b]; }
+
+  std::uint32_t owner() const { return owner_; }
+  std::string who(Index b) const { return "particle #" + std::to_string(b); }
+
+ private:
+  Index checked(Handle particle) const {
+    DELASSUS_EXPECT(particle.owner == owner_, "this particle handle belongs to another world");
+    DELASSUS_EXPECT(slots_.is_current(particle.index, particle.generation),
+                    who(particle.index) + " was removed; its handle is stale");
+    return particle.index;
+  }
+  void advance_with(double h, T old_share) {
+    held_ = 0;
+    for (const Index b : slots_.active()) {
+      load_[b].setZero();
+      if (!moves(b)) continue;
+      if (!is_finite(v_next[b])) {
+        ++held_;
+        continue;
+      }
+      x_[b] += T(h) * (old_share * v_[b] + (T(1) - old_share) * v_next[b]);
+      v_[b] = v_next[b];
+    }
+  }
+
+  Slots slots_;
+  std::uint32_t owner_ = inner::next_owner();
+  Springs<T> springs_;
+  Index held_ = 0;
+  std::vector<Velocity> x_, shifted_x_, v_, load_;
+  std::vector<T> mass_, inverse_mass_;
+  std::vector<double> radius_;
+  std::vector<Index> material_;
+  std::vector<std::uint32_t> group_, collides_with_;
+};
+
+using Particles = BasicParticles<double>;
+using ParticlesF = BasicParticles<float>;
+
+template <class T>
+typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& particle) {
+  const std::string name = who(slots_.size());
+  DELASSUS_EXPECT(is_finite(particle.position), name + ": position is not finite");
+  DELASSUS_EXPECT(is_finite(particle.velocity), name + ": velocity is not finite");
+  DELASSUS_EXPECT(particle.is_fixed || particle.mass, name + ": give mass (kg), or is_fixed");
+  if (particle.mass)
+    DELASSUS_EXPECT(std::isfinite(*particle.mass) && *particle.mass > 0,
+                    name + ": mass " + inner::text(*particle.mass) + " must be finite and > 0");
+  DELASSUS_EXPECT(std::isfinite(particle.radius) && particle.radius >= 0,
+                  name + ": radius " + inner::text(particle.radius) + " must be finite and >= 0");
+  const Index b = slots_.take();
+  const std::size_t n = std::size_t(slots_.size());
+  for (auto* array : {&x_, &shifted_x_, &v_, &load_, &v_free, &v_next}) array->resize(n);
+  for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
+  radius_.resize(n);
+  material_.resize(n);
+  group_.resize(n);
+  collides_with_.resize(n);
+  x_[b] = particle.position.template cast<T>();
+  v_[b] = particle.is_fixed ? Velocity(Velocity::Zero()) : Velocity(particle.velocity.template cast<T>());
+  load_[b].setZero();
+  v_free[b] = v_next[b] = v_[b];
+  mass_[b] = particle.is_fixed ? T(0) : T(*particle.mass);
+  inverse_mass_[b] = particle.is_fixed ? T(0) : T(1 / *particle.mass);
+  radius_[b] = particle.radius;
+  material_[b] = particle.material;
+  group_[b] = particle.group;
+  collides_with_[b] = particle.collides_with;
+  return handle(b);
+}
+
+}  // namespace delassus

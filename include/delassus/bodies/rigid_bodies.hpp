@@ -1,0 +1,369 @@
+/// Rigid bodies as a structure of arrays: six velocities each, inertia turned with the body.
+#pragma once
+
+#include <delassus/bodies/body_input.hpp>
+#include <delassus/core/handle.hpp>
+#include <delassus/core/slots.hpp>
+#include <delassus/math/pose.hpp>
+#include <delassus/math/rotation.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace delassus {
+
+/// State q = (x, R) of the centre of mass and the axes, v = (ẋ, ω) in the world's frame.
+///
+///   A = mass · diag(m 1, R I Rᵀ),   f = (m g + forces, torques about the centre of mass).
+///
+/// The gyroscopic term is not in f: a step kicks at fixed R, so that impulses enter P and L exactly, then drifts
+/// by free rotation with the midpoint rule (`midpoint_rate`), which keeps L and the energy of each body.
+template <class T>
+class BasicRigidBodies {
+ public:
+  using Scalar = T;
+  using Body = RigidBody;
+  using Handle = delassus::Handle<BasicRigidBodies>;
+  using Velocity = Vec<6, T>;
+  static constexpr int width = 6;
+
+  Vec3 gravity{0, 0, -9.81};
+
+  // --- editing -------------------------------------------------------------------------------------------------
+
+  /// Adds a body; throws InvalidArgument when it cannot be one.
+  Handle add(const Body& body);
+
+  /// Adds a body that never moves, or moves as the user says.
+  Handle add_fixed(const Shape& shape, const Vec3& position = Vec3::Zero(),
+                   const Quat& orientation = Quat::Identity());
+
+  /// Takes a body out. Its handle is stale from then on; nothing else moves.
+  void remove(Handle body) {
+    slots_.give_back(checked(body));
+    motion_[body.index] = Motion::fixed;
+    set_mass(body.index);
+  }
+
+  /// Adds a force (N, at the world point, m) that acts during the next step only.
+  void apply_force(Handle body, const Vec3& force, const Vec3& point) {
+    const Index b = checked(body);
+    const Vec3 arm = point - x_[b].template cast<double>();
+    load_[b].template head<3>() += force.template cast<T>();
+    load_[b].template tail<3>() += arm.cross(force).template cast<T>();
+  }
+  void apply_force(Handle body, const Vec3& force) {
+    load_[checked(body)].template head<3>() += force.template cast<T>();
+  }
+  /// Adds a torque (N·m) that acts during the next step only.
+  void apply_torque(Handle body, const Vec3& torque) {
+    load_[checked(body)].template tail<3>() += torque.template cast<T>();
+  }
+
+  void set_velocity(Handle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
+    DELASSUS_EXPECT(is_finite(velocity) && is_finite(angular_velocity), who(body.index) + ": velocity is not finite");
+    v_[checked(body)] << velocity.template cast<T>(), angular_velocity.template cast<T>();
+  }
+
+  /// Where a kinematic body shall be at the end of the next step; its velocity is (q(t+h) ⊖ q(t)) / h.
+  void move_to(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
+    const Index b = checked(body);
+    DELASSUS_EXPECT(motion_[b] == Motion::kinematic, who(b) + ": only a kinematic body can be moved along a path");
+    DELASSUS_EXPECT(is_finite(position) && orientation.coeffs().norm() > 1e-12, who(b) + ": pose is not finite");
+    target_[b] = Target{position, orientation.normalized(), true};
+  }
+
+  /// Puts a body somewhere else at once, its velocity unchanged.
+  void place(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
+    const Index b = checked(body);
+    DELASSUS_EXPECT(is_finite(position) && orientation.coeffs().norm() > 1e-12, who(b) + ": pose is not finite");
+    x_[b] = position.template cast<T>();
+    q_[b] = orientation.normalized().template cast<T>();
+    turn(b);
+  }
+
+  // --- reading -------------------------------------------------------------------------------------------------
+
+  Vec3 position(Handle body) const { return x_[checked(body)].template cast<double>(); }
+  Quat orientation(Handle body) const { return q_[checked(body)].template cast<double>(); }
+  Vec3 velocity(Handle body) const { return v_[checked(body)].template head<3>().template cast<double>(); }
+  Vec3 angular_velocity(Handle body) const { return v_[checked(body)].template tail<3>().template cast<double>(); }
+  double mass(Handle body) const { return mass_[checked(body)]; }
+  bool contains(Handle body) const {
+    return body.owner == owner_ && slots_.is_current(body.index, body.generation);
+  }
+  Handle handle(Index block) const { return {block, slots_.generation(block), owner_}; }
+  const std::vector<Index>& active() const { return slots_.active(); }
+
+  const Mat<3, 3, T>& inertia(Index b) const { return inertia_[b]; }
+  T mass(Index b) const { return mass_[b]; }
+
+  // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
+
+  Index blocks() const { return slots_.size(); }
+  bool is_alive(Index b) const { return slots_.is_alive(b); }
+  bool moves(Index b) const { return inverse_mass_[b] > T(0); }
+  Motion motion(Index b) const { return motion_[b]; }
+
+  void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }
+
+  void add_forces(std::vector<Velocity>& p) const {
+    const Vec<3, T> g = gravity.template cast<T>();
+    for (const Index b : slots_.active()) {
+      p[b] += load_[b];
+      p[b].template head<3>() += mass_[b] * g;
+    }
+  }
+
+  /// p += s M v.
+  void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
+    for (const Index b : slots_.active()) {
+      if (!moves(b)) continue;
+      const Mat<3, 3, T>& R = R_[b];
+      p[b].template head<3>() += T(s) * mass_[b] * v_[b].template head<3>();
+      p[b].template tail<3>() += T(s) * (R * (inertia_[b] * (R.transpose() * v_[b].template tail<3>())));
+    }
+  }
+
+  /// A_b⁻¹ x for each column of x: diag(1/m, R I⁻¹ Rᵀ) / mass scale.
+  template <int C>
+  Mat<6, C, T> solve_block(Index b, const Mat<6, C, T>& x) const {
+    Mat<6, C, T> y;
+    y.template topRows<3>() = (inverse_scale_ * inverse_mass_[b]) * x.template topRows<3>();
+    y.template bottomRows<3>().noalias() = inverse_inertia_world_[b] * x.template bottomRows<3>();
+    if (inverse_scale_ != T(1)) y.template bottomRows<3>() *= inverse_scale_;
+    return y;
+  }
+
+  /// A fixed body answers to nothing and does not move: it has no block in any row.
+  int anchor_blocks(const Anchor& a) const { return motion_[a.block] == Motion::fixed ? 0 : 1; }
+  Index anchor_block(const Anchor& a, int) const { return a.block; }
+  /// Row of H: direction · (v + ω × r) = (direction, r × direction) · (v, ω), r from the centre of mass to `point`.
+  Velocity along(const Anchor& a, int, const Vec3& point, const Vec3& direction) const {
+    const Vec3 arm = point - x_[a.block].template cast<double>();
+    Velocity row;
+    row << direction.template cast<T>(), arm.cross(direction).template cast<T>();
+    return row;
+  }
+  Velocity about(const Anchor&, int, const Vec3& axis) const {
+    Velocity row;
+    row << Vec<3, T>::Zero(), axis.template cast<T>();
+    return row;
+  }
+  Vec3 point(const Anchor& a) const { return (x_[a.block] + R_[a.block] * a.local.template cast<T>()).template cast<double>(); }
+  Quat frame(const Anchor& a) const { return q_[a.block].template cast<double>() * a.frame; }
+
+  /// Kick and drift: x₊ = x + h v_next; R₊ = R cay(h Ω̄), L kept. A body whose v_next is not finite stays where it is.
+  void advance(double h) { advance(h, [this](Index b) { return Vec<3, T>(v_next[b].template head<3>()); }); }
+  /// The same with the mean of the old and the new velocity for the positions: the midpoint rule.
+  void advance_midpoint(double h) {
+    advance(h, [this](Index b) { return Vec<3, T>(T(0.5) * (v_[b] + v_next[b]).template head<3>()); });
+  }
+
+  /// How many bodies the last advance left where they were.
+  Index held() const { return held_; }
+  /// Moves block b by a small displacement (m, rad) without touching its velocity.
+  void displace(Index b, const Velocity& by) {
+    x_[b] += by.template head<3>();
+    q_[b] = (exponential<T>(by.template tail<3>()) * q_[b]).normalized();
+    turn(b);
+  }
+
+  /// Velocities: of kinematic bodies for this step, and the arrays the stages write.
+  void begin_step(double h);
+  const std::vector<Velocity>& velocity() const { return v_; }
+  std::vector<Velocity>& velocity() { return v_; }
+  std::vector<Velocity> v_free, v_next;
+
+  /// Moves q to q ⊕ h v and back: the configuration at which an integrator wants the constraints linearised.
+  void shift(double h);
+  void restore();
+
+  /// What collision detection needs of each body.
+  Index collider_count() const { return blocks(); }
+  bool has_collider(Index b) const { return slots_.is_alive(b) && shape_[b].kind != ShapeKind::none; }
+  Shape shape(Index b) const {
+    Shape shape = shape_[b];
+    if (hull_[b] >= 0) shape.hull = &hulls_[hull_[b]];
+    return shape;
+  }
+  Pose pose(Index b) const { return {x_[b].template cast<double>(), R_[b].template cast<double>()}; }
+  Index material(Index b) const { return material_[b]; }
+  std::uint32_t group(Index b) const { return group_[b]; }
+  std::uint32_t collides_with(Index b) const { return collides_with_[b]; }
+
+  std::uint32_t owner() const { return owner_; }
+  std::string who(Index b) const { return "rigid body #" + std::to_string(b); }
+
+ private:
+  struct Target {
+    Vec3 position = Vec3::Zero();
+    Quat orientation = Quat::Identity();
+    bool is_set = false;
+  };
+
+  Index checked(Handle body) const {
+    DELASSUS_EXPECT(body.owner == owner_, "this rigid body handle belongs to another world");
+    DELASSUS_EXPECT(slots_.is_current(body.index, body.generation), who(body.index) + " was removed; its handle is stale");
+    return body.index;
+  }
+  void set_mass(Index b);
+  void turn(Index b);
+  template <class Mean>
+  void advance(double h, const Mean& mean_velocity);
+
+  Slots slots_;
+  std::uint32_t owner_ = inner::next_owner();
+  T inverse_scale_ = 1;
+  Index held_ = 0;
+  std::vector<Vec<3, T>> x_, shifted_x_;
+  std::vector<Eigen::Quaternion<T>> q_, shifted_q_;
+  std::vector<Mat<3, 3, T>> R_, inertia_, inverse_inertia_, inverse_inertia_world_;
+  std::vector<T> mass_, inverse_mass_;
+  std::vector<Velocity> v_, load_;
+  std::vector<Motion> motion_;
+  std::vector<Target> target_;
+  std::vector<Shape> shape_;
+  std::deque<ConvexHull> hulls_;
+  std::vector<Index> hull_, material_;
+  std::vector<std::uint32_t> group_, collides_with_;
+};
+
+using RigidBodies = BasicRigidBodies<double>;
+using RigidBodiesF = BasicRigidBodies<float>;
+
+template <class T>
+typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) {
+  const std::string name = who(slots_.size());
+  const Quat orientation = inner::check_state(body, name);
+  check(body.shape, name);
+  MassProperties mass;
+  if (body.motion == Motion::dynamic) mass = inner::check_mass(body, name);
+
+  const Index b = slots_.take();
+  const std::size_t n = std::size_t(slots_.size());
+  for (auto* array : {&x_, &shifted_x_}) array->resize(n);
+  for (auto* array : {&q_, &shifted_q_}) array->resize(n);
+  for (auto* array : {&R_, &inertia_, &inverse_inertia_, &inverse_inertia_world_}) array->resize(n);
+  for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
+  for (auto* array : {&v_, &load_, &v_free, &v_next}) array->resize(n);
+  motion_.resize(n);
+  target_.resize(n);
+  shape_.resize(n);
+  hull_.resize(n);
+  material_.resize(n);
+  group_.resize(n);
+  collides_with_.resize(n);
+
+  x_[b] = body.position.template cast<T>();
+  q_[b] = orientation.template cast<T>();
+  motion_[b] = body.motion;
+  mass_[b] = T(mass.mass);
+  inertia_[b] = mass.inertia.template cast<T>();
+  const bool is_dynamic = body.motion == Motion::dynamic;
+  inverse_inertia_[b] = is_dynamic ? Mat<3, 3, T>(mass.inertia.inverse().template cast<T>()) : Mat<3, 3, T>::Zero();
+  v_[b] << body.velocity.template cast<T>(), body.angular_velocity.template cast<T>();
+  if (body.motion == Motion::fixed) v_[b].setZero();
+  load_[b].setZero();
+  v_free[b] = v_next[b] = v_[b];
+  target_[b] = {};
+  shape_[b] = body.shape;
+  hull_[b] = -1;
+  if (body.shape.hull) {
+    hull_[b] = Index(hulls_.size());
+    hulls_.push_back(body.shape.hull->centred());
+    shape_[b].hull = nullptr;
+  }
+  material_[b] = body.material;
+  group_[b] = body.group;
+  collides_with_[b] = body.collides_with;
+  set_mass(b);
+  return handle(b);
+}
+
+template <class T>
+typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add_fixed(const Shape& shape, const Vec3& position,
+                                                                    const Quat& orientation) {
+  return add({.position = position, .orientation = orientation, .shape = shape, .motion = Motion::fixed});
+}
+
+template <class T>
+void BasicRigidBodies<T>::set_mass(Index b) {
+  inverse_mass_[b] = motion_[b] == Motion::dynamic ? T(1) / mass_[b] : T(0);
+  if (motion_[b] != Motion::dynamic) inverse_inertia_[b].setZero();
+  turn(b);
+}
+
+/// R and R I⁻¹ Rᵀ of the present orientation.
+template <class T>
+void BasicRigidBodies<T>::turn(Index b) {
+  R_[b] = q_[b].toRotationMatrix();
+  inverse_inertia_world_[b].noalias() = R_[b] * inverse_inertia_[b] * R_[b].transpose();
+}
+
+template <class T>
+void BasicRigidBodies<T>::begin_step(double h) {
+  for (const Index b : slots_.active()) {
+    if (motion_[b] != Motion::kinematic || !target_[b].is_set) continue;
+    const Quat now = q_[b].template cast<double>();
+    v_[b] << ((target_[b].position - x_[b].template cast<double>()) / h).template cast<T>(),
+        (logarithm<double>(target_[b].orientation * now.conjugate()) / h).template cast<T>();
+  }
+}
+
+template <class T>
+template <class Mean>
+void BasicRigidBodies<T>::advance(double h_, const Mean& mean_velocity) {
+  const T h = T(h_);
+  held_ = 0;
+  for (const Index b : slots_.active()) {
+    if (motion_[b] == Motion::fixed) continue;
+    load_[b].setZero();
+    if (!is_finite(v_next[b])) {
+      ++held_;
+      continue;
+    }
+    x_[b] += h * mean_velocity(b);
+    if (motion_[b] == Motion::dynamic) {
+      // L = R I Rᵀ ω after the kick; the drift turns the body under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
+      const Vec<3, T> rate = R_[b].transpose() * v_next[b].template tail<3>();
+      const Vec<3, T> momentum = R_[b] * (inertia_[b] * rate);
+      q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], rate, h))).normalized();
+      turn(b);
+      v_[b].template head<3>() = v_next[b].template head<3>();
+      v_[b].template tail<3>() = inverse_inertia_world_[b] * momentum;
+    } else {
+      q_[b] = (exponential<T>(h * v_next[b].template tail<3>()) * q_[b]).normalized();
+      if (target_[b].is_set) {
+        x_[b] = target_[b].position.template cast<T>();
+        q_[b] = target_[b].orientation.template cast<T>();
+        target_[b].is_set = false;
+        v_[b].setZero();
+      }
+      turn(b);
+    }
+  }
+}
+
+template <class T>
+void BasicRigidBodies<T>::shift(double h) {
+  shifted_x_ = x_;
+  shifted_q_ = q_;
+  for (const Index b : slots_.active()) {
+    if (motion_[b] == Motion::fixed) continue;
+    x_[b] += T(h) * v_[b].template head<3>();
+    q_[b] = (exponential<T>(T(h) * v_[b].template tail<3>()) * q_[b]).normalized();
+    turn(b);
+  }
+}
+
+template <class T>
+void BasicRigidBodies<T>::restore() {
+  x_ = shifted_x_;
+  q_ = shifted_q_;
+  for (const Index b : slots_.active()) turn(b);
+}
+
+}  // namespace delassus

@@ -1,0 +1,171 @@
+/// Springs with damping between points, and the system matrix they make under an implicit integrator.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/linear/block_cholesky.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// Between blocks `a` and `b`, or `a` and `point` of the world when b < 0. N/m, N·s/m, m.
+struct Spring {
+  Index a = -1, b = -1;
+  Vec3 point = Vec3::Zero();
+  double stiffness = 0, damping = 0, rest = 0;
+};
+
+/// f_a = −(k (l − L) + c ė) e with e the unit vector from b to a, l the length, and for A
+///
+///   K = k [(1 − L/l)₊ (1 − e eᵀ) + e eᵀ],   D = c e eᵀ.
+///
+/// The first term of K is negative while a spring is pressed (l < L); it is cut at zero there, so that A stays
+/// positive definite: the step is then implicit in the spring's direction only.
+template <class T>
+class Springs {
+ public:
+  using Block = Mat<3, 3, T>;
+  using Velocity = Vec<3, T>;
+
+  void add(const Spring& spring, const std::string& who) {
+    DELASSUS_EXPECT(std::isfinite(spring.stiffness) && spring.stiffness >= 0,
+                    who + ": spring stiffness " + inner::text(spring.stiffness) + " must be finite and >= 0 N/m");
+    DELASSUS_EXPECT(std::isfinite(spring.damping) && spring.damping >= 0,
+                    who + ": spring damping " + inner::text(spring.damping) + " must be finite and >= 0 N·s/m");
+    DELASSUS_EXPECT(std::isfinite(spring.rest) && spring.rest >= 0,
+                    who + ": rest length " + inner::text(spring.rest) + " must be finite and >= 0 m");
+    DELASSUS_EXPECT(is_finite(spring.point), who + ": the spring's point is not finite");
+    DELASSUS_EXPECT(spring.a != spring.b, who + ": a spring needs two different ends");
+    springs_.push_back(spring);
+    is_analysed_ = false;
+  }
+  void remove_of(Index block) {
+    std::erase_if(springs_, [&](const Spring& s) { return s.a == block || s.b == block; });
+    is_analysed_ = false;
+  }
+
+  bool is_coupled() const { return is_coupled_; }
+
+  double energy(const std::vector<Velocity>& x) const {
+    double sum = 0;
+    for (const Spring& s : springs_) {
+      const double stretch = span(s, x).norm() - s.rest;
+      sum += 0.5 * s.stiffness * stretch * stretch;
+    }
+    return sum;
+  }
+
+  void add_forces(std::vector<Velocity>& p, const std::vector<Velocity>& x, const std::vector<Velocity>& v) const {
+    for (const Spring& s : springs_) {
+      const Vec3 d = span(s, x);
+      const double length = d.norm();
+      if (length == 0) continue;
+      const Vec3 e = d / length;
+      const double pull = s.stiffness * (length - s.rest) + s.damping * e.dot(rate(s, v));
+      push(p, s, -pull * e);
+    }
+  }
+
+  /// p += s ∂f/∂x v = −s K v.
+  void add_stiffness_times_velocity(std::vector<Velocity>& p, const std::vector<Velocity>& x,
+                                    const std::vector<Velocity>& v, T scale) const {
+    for (const Spring& s : springs_) push(p, s, -double(scale) * (stiffness(s, x) * rate(s, v)));
+  }
+
+  /// Makes A and its factors. `active` are the live blocks; those with inverse mass 0 do not move.
+  void factor(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
+              const std::vector<T>& inverse_mass, const std::vector<Index>& active) {
+    const bool is_plain = springs_.empty() || (scale.stiffness == 0 && scale.damping == 0);
+    is_coupled_ = false;
+    inverse_mass_ = inverse_mass.data();
+    inverse_scale_ = T(1 / scale.mass);
+    if (is_plain) {
+      inverse_.clear();
+      return;
+    }
+    const Index n = Index(x.size());
+    pairs_.clear();
+    inverse_.assign(n, Block::Zero());
+    for (const Index b : active) inverse_[b] = T(scale.mass) * mass[b] * Block::Identity();
+    for (const Spring& s : springs_) {
+      const Block K = system(s, x, scale);
+      inverse_[s.a] += K;
+      if (s.b < 0) continue;
+      inverse_[s.b] += K;
+      if (inverse_mass[s.a] > 0 && inverse_mass[s.b] > 0) pairs_.emplace_back(s.a, s.b);
+    }
+    is_coupled_ = !pairs_.empty();
+    if (is_coupled_) factor_coupled(scale, x, inverse_mass, n);
+    else
+      for (Index b = 0; b < n; ++b)
+        inverse_[b] = inverse_mass[b] > 0 ? Block(inverse_[b].inverse()) : Block(Block::Zero());
+  }
+
+  template <int C>
+  Mat<3, C, T> solve_block(Index b, const Mat<3, C, T>& x) const {
+    if (inverse_.empty()) return (inverse_scale_ * inverse_mass_[b]) * x;
+    return inverse_[b] * x;
+  }
+
+  /// x ← A⁻¹ x; entries of blocks that do not move become zero.
+  void solve(std::vector<Velocity>& x) const {
+    for (std::size_t b = 0; b < x.size(); ++b)
+      if (!(inverse_mass_[b] > 0)) x[b].setZero();
+    if (is_coupled_) cholesky_.solve(x);
+    else
+      for (std::size_t b = 0; b < x.size(); ++b) x[b] = solve_block<1>(Index(b), x[b]);
+  }
+
+ private:
+  Vec3 span(const Spring& s, const std::vector<Velocity>& x) const {
+    const Vec3 end = s.b < 0 ? s.point : Vec3(x[s.b].template cast<double>());
+    return x[s.a].template cast<double>() - end;
+  }
+  static Vec3 rate(const Spring& s, const std::vector<Velocity>& v) {
+    const Vec3 end = s.b < 0 ? Vec3(Vec3::Zero()) : Vec3(v[s.b].template cast<double>());
+    return v[s.a].template cast<double>() - end;
+  }
+  static void push(std::vector<Velocity>& p, const Spring& s, const Vec3& force) {
+    p[s.a] += force.template cast<T>();
+    if (s.b >= 0) p[s.b] -= force.template cast<T>();
+  }
+  Mat3 stiffness(const Spring& s, const std::vector<Velocity>& x) const {
+    const Vec3 d = span(s, x);
+    const double length = d.norm();
+    if (length == 0) return s.rest > 0 ? Mat3(Mat3::Zero()) : Mat3(s.stiffness * Mat3::Identity());
+    const Vec3 e = d / length;
+    const double across = s.stiffness * std::max(0.0, 1 - s.rest / length);
+    return across * Mat3::Identity() + (s.stiffness - across) * e * e.transpose();
+  }
+  Block system(const Spring& s, const std::vector<Velocity>& x, SystemScale scale) const {
+    const Vec3 d = span(s, x);
+    const double length = d.norm();
+    const Vec3 e = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
+    return (scale.stiffness * stiffness(s, x) + scale.damping * s.damping * e * e.transpose()).template cast<T>();
+  }
+
+  void factor_coupled(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& inverse_mass, Index n) {
+    if (!is_analysed_) cholesky_.analyse(n, pairs_);
+    is_analysed_ = true;
+    cholesky_.set_zero();
+    for (Index b = 0; b < n; ++b)
+      cholesky_.add_diagonal(b, inverse_mass[b] > 0 ? inverse_[b] : Block(Block::Identity()));
+    for (const Spring& s : springs_)
+      if (s.b >= 0 && inverse_mass[s.a] > 0 && inverse_mass[s.b] > 0)
+        cholesky_.add_pair(s.a, s.b, Block(-system(s, x, scale)));
+    cholesky_.factor();
+  }
+
+  std::vector<Spring> springs_;
+  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<Block> inverse_;
+  BlockCholesky<3, T> cholesky_;
+  const T* inverse_mass_ = nullptr;
+  T inverse_scale_ = 1;
+  bool is_coupled_ = false, is_analysed_ = false;
+};
+
+}  // namespace delassus

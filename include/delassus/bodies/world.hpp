@@ -1,0 +1,140 @@
+/// The bodies of a simulation: a tuple of body sets.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace delassus {
+
+/// A second set of one type: `Tagged<RigidBodies, struct Debris>`.
+template <class Set, class Tag>
+struct Tagged : Set {
+  using Set::Set;
+};
+
+/// A tuple of body sets of one scalar. Laws and collision see the sets only through `visit`, `point` and `frame`.
+template <class... Sets>
+class World {
+ public:
+  using plays = role::World;
+  static constexpr int set_count = int(sizeof...(Sets));
+  using Tuple = std::tuple<Sets...>;
+  using Scalar = typename std::tuple_element_t<0, Tuple>::Scalar;
+
+  explicit World(Sets... sets) : sets_{std::move(sets)...} {}
+
+  template <int s>
+  auto& set() {
+    return std::get<s>(sets_);
+  }
+  template <int s>
+  const auto& set() const {
+    return std::get<s>(sets_);
+  }
+  template <class Set>
+  Set& get() {
+    return std::get<Set>(sets_);
+  }
+  template <class Set>
+  const Set& get() const {
+    return std::get<Set>(sets_);
+  }
+
+  /// f(set, std::integral_constant<int, s>) for every set, in order.
+  template <class F>
+  void each(F&& f) {
+    each_of(*this, f, std::make_integer_sequence<int, set_count>{});
+  }
+  template <class F>
+  void each(F&& f) const {
+    each_of(*this, f, std::make_integer_sequence<int, set_count>{});
+  }
+
+  /// f(set, std::integral_constant<int, s>) for set number `s`; nothing for the world (s < 0).
+  template <class F>
+  void visit(int s, F&& f) const {
+    each([&](const auto& set, auto k) {
+      if (k == s) f(set, k);
+    });
+  }
+
+  /// Where an anchor is in the world now, m.
+  Vec3 point(const Anchor& a) const {
+    Vec3 x = a.local;
+    visit(a.set, [&](const auto& set, auto) { x = set.point(a); });
+    return x;
+  }
+
+  /// How the frame of an anchor is turned in the world now; a particle has none and says its anchor's own.
+  Quat frame(const Anchor& a) const {
+    Quat q = a.frame;
+    visit(a.set, [&](const auto& set, auto) {
+      if constexpr (requires { set.frame(a); }) q = set.frame(a);
+    });
+    return q;
+  }
+
+  /// Finds the set an anchor speaks of; refuses one of another world or of a removed body.
+  void resolve(Anchor& a, const char* what) const {
+    if (a.owner == 0) {
+      a.set = -1;
+      return;
+    }
+    bool is_found = false;
+    each([&](const auto& set, auto s) {
+      if (set.owner() != a.owner) return;
+      is_found = true;
+      a.set = s;
+      using Handle = std::remove_cvref_t<decltype(set.handle(0))>;
+      DELASSUS_EXPECT(set.contains(Handle{a.block, a.generation, a.owner}),
+                      std::string(what) + ": " + set.who(a.block) + " was removed; its anchor is stale");
+    });
+    DELASSUS_EXPECT(is_found, std::string(what) + ": the anchor belongs to a body of another world");
+  }
+
+ private:
+  template <class Self, class F, int... s>
+  static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {
+    (f(std::get<s>(self.sets_), std::integral_constant<int, s>{}), ...);
+  }
+
+  Tuple sets_;
+};
+
+/// The set of type S of a world.
+template <class S, class... Sets>
+S& bodies(World<Sets...>& world) {
+  return world.template get<S>();
+}
+template <class S, class... Sets>
+const S& bodies(const World<Sets...>& world) {
+  return world.template get<S>();
+}
+
+template <class World>
+using scalar_t = typename World::Scalar;
+
+/// The material point `local` (body frame, m) of a body, with a joint frame turned by `frame` against the body's.
+template <BodySet S>
+Anchor anchor(const S& set, typename S::Handle body, const Vec3& local = Vec3::Zero(),
+              const Quat& frame = Quat::Identity()) {
+  DELASSUS_EXPECT(set.contains(body), "anchor: the handle of " + set.who(body.index) + " is stale or of another world");
+  DELASSUS_EXPECT(is_finite(local), "anchor: the point on " + set.who(body.index) + " is not finite");
+  DELASSUS_EXPECT(std::abs(frame.coeffs().norm() - 1) < 1e-6,
+                  "anchor: the frame on " + set.who(body.index) + " is not a unit quaternion");
+  return {.block = body.index,
+          .local = local,
+          .frame = frame,
+          .has_frame = FramedSet<S>,
+          .generation = body.generation,
+          .owner = body.owner};
+}
+
+}  // namespace delassus

@@ -1,0 +1,167 @@
+/// The Delassus operator as a block-sparse matrix.
+#pragma once
+
+#include <delassus/compliance/compliance.hpp>
+#include <delassus/compliance/inner/incidence.hpp>
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// Rows of blocks, compressed: row i holds blocks start[i] … start[i+1] − 1 in the columns named by `column`.
+/// Blocks are stored column-major, so that W_ij λ_j is a sum of columns.
+template <int Ra, int Rb, class S>
+struct BlockRows {
+  std::vector<Index> start, column;
+  std::vector<Mat<Ra, Rb, S>> block;
+
+  void reset() {
+    start.assign(1, 0);
+    column.clear();
+    block.clear();
+  }
+};
+
+/// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. `Storage` is the type W is
+/// kept in; sums run in the loop's scalar.
+template <class Storage = void>
+struct BasicAssembledCompliance {
+  using plays = role::Compliance;
+
+  template <class Rows>
+  class Operator;
+};
+using AssembledCompliance = BasicAssembledCompliance<>;
+
+template <class Storage>
+template <class T, int... w, int... R>
+class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R...>> {
+ public:
+  using Rows = RowSystem<T, Widths<w...>, R...>;
+  using S = std::conditional_t<std::is_void_v<Storage>, T, Storage>;
+  static constexpr int pools = int(sizeof...(R));
+
+  template <class World>
+  void build(const World& world, Rows& rows) {
+    world.each([&](const auto& set, auto s) {
+      if constexpr (inner::may_couple<std::remove_cvref_t<decltype(set)>>)
+        if (set.is_coupled()) return columns_.template prepare<s>(set, rows);
+      inner::apply_inverse(set, rows, s);
+      incidence_.template find<s>(rows, set.blocks());
+    });
+    for_each_index<pools>([&](auto a) { build_rows<a>(world, rows); });
+  }
+
+  void reset(const Rows&) {}
+
+  template <int p>
+  const auto& diagonal(Index i) const {
+    return std::get<p>(diagonal_)[i];
+  }
+
+  template <int p>
+  auto residual(const Rows& rows, Index i) const {
+    const auto& pool = rows.template pool<p>();
+    auto r = pool.d[i];
+    r.noalias() += std::get<p>(diagonal_)[i] * pool.lambda[i];
+    for_each_index<pools>([&](auto b) {
+      const auto& W = std::get<b>(std::get<p>(blocks_));
+      const auto* lambda = rows.template pool<b>().lambda.data();
+      for (Index e = W.start[i]; e < W.start[i + 1]; ++e)
+        r.noalias() += W.block[e].template cast<T>() * lambda[W.column[e]];
+    });
+    return r;
+  }
+
+  template <int p>
+  void commit(const Rows&, Index, const Vec<Rows::template rows_of<p>, T>&) {}
+
+  /// The off-diagonal blocks between pools a and b, for export and tests.
+  template <int a, int b>
+  const auto& blocks() const {
+    return std::get<b>(std::get<a>(blocks_));
+  }
+
+ private:
+  /// Row by row: every entry e of item i meets all entries f on its block, and W_ij += H_e G_f.
+  template <int a, class World>
+  void build_rows(const World& world, const Rows& rows) {
+    const auto& pool = rows.template pool<a>();
+    auto& diagonal = std::get<a>(diagonal_);
+    diagonal.resize(pool.items());
+    for_each_index<pools>([&](auto b) {
+      std::get<b>(std::get<a>(blocks_)).reset();
+      place_[b].assign(rows.template pool<b>().items(), -1);
+    });
+    for (Index i = 0; i < pool.items(); ++i) {
+      diagonal[i].setZero();
+      world.each([&](const auto& set, auto s) {
+        if constexpr (inner::may_couple<std::remove_cvref_t<decltype(set)>>)
+          if (set.is_coupled()) return add_coupled<a, s>(rows, i);
+        add_row<a, s>(rows, i);
+      });
+      inner::add_compliance(diagonal[i], pool.compliance[i], pool.softness[i]);
+      for_each_index<pools>([&](auto b) {
+        auto& W = std::get<b>(std::get<a>(blocks_));
+        for (Index e = W.start.back(); e < Index(W.column.size()); ++e) place_[b][W.column[e]] = -1;
+        W.start.push_back(Index(W.column.size()));
+      });
+    }
+  }
+
+  template <int a, int s>
+  void add_row(const Rows& rows, Index i) {
+    const auto& mine = std::get<s>(rows.template pool<a>().sets);
+    for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
+      for_each_index<pools>([&](auto b) {
+        const auto& theirs = std::get<s>(rows.template pool<b>().sets);
+        for (const auto& [j, f] : incidence_.template at<s, b>(mine.block[e]))
+          add<a, b>(i, j, mine.H[e] * theirs.G[f]);
+      });
+  }
+
+  template <int a, int s>
+  void add_coupled(const Rows& rows, Index i) {
+    const auto& mine = std::get<s>(rows.template pool<a>().sets);
+    if (mine.offset[i] == mine.offset[i + 1]) return;
+    for_each_index<pools>([&](auto b) {
+      columns_.template each<s, b>([&](Index j, const auto& column) {
+        for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
+          add<a, b>(i, j, mine.H[e] * column[mine.block[e]]);
+      });
+    });
+  }
+
+  /// W_ij += block, opening the column when it is the first.
+  template <int a, int b, class Block>
+  void add(Index i, Index j, const Block& block) {
+    if constexpr (a == b)
+      if (i == j) {
+        std::get<a>(diagonal_)[i] += block;
+        return;
+      }
+    auto& W = std::get<b>(std::get<a>(blocks_));
+    Index& place = place_[b][j];
+    if (place < 0) {
+      place = Index(W.column.size());
+      W.column.push_back(j);
+      W.block.emplace_back(block.template cast<S>());
+    } else {
+      W.block[place] += block.template cast<S>();
+    }
+  }
+
+  template <int Ra>
+  using RowOf = std::tuple<BlockRows<Ra, R, S>...>;
+
+  std::tuple<RowOf<R>...> blocks_;
+  std::tuple<std::vector<Mat<R, R, T>>...> diagonal_;
+  std::array<std::vector<Index>, sizeof...(R)> place_;
+  inner::Incidence<Rows> incidence_;
+  inner::CoupledColumns<Rows> columns_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,51 @@
+/// What a solver may ask of a compliance: three functions per constraint, whether W exists as a matrix or not.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_system.hpp>
+
+namespace delassus {
+
+/// A compliance builder is a policy whose `Operator<Rows>` holds the workspace of one loop:
+///
+///   build(world, rows)          from H and A⁻¹, once a step; also writes G = A⁻¹ Hᵀ where A is block-diagonal
+///   reset(rows)                 λ is what rows.lambda says now
+///   diagonal<p>(i)              own block W_ii of item i of pool p, R × R, compliance included, 1/kg
+///   residual<p>(rows, i)        u_i + bias_i = (d + W λ)_i at the present λ
+///   commit<p>(rows, i, δ)       λ_i has been changed by δ
+template <class C>
+concept Compliance = Plays<C, role::Compliance>;
+
+namespace inner {
+
+/// G_e = A⁻¹ H_eᵀ for every entry of every pool in one block-diagonal set.
+template <class Set, class Rows, class S>
+void apply_inverse(const Set& set, Rows& rows, S s) {
+  for_each_index<Rows::pool_count>([&](auto p) {
+    auto& blocks = std::get<s>(rows.template pool<p>().sets);
+    constexpr int R = Rows::template rows_of<p>;
+    blocks.G.resize(blocks.H.size());
+    for (std::size_t e = 0; e < blocks.H.size(); ++e)
+      blocks.G[e] = set.template solve_block<R>(blocks.block[e], blocks.H[e].transpose());
+  });
+}
+
+/// W_ii + diag(R) + diag(softness · W_kk).
+template <int R, class T>
+void add_compliance(Mat<R, R, T>& W, const Vec<R, T>& compliance, const Vec<R, T>& softness) {
+  for (int k = 0; k < R; ++k) W(k, k) += compliance[k] + softness[k] * W(k, k);
+}
+
+/// A set whose A can have entries between blocks, depending on what it holds.
+template <class Set>
+inline constexpr bool may_couple = requires(const Set& set) { set.is_coupled(); };
+
+template <class Set>
+bool is_coupled(const Set& set) {
+  if constexpr (may_couple<Set>) return set.is_coupled();
+  else return false;
+}
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,107 @@
+/// The Delassus operator without the matrix: W λ = H (A⁻¹ Hᵀ λ), the bracket kept per body.
+#pragma once
+
+#include <delassus/compliance/compliance.hpp>
+#include <delassus/core/expect.hpp>
+
+#include <tuple>
+#include <vector>
+
+namespace delassus {
+
+/// Keeps y = A⁻¹ Hᵀ λ, the velocity that the impulses add to each block: residual = d + H y, commit: y += G δ.
+/// Moves about 2 (R w) numbers per body and visit instead of one R × R block per neighbour: it wins where a
+/// constraint has many neighbours.
+struct MatrixFreeCompliance {
+  using plays = role::Compliance;
+
+  template <class Rows>
+  class Operator;
+};
+
+template <class T, int... w, int... R>
+class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
+ public:
+  using Rows = RowSystem<T, Widths<w...>, R...>;
+
+  template <class World>
+  void build(const World& world, Rows& rows) {
+    world.each([&](const auto& set, auto s) {
+      DELASSUS_EXPECT(!inner::is_coupled(set),
+                      "MatrixFreeCompliance: springs between particles couple A under an implicit integrator; "
+                      "use AssembledCompliance");
+      inner::apply_inverse(set, rows, s);
+      std::get<s>(y_).resize(set.blocks());
+    });
+    for_each_index<Rows::pool_count>([&](auto p) { own_blocks<p>(rows); });
+  }
+
+  void reset(const Rows& rows) {
+    std::apply([](auto&... y) { (zero(y), ...); }, y_);
+    for_each_index<Rows::pool_count>([&](auto p) {
+      const auto& pool = rows.template pool<p>();
+      for (Index i = 0; i < pool.items(); ++i) commit<p>(rows, i, pool.lambda[i]);
+    });
+  }
+
+  template <int p>
+  const auto& diagonal(Index i) const {
+    return std::get<p>(diagonal_)[i];
+  }
+
+  template <int p>
+  auto residual(const Rows& rows, Index i) const {
+    const auto& pool = rows.template pool<p>();
+    auto r = pool.d[i];
+    for_each_index<Rows::set_count>([&](auto s) {
+      const auto& set = std::get<s>(pool.sets);
+      const auto& y = std::get<s>(y_);
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) r.noalias() += set.H[e] * y[set.block[e]];
+    });
+    return (r + std::get<p>(compliance_)[i].cwiseProduct(pool.lambda[i])).eval();
+  }
+
+  template <int p>
+  void commit(const Rows& rows, Index i, const Vec<Rows::template rows_of<p>, T>& change) {
+    const auto& pool = rows.template pool<p>();
+    for_each_index<Rows::set_count>([&](auto s) {
+      const auto& set = std::get<s>(pool.sets);
+      auto& y = std::get<s>(y_);
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) y[set.block[e]].noalias() += set.G[e] * change;
+    });
+  }
+
+ private:
+  template <class Y>
+  static void zero(Y& y) {
+    for (auto& x : y) x.setZero();
+  }
+
+  /// W_ii = Σ H_e G_f over the pairs of entries e, f of item i on the same block.
+  template <int p>
+  void own_blocks(const Rows& rows) {
+    const auto& pool = rows.template pool<p>();
+    auto& diagonal = std::get<p>(diagonal_);
+    auto& compliance = std::get<p>(compliance_);
+    diagonal.resize(pool.items());
+    compliance.resize(pool.items());
+    for (Index i = 0; i < pool.items(); ++i) {
+      auto& W = diagonal[i];
+      W.setZero();
+      for_each_index<Rows::set_count>([&](auto s) {
+        const auto& set = std::get<s>(pool.sets);
+        for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
+          for (Index f = set.offset[i]; f < set.offset[i + 1]; ++f)
+            if (set.block[e] == set.block[f]) W.noalias() += set.H[e] * set.G[f];
+      });
+      compliance[i] = pool.compliance[i] + pool.softness[i].cwiseProduct(W.diagonal());
+      W.diagonal() += compliance[i];
+    }
+  }
+
+  std::tuple<std::vector<Vec<w, T>>...> y_;
+  std::tuple<std::vector<Mat<R, R, T>>...> diagonal_;
+  std::tuple<std::vector<Vec<R, T>>...> compliance_;
+};
+
+}  // namespace delassus

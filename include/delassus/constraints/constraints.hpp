@@ -1,0 +1,66 @@
+/// The constraint laws of a loop: a tuple of pools.
+#pragma once
+
+#include <delassus/constraints/pool.hpp>
+#include <delassus/core/roles.hpp>
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace delassus {
+
+/// `Constraints{Contact{Coulomb{}}, BallJoint{}}`: one pool a law, in the order of the sweep.
+template <class... Laws>
+class Constraints {
+ public:
+  using plays = role::Constraints;
+  static constexpr int pool_count = int(sizeof...(Laws));
+  static constexpr bool has_contacts = (ContactLaw<Laws> || ...);
+  template <template <class, class, int...> class Rows, class T, class Widths>
+  using RowsOf = Rows<T, Widths, Laws::rows...>;
+
+  Constraints() = default;
+  explicit Constraints(Laws... laws)
+    requires(sizeof...(Laws) > 0)
+      : pools_{Pool<Laws>{std::move(laws)}...} {}
+
+  template <int p>
+  auto& pool() {
+    return std::get<p>(pools_);
+  }
+  template <int p>
+  const auto& pool() const {
+    return std::get<p>(pools_);
+  }
+  template <class Law>
+  auto& of() {
+    return std::get<Pool<Law>>(pools_);
+  }
+  template <class Law>
+  const auto& of() const {
+    return std::get<Pool<Law>>(pools_);
+  }
+
+  /// The law whose items are of this type, or void.
+  template <class Item>
+  struct law_of {
+    template <class L>
+    static constexpr bool fits = std::is_same_v<Item, typename L::Item> && !ContactLaw<L>;
+    template <class... Ls>
+    struct find {
+      using type = void;
+    };
+    template <class L, class... Rest>
+    struct find<L, Rest...> : std::conditional_t<fits<L>, std::type_identity<L>, find<Rest...>> {};
+    using type = typename find<Laws...>::type;
+  };
+
+ private:
+  std::tuple<Pool<Laws>...> pools_;
+};
+
+template <class... Laws>
+Constraints(Laws...) -> Constraints<Laws...>;
+
+}  // namespace delassus

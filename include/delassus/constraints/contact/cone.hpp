@@ -1,0 +1,33 @@
+/// Coulomb's cone: projections and the map whose zero is a solution.
+#pragma once
+
+#include <delassus/math/linear.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// Euclidean projection on K(μ) = { (x_n, x_t) : |x_t| ≤ μ x_n }, rows ordered (n, t₁, t₂).
+///
+///   x inside: x;   μ |x_t| ≤ −x_n: 0;   else n = (x_n + μ |x_t|)/(1 + μ²), (n, μ n x_t/|x_t|).
+template <class T>
+Vec<3, T> project_on_cone(const Vec<3, T>& x, T friction) {
+  const T tangential = std::hypot(x[1], x[2]);
+  if (tangential <= friction * x[0]) return x;
+  if (friction * tangential <= -x[0]) return Vec<3, T>::Zero();
+  const T normal = (x[0] + friction * tangential) / (T(1) + friction * friction);
+  const T scale = friction * normal / tangential;
+  return {normal, scale * x[1], scale * x[2]};
+}
+
+/// s λ − P_K(s λ − ũ), ũ = u + μ |u_t| e_n: zero exactly when u and λ meet Signorini's and Coulomb's laws
+/// (De Saxcé's form). Source: [AcaryBremondHuber2018].
+template <class T>
+Vec<3, T> coulomb_natural_map(const Vec<3, T>& lambda, const Vec<3, T>& u, T friction, T scale) {
+  const Vec<3, T> x = scale * lambda;
+  Vec<3, T> y = x - u;
+  y[0] -= friction * std::hypot(u[1], u[2]);
+  return x - project_on_cone(y, friction);
+}
+
+}  // namespace delassus

@@ -1,0 +1,91 @@
+/// A contact point between two bodies, under a contact law.
+#pragma once
+
+#include <delassus/constraints/law.hpp>
+#include <delassus/rows/contact_record.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// Two unit vectors that complete n to a right-handed frame (rows n, t₁, t₂), continuous away from one direction.
+/// Source: [DuffEtAl2017], the branchless form with copysign.
+inline Mat3 contact_frame(const Vec3& n) {
+  const double sign = std::copysign(1.0, n[2]);
+  const double a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+  Mat3 frame;
+  frame.row(0) = n;
+  frame.row(1) << 1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0];
+  frame.row(2) << b, sign + n[1] * n[1] * a, -n[1];
+  return frame;
+}
+
+/// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the others tangent.
+template <class Law>
+struct Contact {
+  static constexpr int rows = Law::rows;
+  static constexpr auto kinds = Law::kinds;
+  static constexpr bool is_contact = true;
+
+  Law law{};
+
+  struct Item {
+    ContactRecord record;
+    Mat3 frame = Mat3::Identity();
+    typename Law::Parameters parameters{};
+    Index result = -1;  ///< its place in the loop's list of contacts
+  };
+
+  void check() const { law.check(); }
+
+  /// Records between other materials go to the next contact law that takes them.
+  bool takes(Index, Index) const { return true; }
+
+  void linearize(const Item& item, const auto& world, auto row) const {
+    (void)world;
+    const Vec3 point = item.record.point();
+    auto a = row.end(item.record.a, point), b = row.end(item.record.b, point);
+    for (int k = 0; k < rows; ++k) {
+      a.along(k, -item.frame.row(k).transpose());
+      b.along(k, item.frame.row(k).transpose());
+    }
+    row.phi(0, item.record.gap);
+  }
+
+  template <class T>
+  using Memory = inner::memory_of_t<Law, T>;
+
+  template <class T>
+  void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
+    inner::prepare(law, W, memory);
+  }
+  template <class T>
+  void project(const Item& item, Local<rows, T>& c, Memory<T>& memory) const {
+    inner::project(law, item.parameters, c, memory);
+  }
+  template <class T>
+  Vec<rows, T> natural_map(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
+    return law.natural_map(item.parameters, lambda, u, scale);
+  }
+  template <class T>
+  void clamp(const Item& item, Vec<rows, T>& lambda) const {
+    law.clamp(item.parameters, lambda);
+  }
+  /// e of this contact, where the law has one.
+  double restitution(const Item& item) const
+    requires requires { item.parameters.restitution; }
+  {
+    return item.parameters.restitution;
+  }
+};
+
+template <class Law>
+Contact(Law) -> Contact<Law>;
+
+/// A contact law for the material pairs that `Pairs::takes(a, b)` names.
+template <class Law, class Pairs>
+struct ContactFor : Contact<Law> {
+  bool takes(Index a, Index b) const { return Pairs::takes(a, b); }
+};
+
+}  // namespace delassus

@@ -1,0 +1,129 @@
+/// Contact with Coulomb friction: a round cone, met exactly at every visit.
+#pragma once
+
+#include <delassus/constraints/contact/cone.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace delassus {
+
+/// u = W λ + b:  0 ≤ u_n ⟂ λ_n ≥ 0,  |λ_t| ≤ μ λ_n,  and λ_t = −μ λ_n u_t/|u_t| where the contact slips.
+///
+/// Exactly one of three cases holds for a contact whose neighbours are fixed:
+///   open   b_n ≥ 0: λ = 0;
+///   stick  λ = −W⁻¹ b lies in the cone;
+///   slip   u_n = 0 and u_t = −α λ_t with α > 0: after eliminating λ_n,
+///          (S + α 1) λ_t = −c,  S = W_tt − W_tn W_nt/W_nn,  c = b_t − W_tn b_n/W_nn,
+///          and α is the root of μ λ_n(α) = |λ_t(α)|, by a bracketed Newton iteration that starts at the last α.
+struct Coulomb {
+  static constexpr int rows = 3;
+  static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
+
+  double friction = 0.5;  ///< μ ≥ 0, where neither the pair nor the materials say otherwise
+
+  struct Parameters {
+    double friction;
+  };
+
+  /// What one contact's own block gives once a step, and the last α.
+  template <class T>
+  struct Memory {
+    Mat<3, 3, T> inverse;
+    Mat<2, 2, T> schur;     ///< S
+    Vec<2, T> to_normal;    ///< W_nt / W_nn
+    Vec<2, T> from_normal;  ///< W_tn / W_nn
+    T normal;               ///< W_nn
+    T alpha = 0;
+  };
+
+  void check() const {
+    DELASSUS_EXPECT(friction >= 0 && std::isfinite(friction),
+                    "Coulomb: friction " + inner::text(friction) + " must be finite and >= 0");
+  }
+
+  Parameters parameters() const { return {friction}; }
+  static void set_friction(Parameters& p, double friction) { p.friction = friction; }
+
+  template <class T>
+  void prepare(const Mat<3, 3, T>& W, Memory<T>& memory) const {
+    // A block without stiffness in some direction is lifted by rounding's share, so that its inverse exists.
+    const T lift = T(64) * std::numeric_limits<T>::epsilon() * W.trace();
+    const Mat<3, 3, T> lifted = W + lift * Mat<3, 3, T>::Identity();
+    memory.inverse = lifted.inverse();
+    memory.normal = lifted(0, 0);
+    memory.to_normal = lifted.template topRightCorner<1, 2>().transpose() / memory.normal;
+    memory.from_normal = lifted.template bottomLeftCorner<2, 1>() / memory.normal;
+    memory.schur = lifted.template bottomRightCorner<2, 2>() -
+                   memory.normal * memory.from_normal * memory.to_normal.transpose();
+    memory.alpha = 0;
+  }
+
+  template <class T>
+  void project(const Parameters& p, Local<3, T>& c, Memory<T>& memory) const {
+    const Vec<3, T> b = c.free_velocity();
+    if (b[0] >= T(0)) {
+      c.lambda.setZero();
+      return;
+    }
+    const T mu = T(p.friction);
+    c.lambda.noalias() = -(memory.inverse * b);
+    const T limit = mu * c.lambda[0];
+    if (c.lambda[0] >= T(0) && c.lambda[1] * c.lambda[1] + c.lambda[2] * c.lambda[2] <= limit * limit) return;
+    c.lambda = slip(b, mu, memory);
+  }
+
+  template <class T>
+  Vec<3, T> natural_map(const Parameters& p, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
+    return coulomb_natural_map(lambda, u, T(p.friction), scale);
+  }
+  template <class T>
+  void clamp(const Parameters& p, Vec<3, T>& lambda) const {
+    lambda = project_on_cone(lambda, T(p.friction));
+  }
+
+ private:
+  template <class T>
+  static Vec<3, T> slip(const Vec<3, T>& b, T mu, Memory<T>& memory) {
+    if (mu == T(0)) return {-b[0] / memory.normal, T(0), T(0)};
+    const T c1 = b[1] - memory.from_normal[0] * b[0], c2 = b[2] - memory.from_normal[1] * b[0];
+    const T bn = b[0] / memory.normal;
+    const auto& S = memory.schur;
+    constexpr T tolerance = T(16) * std::numeric_limits<T>::epsilon();
+    T low = 0, high = std::numeric_limits<T>::infinity(), alpha = memory.alpha;
+    T x1 = 0, x2 = 0, normal = 0, length = 0;
+    for (int iteration = 0; iteration < 60; ++iteration) {
+      // λ_t = −(S + α)⁻¹ c and λ_n = −b_n/W_nn − (W_nt/W_nn) λ_t.
+      const T s11 = S(0, 0) + alpha, s22 = S(1, 1) + alpha, over = T(1) / (s11 * s22 - S(0, 1) * S(1, 0));
+      x1 = -(s22 * c1 - S(0, 1) * c2) * over;
+      x2 = -(s11 * c2 - S(1, 0) * c1) * over;
+      normal = -(bn + memory.to_normal[0] * x1 + memory.to_normal[1] * x2);
+      const T square = x1 * x1 + x2 * x2;
+      length = std::sqrt(square);
+      const T gap = mu * normal - length;  // negative: α must grow
+      if (std::abs(gap) <= tolerance * length || high - low <= tolerance * alpha) break;
+      (gap < 0 ? low : high) = alpha;
+      // Newton on μ λ_n/|λ_t| − 1, with dλ_t/dα = −(S + α)⁻¹ λ_t.
+      const T y1 = -(s22 * x1 - S(0, 1) * x2) * over, y2 = -(s11 * x2 - S(1, 0) * x1) * over;
+      const T normal_slope = -(memory.to_normal[0] * y1 + memory.to_normal[1] * y2);
+      const T slope = mu * (normal_slope - normal * (x1 * y1 + x2 * y2) / square);
+      T next = slope > 0 ? alpha - gap / slope : T(-1);
+      if (!(next > low && next < high)) {
+        const T first = T(0.05) * (S(0, 0) + S(1, 1));
+        next = high < std::numeric_limits<T>::infinity() ? T(0.5) * (low + high) : std::max(T(4) * alpha, first);
+      }
+      if (next == alpha) break;
+      alpha = next;
+    }
+    memory.alpha = alpha;
+    if (!(normal > 0) || !(length > 0)) return {std::max(normal, T(0)), T(0), T(0)};
+    const T scale = mu * normal / length;  // on the cone to the last bit
+    return {normal, scale * x1, scale * x2};
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,76 @@
+/// Friction and restitution by material and by pair of materials.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace delassus {
+
+/// What a surface is made of. Friction μ ≥ 0, restitution e in [0, 1].
+struct Material {
+  double friction = 0.5;
+  double restitution = 0;
+};
+
+/// Numbers of materials, 0 being "none said". The combination rule of two materials is
+///
+///   μ = √(μ_a μ_b),   e = max(e_a, e_b);
+///
+/// an entry for the pair comes before it, and a pair with a 0 in it keeps the law's own parameters.
+class Materials {
+ public:
+  Index add(const Material& material) {
+    check(material, "material");
+    materials_.push_back(material);
+    return Index(materials_.size());
+  }
+
+  void set_pair(Index a, Index b, const Material& material) {
+    check(material, "material pair");
+    DELASSUS_EXPECT(std::min(a, b) >= 0 && std::max(a, b) <= Index(materials_.size()),
+                    "material pair: no material has this number; add it first");
+    const auto [low, high] = std::minmax(a, b);
+    for (Pair& p : pairs_)
+      if (p.a == low && p.b == high) {
+        p.material = material;
+        return;
+      }
+    pairs_.push_back({low, high, material});
+  }
+
+  /// What holds between two materials, or nothing when the law's own parameters do.
+  std::optional<Material> between(Index a, Index b) const {
+    const auto [low, high] = std::minmax(a, b);
+    for (const Pair& p : pairs_)
+      if (p.a == low && p.b == high) return p.material;
+    if (low <= 0) return {};
+    const Material &x = materials_[low - 1], &y = materials_[high - 1];
+    return Material{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution)};
+  }
+
+  bool empty() const { return materials_.empty() && pairs_.empty(); }
+  bool contains(Index material) const { return material >= 0 && material <= Index(materials_.size()); }
+
+ private:
+  struct Pair {
+    Index a, b;
+    Material material;
+  };
+
+  static void check(const Material& m, const char* what) {
+    DELASSUS_EXPECT(std::isfinite(m.friction) && m.friction >= 0,
+                    std::string(what) + ": friction " + inner::text(m.friction) + " must be finite and >= 0");
+    DELASSUS_EXPECT(m.restitution >= 0 && m.restitution <= 1,
+                    std::string(what) + ": restitution " + inner::text(m.restitution) + " must be in [0, 1]");
+  }
+
+  std::vector<Material> materials_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,40 @@
+/// The local solve all joints share: the rows are equalities.
+#pragma once
+
+#include <delassus/rows/local.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <limits>
+
+namespace delassus {
+
+/// λ ← λ − W⁻¹ d. A block that is singular (a redundant row, an end without mass) is lifted by rounding's share.
+template <int rows_>
+struct Bilateral {
+  static constexpr int rows = rows_;
+  static constexpr bool bilateral = true;
+
+  template <class T>
+  struct Memory {
+    Mat<rows, rows, T> inverse;
+  };
+
+  template <class T>
+  void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
+    const T lift = T(64) * std::numeric_limits<T>::epsilon() * W.trace();
+    const Mat<rows, rows, T> lifted = W + lift * Mat<rows, rows, T>::Identity();
+    memory.inverse = lifted.llt().solve(Mat<rows, rows, T>::Identity());
+  }
+  template <class Item, class T>
+  void project(const Item&, Local<rows, T>& c, Memory<T>& memory) const {
+    c.lambda.noalias() -= memory.inverse * c.d;
+  }
+  /// s λ − P(s λ − u) with P the identity: the velocity itself.
+  template <class Item, class T>
+  Vec<rows, T> natural_map(const Item&, const Vec<rows, T>&, const Vec<rows, T>& u, T) const {
+    return u;
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,45 @@
+/// A distance joint: two points keep a length, rigidly or as a spring.
+#pragma once
+
+#include <delassus/constraints/joints/bilateral.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/rows/anchor.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// φ = |x_a − x_b| − L, u = e · (v_a − v_b), e = (x_a − x_b)/|x_a − x_b|.
+///
+/// With stiffness k (N/m) or damping c (N·s/m) the row is soft: λ = −h (k (φ + h u) + c u), the spring and damper of
+/// implicit Euler. Points that coincide have no direction: the row then acts along z, where it is deterministic.
+struct DistanceJoint : Bilateral<1> {
+  struct Item {
+    Anchor a, b;
+    double length = 0;  ///< L ≥ 0, m
+    double stiffness = 0;
+    double damping = 0;
+  };
+
+  static void check(const Item& item) {
+    DELASSUS_EXPECT(std::isfinite(item.length) && item.length >= 0,
+                    "DistanceJoint: length " + inner::text(item.length) + " must be finite and >= 0 m");
+    DELASSUS_EXPECT(std::isfinite(item.stiffness) && item.stiffness >= 0,
+                    "DistanceJoint: stiffness " + inner::text(item.stiffness) + " must be finite and >= 0 N/m");
+    DELASSUS_EXPECT(std::isfinite(item.damping) && item.damping >= 0,
+                    "DistanceJoint: damping " + inner::text(item.damping) + " must be finite and >= 0 N·s/m");
+  }
+
+  void linearize(const Item& item, const auto& world, auto row) const {
+    const Vec3 xa = world.point(item.a), xb = world.point(item.b), span = xa - xb;
+    const double distance = span.norm();
+    const Vec3 e = distance > 0 ? Vec3(span / distance) : Vec3(Vec3::UnitZ());
+    // Along the line of the two points every point of it gives the same row, each end's own included.
+    row.end(item.a, xa).along(0, e);
+    row.end(item.b, xb).along(0, -e);
+    row.phi(0, distance - item.length);
+    if (item.stiffness > 0 || item.damping > 0) row.soft(0, item.stiffness, item.damping);
+  }
+};
+
+}  // namespace delassus

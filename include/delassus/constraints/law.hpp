@@ -1,0 +1,82 @@
+/// What a constraint law is.
+#pragma once
+
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
+
+#include <concepts>
+#include <type_traits>
+
+namespace delassus {
+
+/// `rows` and `Item` by type; project(item, Local<rows>&) replaces local.lambda by one that meets the law.
+///
+/// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then has
+/// prepare(W, memory) and project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds`
+/// (one RowKind a row), natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) (into its cone).
+template <class L>
+concept ConstraintLaw = requires {
+  typename L::Item;                                   // what the user adds, or collision detection fills
+  { L::rows } -> std::convertible_to<int>;            // number of rows, a compile-time constant
+};
+
+template <class L>
+concept RemembersBetweenSweeps = requires { typename L::template Memory<double>; };
+
+template <class L>
+concept Projects = requires(const L law, const typename L::Item item, Local<L::rows>& local) {
+  { law.project(item, local) } -> std::same_as<void>;
+} || requires(const L law, const typename L::Item item, Local<L::rows>& local,
+              typename L::template Memory<double>& memory) {
+  { law.project(item, local, memory) } -> std::same_as<void>;
+};
+
+/// A law whose items are made by collision detection.
+template <class L>
+concept ContactLaw = requires { requires L::is_contact; };
+
+namespace inner {
+
+struct NoMemory {};
+
+template <class L, class T>
+struct memory_of {
+  using type = NoMemory;
+};
+template <RemembersBetweenSweeps L, class T>
+struct memory_of<L, T> {
+  using type = typename L::template Memory<T>;
+};
+
+template <class L, class T>
+using memory_of_t = typename memory_of<L, T>::type;
+
+/// Calls what the law has: with its memory or without.
+template <class L, class W, class M>
+void prepare(const L& law, const W& own_block, M& memory) {
+  if constexpr (requires { law.prepare(own_block, memory); }) law.prepare(own_block, memory);
+}
+template <class L, class Item, class C, class M>
+void project(const L& law, const Item& item, C& local, M& memory) {
+  if constexpr (requires { law.project(item, local, memory); }) law.project(item, local, memory);
+  else law.project(item, local);
+}
+
+/// One sentence for the first thing a law lacks.
+template <class L>
+consteval bool law_is_sound() {
+  constexpr bool has_shape = ConstraintLaw<L>;
+  static_assert(has_shape,
+                "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
+  if constexpr (has_shape) {
+    constexpr bool projects = Projects<L>;
+    static_assert(projects,
+                  "delassus: a constraint law needs void project(const Item&, Local<rows>&) const; add it");
+    return projects;
+  } else {
+    return false;
+  }
+}
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,85 @@
+/// All constraints of one law.
+#pragma once
+
+#include <delassus/constraints/law.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/slots.hpp>
+#include <delassus/rows/anchor.hpp>
+
+#include <string>
+#include <vector>
+
+namespace delassus {
+
+/// Names one constraint of a law.
+template <class Law>
+struct ConstraintHandle {
+  Index index = -1;
+  std::uint32_t generation = 0;
+};
+
+/// Items in places that never move, the impulse each had last step, and the list of live ones.
+template <class Law>
+struct Pool {
+  static constexpr int rows = Law::rows;
+  using Item = typename Law::Item;
+
+  Law law{};
+  std::vector<Item> items;
+  std::vector<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
+  Slots slots;
+
+  Pool() = default;
+  explicit Pool(Law l) : law(std::move(l)) {}
+
+  ConstraintHandle<Law> add(const Item& item) {
+    const Index place = slots.take();
+    if (place == Index(items.size())) {
+      items.push_back(item);
+      impulse.push_back(Vec<rows>::Zero());
+    }
+    items[place] = item;
+    impulse[place].setZero();
+    return {place, slots.generation(place)};
+  }
+
+  bool contains(ConstraintHandle<Law> h) const { return slots.is_current(h.index, h.generation); }
+
+  void remove(ConstraintHandle<Law> h) {
+    DELASSUS_EXPECT(contains(h), "remove: this constraint was removed before; its handle is stale");
+    slots.give_back(h.index);
+  }
+
+  /// Takes out every item one of whose anchors sits on this block: its body goes.
+  void remove_on(std::uint32_t owner, Index block) {
+    if constexpr (requires(Item& i) { i.a.owner, i.b.owner; })
+      for (Index k = 0; k < Index(items.size()); ++k) {
+        if (!slots.is_alive(k)) continue;
+        const Item& i = items[k];
+        if ((i.a.owner == owner && i.a.block == block) || (i.b.owner == owner && i.b.block == block))
+          slots.give_back(k);
+      }
+  }
+
+  /// The item behind the i-th rows of this step.
+  const Item& item(Index i) const { return items[slots.active()[i]]; }
+  Index count() const { return Index(slots.active().size()); }
+};
+
+/// Contacts are made anew each step; their impulses are remembered by contact id, not here.
+template <ContactLaw Law>
+struct Pool<Law> {
+  static constexpr int rows = Law::rows;
+  using Item = typename Law::Item;
+
+  Law law{};
+  std::vector<Item> items;
+
+  Pool() = default;
+  explicit Pool(Law l) : law(std::move(l)) {}
+
+  const Item& item(Index i) const { return items[i]; }
+  Index count() const { return Index(items.size()); }
+};
+
+}  // namespace delassus

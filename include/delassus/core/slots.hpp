@@ -1,0 +1,62 @@
+/// Places in an array that can be given back and reused, each with a generation, so that nothing ever moves.
+#pragma once
+
+#include <delassus/core/index.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace delassus {
+
+/// Hands out indices. `take` reuses the lowest freed place; `active` lists the live ones in ascending order.
+class Slots {
+ public:
+  /// A free place; `size()` has grown when it is a new one.
+  Index take() {
+    Index place = size();
+    if (free_.empty()) {
+      generation_.push_back(0);
+      alive_.push_back(1);
+    } else {
+      place = free_.back();
+      free_.pop_back();
+      alive_[place] = 1;
+    }
+    list();
+    return place;
+  }
+
+  void give_back(Index place) {
+    alive_[place] = 0;
+    ++generation_[place];
+    free_.push_back(place);
+    list();
+  }
+
+  Index size() const { return Index(alive_.size()); }
+  bool is_alive(Index place) const { return place >= 0 && place < size() && alive_[place] != 0; }
+  bool is_current(Index place, std::uint32_t generation) const {
+    return is_alive(place) && generation_[place] == generation;
+  }
+  std::uint32_t generation(Index place) const { return generation_[place]; }
+  const std::vector<Index>& active() const {
+    if (stale_) {
+      active_.clear();
+      for (Index i = 0; i < size(); ++i)
+        if (alive_[i]) active_.push_back(i);
+      stale_ = false;
+    }
+    return active_;
+  }
+
+ private:
+  void list() { stale_ = true; }
+
+  std::vector<std::uint32_t> generation_;
+  std::vector<char> alive_;
+  std::vector<Index> free_;
+  mutable std::vector<Index> active_;
+  mutable bool stale_ = false;
+};
+
+}  // namespace delassus

@@ -1,0 +1,25 @@
+/// The implicit midpoint rule, one Newton step, constraints linearised at the guess q + h v/2.
+#pragma once
+
+#include <delassus/integrators/integrator.hpp>
+
+namespace delassus {
+
+/// (M + h/2 D + h²/4 K) (v⁺ − v) = h (f − h/2 K v),  q⁺ = q ⊕ h (v + v⁺)/2. Second order; keeps quadratic
+/// invariants of linear forces. Bilateral rows hold for the mean velocity, H taken at q ⊕ h v/2.
+struct ImplicitMidpoint {
+  using plays = role::Integrator;
+  static constexpr double theta = 0.5;
+  static constexpr bool linearises_at_midpoint = true;
+
+  SystemScale scale(double h) const { return {.mass = 1, .damping = h / 2, .stiffness = h * h / 4}; }
+  void impulse(const auto& set, auto& p, double h) const {
+    set.add_forces(p);
+    if constexpr (requires { set.add_stiffness_times_velocity(p, h); }) set.add_stiffness_times_velocity(p, h / 2);
+    times(p, h);
+  }
+  void advance(auto& set, double h) const { set.advance_midpoint(h); }
+};
+static_assert(Integrator<ImplicitMidpoint>);
+
+}  // namespace delassus

@@ -1,0 +1,48 @@
+/// What an integrator is: how A is mixed, which impulse acts, and how the state moves on.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <concepts>
+#include <vector>
+
+namespace delassus {
+
+/// The least a body set can be, to check integrators against without naming a real one.
+struct SetProbe {
+  using Scalar = double;
+  using Velocity = Vec<3>;
+  static constexpr int width = 3;
+  std::vector<Velocity> v_free, v_next;
+  std::vector<Velocity>& velocity();
+  void add_forces(std::vector<Velocity>&) const;
+  void add_stiffness_times_velocity(std::vector<Velocity>&, double) const;
+  void add_mass_times_velocity(std::vector<Velocity>&, double) const;
+  void advance(double);
+  void advance_midpoint(double);
+};
+
+/// scale(h) mixes A; impulse(set, p, h) makes A (v_free − v) = p; advance(set, h) moves q and v from v_next.
+template <class I>
+concept Integrator = Plays<I, role::Integrator> &&
+    requires(const I integrator, SetProbe& set, std::vector<Vec<3>>& p, double h) {
+      { integrator.scale(h) } -> std::same_as<SystemScale>;       // A = mass M + damping D + stiffness K
+      { integrator.impulse(set, p, h) } -> std::same_as<void>;    // p, N·s
+      { integrator.advance(set, h) } -> std::same_as<void>;
+    };
+
+/// p ← h p: forces become impulses.
+template <class V>
+void times(std::vector<V>& p, double h) {
+  for (V& x : p) x *= typename V::Scalar(h);
+}
+
+/// The share θ of the new velocity in the mean that moves q; bilateral rows hold for that mean.
+template <class I>
+constexpr double theta() {
+  if constexpr (requires { I::theta; }) return I::theta;
+  else return 1;
+}
+
+}  // namespace delassus

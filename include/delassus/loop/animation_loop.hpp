@@ -1,0 +1,441 @@
+/// The loop: the policies of a scene, and the stages of a step over them.
+#pragma once
+
+#include <delassus/loop/checks.hpp>
+#include <delassus/loop/defaults.hpp>
+#include <delassus/loop/problem.hpp>
+#include <delassus/loop/stages/bias.hpp>
+#include <delassus/loop/stages/correct.hpp>
+#include <delassus/loop/stages/detect.hpp>
+#include <delassus/loop/stages/free_motion.hpp>
+#include <delassus/loop/stages/linearize.hpp>
+#include <delassus/loop/stages/project_position.hpp>
+#include <delassus/loop/stages/solve.hpp>
+#include <delassus/loop/stages/warm_start.hpp>
+#include <delassus/loop/step_report.hpp>
+#include <delassus/loop/workspace.hpp>
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace delassus {
+
+/// `AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, ...}`: policies in any order, at most one of
+/// each role, defaults where none is named. What is not named is not compiled.
+template <class... Policies>
+class AnimationLoop {
+  static consteval bool is_sound();
+  using Parts = inner::Parts<Policies...>;
+
+ public:
+  using WorldType = typename Parts::World;
+  using Laws = typename Parts::Laws;
+  using Scalar = typename WorldType::Scalar;
+  static constexpr bool has_constraints = Laws::pool_count > 0;
+
+  explicit AnimationLoop(Policies... policies);
+
+  /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0; never for what happens inside.
+  StepReport step(double h);
+
+  WorldType& world() { return part<role::World>(); }
+  const WorldType& world() const { return part<role::World>(); }
+
+  /// Adds a constraint: `loop.add(BallJoint::Item{...})`. Its law must be in Constraints{...}.
+  template <class Item>
+  auto add(Item item);
+  template <class Law>
+  void remove(ConstraintHandle<Law> constraint) {
+    laws().template of<Law>().remove(constraint);
+  }
+  /// Takes a body out, with every constraint that holds it.
+  template <class Set>
+  void remove(Handle<Set> body);
+
+  /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
+  template <class Law>
+  const auto& impulse(ConstraintHandle<Law> constraint) const {
+    const auto& pool = laws().template of<Law>();
+    DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed; its handle is stale");
+    return pool.impulse[constraint.index];
+  }
+  /// The contacts of the last step with their impulses, sorted by pair and feature.
+  std::span<const ContactResult> contacts() const
+    requires(Laws::has_contacts)
+  {
+    return work_.contacts.results;
+  }
+  /// Friction and restitution by material.
+  Materials& materials()
+    requires(Laws::has_contacts)
+  {
+    return work_.materials;
+  }
+
+  /// The constraint problem of the last step, whole and apart from the loop: laws, rows, W, islands.
+  auto problem() const
+    requires(has_constraints)
+  {
+    using Work = decltype(work_);
+    return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
+  }
+
+  /// The policy of a role, its default included.
+  template <class Role>
+  auto& part() {
+    return part_of<Role>(*this);
+  }
+  template <class Role>
+  const auto& part() const {
+    return part_of<Role>(*this);
+  }
+  template <class P>
+  P& get() {
+    return std::get<P>(policies_);
+  }
+  template <class P>
+  const P& get() const {
+    return std::get<P>(policies_);
+  }
+
+  const StepReport& report() const { return report_; }
+  /// Solve reports of the islands of the last step.
+  std::span<const SolveReport> island_reports() const
+    requires(has_constraints)
+  {
+    return work_.reports;
+  }
+  double time() const { return start_ + double(steps_) * h_; }
+
+  // --- the stages, in the plain order; a host that interleaves its own work calls begin(h), then these ----------------
+
+  void begin(double h);
+  void detect();
+  void linearize();
+  void free_motion();
+  void find_islands();
+  void make_bias();
+  void build();
+  void solve();
+  void correct();
+  void advance();
+
+ private:
+  static constexpr bool sound = is_sound();
+  using Work = std::conditional_t<
+      sound, inner::Workspace<WorldType, Laws, typename Parts::Compliance, typename Parts::Solver,
+                              typename Parts::Integrator, typename Parts::Stabilisation>,
+      inner::Workspace<WorldType, Constraints<>, void, void, void, void>>;
+
+  template <class Role, class Self>
+  static auto& part_of(Self& self) {
+    using Part = typename inner::part_type<Parts, Role>::type;
+    if constexpr (inner::count_of<Role, Policies...> > 0) return std::get<Part>(self.policies_);
+    else return std::get<Part>(self.defaults_);
+  }
+  Laws& laws() { return part<role::Constraints>(); }
+  const Laws& laws() const { return part<role::Constraints>(); }
+  void find_displacements();
+  template <class Stage>
+  void tell();
+  template <class F>
+  void with_observer(F&& f);
+  void check_policies() const;
+
+  std::tuple<Policies...> policies_;
+  [[no_unique_address]] typename inner::DefaultsFor<Policies...>::type defaults_{};
+  [[no_unique_address]] Work work_;
+  typename inner::widths_of<WorldType>::Scratch scratch_;
+  StepReport report_;
+  double h_ = 0, last_h_ = 0, start_ = 0;
+  long steps_ = 0;
+};
+
+
+template <class... Policies>
+consteval bool AnimationLoop<Policies...>::is_sound() {
+  if constexpr (!(inner::has_role<Policies>() && ...)) return false;
+  else if constexpr (!inner::has_one_world<Policies...>()) return false;
+  else if constexpr (!inner::one_of_each<Policies...>()) return false;
+  else if constexpr (!(inner::plays_its_role<Policies>() && ...)) return false;
+  else if constexpr (!inner::has_one_scalar<WorldType>()) return false;
+  else if constexpr (!inner::laws_are_sound<Laws>()) return false;
+  else return inner::collision_fits<Laws, typename Parts::Collision>();
+}
+
+template <class... Policies>
+AnimationLoop<Policies...>::AnimationLoop(Policies... policies)
+    : policies_{std::move(policies)...}, work_{laws()} {
+  if constexpr (sound) check_policies();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::check_policies() const {
+  const auto check = [](const auto& part) {
+    if constexpr (requires { part.check(); }) part.check();
+  };
+  std::apply([&](const auto&... part) { (check(part), ...); }, policies_);
+  for_each_index<Laws::pool_count>([&](auto p) { check(laws().template pool<p>().law); });
+}
+
+template <class... Policies>
+StepReport AnimationLoop<Policies...>::step(double h) {
+  if constexpr (sound) {
+    begin(h);
+    part<role::Scheme>().run(*this);
+    tell<stage::Step>();
+  }
+  return report_;
+}
+
+template <class... Policies>
+template <class Item>
+auto AnimationLoop<Policies...>::add(Item item) {
+  using Law = typename Laws::template law_of<Item>::type;
+  static_assert(!std::is_void_v<Law>,
+                "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
+  if constexpr (!std::is_void_v<Law>) {
+    if constexpr (requires { Law::check(item); }) Law::check(item);
+    if constexpr (requires { item.a.owner, item.b.owner; }) {
+      world().resolve(item.a, "constraint, first end");
+      world().resolve(item.b, "constraint, second end");
+    }
+    return laws().template of<Law>().add(item);
+  }
+}
+
+template <class... Policies>
+template <class Set>
+void AnimationLoop<Policies...>::remove(Handle<Set> body) {
+  bool is_found = false;
+  world().each([&](auto& set, auto) {
+    if constexpr (std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
+      if (set.owner() == body.owner) {
+        is_found = true;
+        set.remove(body);
+        for_each_index<Laws::pool_count>([&](auto p) {
+          auto& pool = laws().template pool<p>();
+          if constexpr (requires { pool.remove_on(body.owner, body.index); }) pool.remove_on(body.owner, body.index);
+        });
+      }
+  });
+  DELASSUS_EXPECT(is_found, "remove: this handle belongs to another world");
+}
+
+/// Every listener that hears this stage, in the order of the list.
+template <class... Policies>
+template <class Stage>
+void AnimationLoop<Policies...>::tell() {
+  const auto one = [&](auto& part) {
+    using P = std::remove_reference_t<decltype(part)>;
+    if constexpr (Plays<P, role::Listener>) {
+      if constexpr (P::listens::template to<Stage>)
+        if constexpr (inner::hears<P, AnimationLoop, Stage>()) part.after(Stage{}, std::as_const(*this));
+    }
+  };
+  std::apply([&](auto&... part) { (one(part), ...); }, policies_);
+}
+
+/// f(observer): the first listener that wants every sweep, or one that wants nothing.
+template <class... Policies>
+template <class F>
+void AnimationLoop<Policies...>::with_observer(F&& f) {
+  constexpr bool any = (inner::observes_sweeps<Policies> || ...);
+  if constexpr (any) {
+    bool is_done = false;
+    const auto one = [&](auto& part) {
+      if constexpr (inner::observes_sweeps<std::remove_reference_t<decltype(part)>>)
+        if (!std::exchange(is_done, true)) f(part);
+    };
+    std::apply([&](auto&... part) { (one(part), ...); }, policies_);
+  } else {
+    NoObserver nobody;
+    f(nobody);
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::begin(double h) {
+  DELASSUS_EXPECT(std::isfinite(h) && h > 0, "step: h = " + inner::text(h) + " s must be finite and > 0");
+  if (h != h_) {
+    start_ = time();
+    steps_ = 0;
+  }
+  last_h_ = h_ > 0 ? h_ : h;
+  h_ = h;
+  report_ = {};
+  if constexpr (has_constraints) work_.book.attach(laws());
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::detect() {
+  if constexpr (Laws::has_contacts) {
+    auto& contacts = work_.contacts;
+    contacts.gather(std::as_const(*this).world());
+    const CollisionReport found =
+        part<role::Collision>().detect(std::span<const Collider>(contacts.colliders), h_, contacts.points);
+    contacts.record();
+    const Index unclaimed = route_contacts(laws(), contacts, work_.materials);
+    if (unclaimed > 0) report_.status = worse(report_.status, Status::unclaimed_contact);
+    report_.contacts = Index(contacts.points.size());
+    report_.pairs = found.pairs;
+    report_.queries = found.queries;
+    report_.rejects = found.rejects;
+    for (const ContactPoint& p : contacts.points) report_.max_penetration = std::max(report_.max_penetration, -p.gap);
+  }
+  tell<stage::Detect>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::linearize() {
+  if constexpr (has_constraints) {
+    if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
+    else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
+    warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
+    report_.rows = work_.rows.row_count();
+    report_.max_joint_violation = worst_equality(laws(), work_.rows);
+  }
+  tell<stage::Linearize>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::free_motion() {
+  world().each([&](auto& set, auto s) {
+    delassus::free_motion(set, part<role::Integrator>(), std::get<s>(scratch_), h_);
+  });
+  tell<stage::FreeMotion>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::find_islands() {
+  if constexpr (has_constraints) {
+    std::array<Index, WorldType::set_count> first{};
+    Index blocks = 0;
+    world().each([&](const auto& set, auto s) {
+      first[s] = blocks;
+      blocks += set.blocks();
+    });
+    work_.islands.find(work_.rows, std::span<const Index>(first), blocks,
+                       [&](auto s, Index b) { return world().template set<s>().moves(b); });
+    report_.islands = work_.islands.count();
+  }
+  tell<stage::Islands>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::make_bias() {
+  if constexpr (has_constraints) {
+    if constexpr (Work::restitutes) {
+      work_.bounce.resize_like(work_.rows);
+      for_each_index<Laws::pool_count>([&](auto p) {
+        for (auto& b : std::get<p>(work_.bounce.pools)) b.setZero();
+      });
+    }
+    delassus::make_bias(std::as_const(*this).world(), laws(), work_.rows, part<role::Stabilisation>(), h_,
+                        theta<typename Parts::Integrator>(), work_.bounce);
+  }
+  tell<stage::Bias>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::build() {
+  if constexpr (has_constraints) {
+    work_.W.build(std::as_const(*this).world(), work_.rows);
+    work_.book.prepare(work_.W, work_.rows);
+  }
+  tell<stage::Build>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::solve() {
+  if constexpr (has_constraints) {
+    auto& w = work_;
+    const auto& solver = part<role::Solver>();
+    w.W.reset(w.rows);
+    if constexpr (requires { w.solver.reset(w.rows); }) w.solver.reset(w.rows);
+    if constexpr (Work::restitutes)
+      for (auto& aside : w.aside) aside.resize_like(w.rows);
+    w.reports.resize(w.islands.count());
+    with_observer([&](auto& observer) {
+      for (Index k = 0; k < w.islands.count(); ++k) {
+        observer.begin_island(k);
+        const auto run = [&] {
+          return solve_island(w.book, w.rows, w.W, w.islands, k, solver, w.solver, h_, observer);
+        };
+        w.reports[k] = run();
+        if constexpr (Work::restitutes)
+          guard_energy(w.rows, w.W, w.islands, k, w.bounce, w.aside[0], w.aside[1], run);
+      }
+    });
+    for (const SolveReport& r : w.reports) {
+      report_.status = worse(report_.status, r.status);
+      report_.sweeps = std::max(report_.sweeps, r.sweeps);
+      report_.residual = std::max(report_.residual, r.measure.residual);
+      report_.siconos_error = std::max(report_.siconos_error, r.measure.siconos);
+    }
+    keep_impulses(laws(), w.rows, w.contacts);
+  }
+  tell<stage::Solve>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::correct() {
+  if constexpr (has_constraints)
+    delassus::correct(world(), work_.rows, scratch_, work_.islands, work_.is_sick);
+  else
+    world().each([](auto& set, auto) { set.v_next = set.v_free; });
+  tell<stage::Correct>();
+}
+
+/// w = A⁻¹ Hᵀ μ of the position problem, into the scratch of each set. λ and d of the step are put back.
+template <class... Policies>
+void AnimationLoop<Policies...>::find_displacements() {
+  auto& w = work_;
+  for (auto& aside : w.aside) aside.resize_like(w.rows);
+  for_each_index<Laws::pool_count>([&](auto p) {
+    std::get<p>(w.aside[0].pools) = w.rows.template pool<p>().lambda;
+    std::get<p>(w.aside[1].pools) = w.rows.template pool<p>().d;
+  });
+  make_position_bias(std::as_const(*this).world(), laws(), w.rows, part<role::Stabilisation>(), h_);
+  w.W.reset(w.rows);
+  PositionBook<Laws, Scalar> book;
+  NoObserver nobody;
+  for (Index k = 0; k < w.islands.count(); ++k)
+    if (!w.is_sick[k])
+      solve_island(book, w.rows, w.W, w.islands, k, part<role::Solver>(), w.solver, h_, nobody);
+  world().each([&](auto& set, auto s) {
+    auto& to = std::get<s>(w.displacement);
+    to.resize(set.blocks());
+    for (auto& x : to) x.setZero();
+    add_impulses<s>(set, w.rows, to, std::get<s>(scratch_));
+  });
+  for_each_index<Laws::pool_count>([&](auto p) {
+    std::swap(std::get<p>(w.aside[0].pools), w.rows.template pool<p>().lambda);
+    std::swap(std::get<p>(w.aside[1].pools), w.rows.template pool<p>().d);
+  });
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::advance() {
+  if constexpr (has_constraints)
+    if constexpr (Work::projects_position) find_displacements();
+  world().each([&](auto& set, auto) {
+    part<role::Integrator>().advance(set, h_);
+    report_.quarantined += set.held();
+  });
+  if constexpr (has_constraints)
+    if constexpr (Work::projects_position)
+      world().each([&](auto& set, auto s) {
+        for (const Index b : set.active())
+          if (set.moves(b)) set.displace(b, Scalar(h_) * std::get<s>(work_.displacement)[b]);
+      });
+  if (report_.quarantined > 0) report_.status = worse(report_.status, Status::quarantined);
+  ++steps_;
+  report_.time = time();
+  tell<stage::Advance>();
+}
+
+}  // namespace delassus

@@ -1,0 +1,132 @@
+/// One mistake in a loop's argument list, one sentence.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/collision/collider.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/policies.hpp>
+#include <delassus/loop/stage.hpp>
+#include <delassus/stabilisation/stabilisation.hpp>
+
+#include <concepts>
+#include <span>
+#include <vector>
+
+namespace delassus {
+
+/// Answers with the contact points of this step, sorted by pair and feature.
+template <class C>
+concept CollisionBackend = Plays<C, role::Collision> &&
+    requires(C backend, std::span<const Collider> colliders, double h, std::vector<ContactPoint>& points) {
+      { backend.detect(colliders, h, points) } -> std::same_as<CollisionReport>;
+    };
+
+namespace inner {
+
+template <class P>
+consteval bool has_role() {
+  constexpr bool has = requires { typename P::plays; };
+  static_assert(has,
+                "delassus: every argument of AnimationLoop is a policy that says its role; add `using plays = "
+                "role::...;` to this type, or take it out of the list");
+  return has;
+}
+
+/// Sound so far, or stop: the first failed check is the only one that speaks.
+template <class P>
+consteval bool plays_its_role() {
+  if constexpr (Plays<P, role::Integrator>) {
+    static_assert(Integrator<P>,
+                  "delassus: this type plays role::Integrator but lacks scale(h), impulse(set, p, h) or "
+                  "advance(set, h); see integrators/integrator.hpp for their types");
+    return Integrator<P>;
+  } else if constexpr (Plays<P, role::Stabilisation>) {
+    static_assert(Stabilisation<P>,
+                  "delassus: this type plays role::Stabilisation but lacks equality(phi, h) or penetration(phi, h), "
+                  "which return double");
+    return Stabilisation<P>;
+  } else if constexpr (Plays<P, role::Listener>) {
+    constexpr bool listens = requires { typename P::listens; };
+    static_assert(listens,
+                  "delassus: this type plays role::Listener but does not say what it hears; add `using listens = "
+                  "Listens<stage::Solve>;`");
+    return listens;
+  } else {
+    return true;
+  }
+}
+
+template <class Role, class... Policies>
+consteval bool at_most_one() {
+  constexpr int count = count_of<Role, Policies...>;
+  static_assert(count <= 1,
+                "delassus: an AnimationLoop takes at most one policy of each role (listeners aside); take one out");
+  return count <= 1;
+}
+
+template <class... Policies>
+consteval bool one_of_each() {
+  return at_most_one<role::Integrator, Policies...>() && at_most_one<role::Constraints, Policies...>() &&
+         at_most_one<role::Collision, Policies...>() && at_most_one<role::Compliance, Policies...>() &&
+         at_most_one<role::Solver, Policies...>() && at_most_one<role::Stabilisation, Policies...>() &&
+         at_most_one<role::Scheme, Policies...>() && at_most_one<role::Activity, Policies...>();
+}
+
+template <class... Policies>
+consteval bool has_one_world() {
+  constexpr bool has = count_of<role::World, Policies...> == 1;
+  static_assert(has, "delassus: an AnimationLoop needs exactly one World{...}; name the body sets of the scene in it");
+  return has;
+}
+
+template <class World>
+consteval bool has_one_scalar() {
+  constexpr bool is_one = []<class... S>(const delassus::World<S...>*) {
+    return (std::is_same_v<typename S::Scalar, typename World::Scalar> && ...);
+  }(static_cast<const World*>(nullptr));
+  static_assert(is_one,
+                "delassus: all body sets of a World have one scalar; use RigidBodies with Particles, or RigidBodiesF "
+                "with ParticlesF");
+  return is_one;
+}
+
+template <class Laws, class Collision>
+consteval bool collision_fits() {
+  constexpr bool is_backend = CollisionBackend<Collision>;
+  if constexpr (Laws::has_contacts) {
+    static_assert(is_backend,
+                  "delassus: this type plays role::Collision but lacks detect(std::span<const Collider>, double, "
+                  "std::vector<ContactPoint>&), which returns a CollisionReport");
+    return is_backend;
+  } else {
+    static_assert(!is_backend,
+                  "delassus: a collision backend without a contact law does nothing; add Contact{...} to "
+                  "Constraints{...}, or take the backend out");
+    return !is_backend;
+  }
+}
+
+template <class Laws>
+consteval bool laws_are_sound() {
+  return []<class... L>(const Constraints<L...>*) {
+    return (law_is_sound<L>() && ...);
+  }(static_cast<const Laws*>(nullptr));
+}
+
+/// A listener that wants to be told of every sweep of the solver.
+template <class P>
+inline constexpr bool observes_sweeps = requires { requires P::every_sweep; };
+
+template <class Listener, class Loop, class Stage>
+consteval bool hears() {
+  constexpr bool all = requires(Listener& l, const Loop& loop) { l.after(Stage{}, loop); };
+  static_assert(all,
+                "delassus: this listener declares a stage in `listens` for which it has no after(stage::X, loop); write "
+                "it, or take the stage out of the list");
+  return all;
+}
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,70 @@
+/// One default per role: what a loop uses where its argument list is silent.
+#pragma once
+
+#include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/bodies/world.hpp>
+#include <delassus/collision/native.hpp>
+#include <delassus/collision/no_collision.hpp>
+#include <delassus/compliance/assembled.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/integrators/symplectic_euler.hpp>
+#include <delassus/loop/activity.hpp>
+#include <delassus/loop/policies.hpp>
+#include <delassus/loop/scheme.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/stabilisation/baumgarte.hpp>
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace delassus::inner {
+
+template <class... Policies>
+struct Parts {
+  template <class Role, class Default>
+  using the = typename pick<Role, Default, Policies...>::type;
+
+  using World = the<role::World, delassus::World<RigidBodies>>;
+  using Laws = the<role::Constraints, Constraints<>>;
+  using Integrator = the<role::Integrator, SymplecticEuler>;
+  using Collision = the<role::Collision, std::conditional_t<Laws::has_contacts, NativeCollision, NoCollision>>;
+  using Compliance = the<role::Compliance, AssembledCompliance>;
+  using Solver = the<role::Solver, AcceleratedGaussSeidel>;
+  using Stabilisation = the<role::Stabilisation, Baumgarte>;
+  using Scheme = the<role::Scheme, PlainOrder>;
+  using Activity = the<role::Activity, AllActive>;
+};
+
+/// The tuple of the defaults a loop really uses: nothing for a role that is named or not needed.
+template <class... Policies>
+struct DefaultsFor {
+  using P = Parts<Policies...>;
+  template <class Role, class Default, bool is_needed = true>
+  using one = std::conditional_t<is_needed && count_of<Role, Policies...> == 0, std::tuple<Default>, std::tuple<>>;
+  static constexpr bool constrained = P::Laws::pool_count > 0;
+
+  using type = decltype(std::tuple_cat(
+      std::declval<one<role::World, typename P::World>>(), std::declval<one<role::Constraints, typename P::Laws>>(),
+      std::declval<one<role::Integrator, typename P::Integrator>>(),
+      std::declval<one<role::Collision, typename P::Collision, P::Laws::has_contacts>>(),
+      std::declval<one<role::Compliance, typename P::Compliance, constrained>>(),
+      std::declval<one<role::Solver, typename P::Solver, constrained>>(),
+      std::declval<one<role::Stabilisation, typename P::Stabilisation, constrained>>(),
+      std::declval<one<role::Scheme, typename P::Scheme>>(), std::declval<one<role::Activity, typename P::Activity>>()));
+};
+
+/// The type that plays `Role` in a Parts.
+template <class P, class Role>
+struct part_type;
+template <class P> struct part_type<P, role::World> { using type = typename P::World; };
+template <class P> struct part_type<P, role::Constraints> { using type = typename P::Laws; };
+template <class P> struct part_type<P, role::Integrator> { using type = typename P::Integrator; };
+template <class P> struct part_type<P, role::Collision> { using type = typename P::Collision; };
+template <class P> struct part_type<P, role::Compliance> { using type = typename P::Compliance; };
+template <class P> struct part_type<P, role::Solver> { using type = typename P::Solver; };
+template <class P> struct part_type<P, role::Stabilisation> { using type = typename P::Stabilisation; };
+template <class P> struct part_type<P, role::Scheme> { using type = typename P::Scheme; };
+template <class P> struct part_type<P, role::Activity> { using type = typename P::Activity; };
+
+}  // namespace delassus::inner

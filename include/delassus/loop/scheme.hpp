@@ -1,0 +1,25 @@
+/// The order of the stages.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+
+namespace delassus {
+
+/// Detect, linearise, move freely, and solve: the plain order. A scheme calls the stages of a loop in its own order.
+struct PlainOrder {
+  using plays = role::Scheme;
+
+  void run(auto& loop) const {
+    loop.detect();
+    loop.linearize();
+    loop.free_motion();
+    loop.find_islands();
+    loop.make_bias();
+    loop.build();
+    loop.solve();
+    loop.correct();
+    loop.advance();
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,31 @@
+/// The names of the stages, for listeners.
+#pragma once
+
+#include <type_traits>
+
+namespace delassus {
+
+/// In the order of the plain scheme. `Step` is heard once, when everything is done.
+namespace stage {
+struct Detect { static constexpr const char* name = "detect"; };
+struct Linearize { static constexpr const char* name = "linearize"; };
+struct FreeMotion { static constexpr const char* name = "free motion"; };
+struct Islands { static constexpr const char* name = "islands"; };
+struct Bias { static constexpr const char* name = "bias"; };
+struct Build { static constexpr const char* name = "build"; };
+struct Solve { static constexpr const char* name = "solve"; };
+struct Correct { static constexpr const char* name = "correct"; };
+struct Advance { static constexpr const char* name = "advance"; };
+struct Step { static constexpr const char* name = "step"; };
+}  // namespace stage
+
+/// `using listens = Listens<stage::Solve, stage::Step>;`: what a listener hears, so that a misspelt callback is an error.
+template <class... Stages>
+struct Listens {
+  template <class Stage>
+  static constexpr bool to = (std::is_same_v<Stage, Stages> || ...);
+};
+using ListensToAll = Listens<stage::Detect, stage::Linearize, stage::FreeMotion, stage::Islands, stage::Bias,
+                             stage::Build, stage::Solve, stage::Correct, stage::Advance, stage::Step>;
+
+}  // namespace delassus

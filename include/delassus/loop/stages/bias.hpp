@@ -1,0 +1,115 @@
+/// Bias: the stabilisation turns violations into velocities, and d is made.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/stabilisation/stabilisation.hpp>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+namespace delassus {
+
+/// What one row needs to know to get its bias. Velocities in m/s, φ in m, all in the sense of a `lower` row.
+struct RowState {
+  double phi = 0;
+  double start_velocity = 0;  ///< H v at the start of the step
+  double free_velocity = 0;   ///< H v_free
+  double restitution = 0;
+};
+struct RowBias {
+  double bias = 0;
+  double plain = 0;  ///< the bias without restitution
+  bool is_closed = false;
+};
+
+/// Lower row u⁺ + bias ≥ 0. Open: φ/h. Closing within the step with u⁻ < 0: the stronger of e u⁻ and the push-out
+/// speed, never their sum. Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that
+/// symplectic Euler itself keeps, exactly.
+template <class S>
+RowBias lower_bias(const S& stabilisation, const RowState& row, double h) {
+  RowBias out;
+  out.is_closed = row.phi < 0;
+  out.plain = out.is_closed ? stabilisation.penetration(row.phi, h) : row.phi / h;
+  out.bias = out.plain;
+  const bool closes = row.phi + h * row.free_velocity < 0 && row.start_velocity < 0;
+  if (row.restitution > 0 && closes) out.bias = std::min(out.is_closed ? out.plain : 0.0, row.restitution * row.start_velocity);
+  return out;
+}
+
+namespace inner {
+
+/// H x of item i of a pool.
+template <int R, class T, int... w, class World, class Member>
+Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, const Member& member) {
+  Vec<R, T> u = Vec<R, T>::Zero();
+  world.each([&](const auto& set, auto s) {
+    const auto& blocks = std::get<s>(pool.sets);
+    const auto& v = member(set);
+    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) u.noalias() += blocks.H[e] * v[blocks.block[e]];
+  });
+  return u;
+}
+
+template <class Law, class Item>
+double restitution_of(const Law& law, const Item& item) {
+  if constexpr (requires { law.restitution(item); }) return law.restitution(item);
+  else return 0;
+}
+
+/// The soft row λ = −h (k (φ + h u) + c u):  R = 1/(h² k + h c),  bias = k φ/(h k + c).
+template <class Pool>
+void soften(Pool& pool, Index i, int k, double h) {
+  using T = typename Pool::Scalar;
+  const double stiffness = double(pool.stiffness[i][k]), damping = double(pool.damping[i][k]);
+  pool.compliance[i][k] = T(1 / (h * h * stiffness + h * damping));
+  pool.bias[i][k] = T(stiffness * double(pool.phi[i][k]) / (h * stiffness + damping));
+}
+
+}  // namespace inner
+
+/// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity, all other
+/// rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes.
+template <class World, class Laws, class Rows, class S, class Bounce>
+void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h, double theta,
+               Bounce& bounce) {
+  using T = typename Rows::Scalar;
+  for_each_index<Laws::pool_count>([&](auto p) {
+    const auto& constraints = laws.template pool<p>();
+    auto& pool = rows.template pool<p>();
+    using Law = std::remove_cvref_t<decltype(constraints.law)>;
+    constexpr auto kinds = row_kinds<Law>();
+    for (Index i = 0; i < pool.items(); ++i) {
+      const auto free = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_free; });
+      const auto start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
+      const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
+      pool.d[i] = free;
+      for (int k = 0; k < Law::rows; ++k) {
+        if (kinds[k] == RowKind::friction) continue;
+        if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) {
+          inner::soften(pool, i, k, h);
+        } else if (kinds[k] == RowKind::equality) {
+          pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
+          pool.d[i][k] += T((1 - theta) / theta) * start[k];
+        } else {
+          const double sign = kinds[k] == RowKind::lower ? 1 : -1;
+          const RowBias row = lower_bias(stabilisation,
+                                         {.phi = sign * double(pool.phi[i][k]),
+                                          .start_velocity = sign * double(start[k]),
+                                          .free_velocity = sign * double(free[k]),
+                                          .restitution = restitution},
+                                         h);
+          pool.bias[i][k] = T(sign * row.bias);
+          if constexpr (requires { stabilisation.softness(h); })
+            if (row.is_closed) pool.softness[i][k] = T(stabilisation.softness(h));
+          if constexpr (requires { std::get<p>(bounce.pools); })
+            std::get<p>(bounce.pools)[i][k] = T(sign * (row.bias - row.plain));
+        }
+      }
+      pool.d[i] += pool.bias[i];
+    }
+  });
+}
+
+}  // namespace delassus

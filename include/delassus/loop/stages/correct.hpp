@@ -1,0 +1,67 @@
+/// Corrective motion: the impulses act on the bodies.
+#pragma once
+
+#include <delassus/compliance/compliance.hpp>
+#include <delassus/rows/islands.hpp>
+
+#include <limits>
+#include <vector>
+
+namespace delassus {
+
+/// change = A⁻¹ Hᵀ λ of one set: block by block through G where A is block-diagonal, else by one solve.
+template <int s, class Set, class Rows>
+void add_impulses(const Set& set, const Rows& rows, std::vector<typename Set::Velocity>& to,
+                  std::vector<typename Set::Velocity>& scratch) {
+  const bool is_coupled = inner::is_coupled(set);
+  if (is_coupled) {
+    scratch.resize(set.blocks());
+    for (auto& x : scratch) x.setZero();
+  }
+  for_each_index<Rows::pool_count>([&](auto p) {
+    const auto& pool = rows.template pool<p>();
+    const auto& blocks = std::get<s>(pool.sets);
+    for (Index i = 0; i < pool.items(); ++i)
+      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
+        if (is_coupled) scratch[blocks.block[e]].noalias() += blocks.H[e].transpose() * pool.lambda[i];
+        else to[blocks.block[e]].noalias() += blocks.G[e] * pool.lambda[i];
+      }
+  });
+  if constexpr (requires { set.solve(scratch); })
+    if (is_coupled) {
+      set.solve(scratch);
+      for (std::size_t b = 0; b < to.size(); ++b) to[b] += scratch[b];
+    }
+}
+
+/// v_next = v_free + A⁻¹ Hᵀ λ. The velocities of an island with one that is not finite are all made so: `advance` leaves
+/// such bodies where they were, and no other island notices.
+template <class World, class Rows, class Scratch, int pools>
+void correct(World& world, const Rows& rows, Scratch& scratch, const Islands<pools>& islands,
+             std::vector<char>& is_sick) {
+  is_sick.assign(islands.count(), 0);
+  Index first = 0;
+  bool any = false;
+  world.each([&](auto& set, auto s) {
+    set.v_next = set.v_free;
+    add_impulses<s>(set, rows, set.v_next, std::get<s>(scratch));
+    for (const Index b : set.active())
+      if (!is_finite(set.v_next[b]) && islands.island_of(first + b) >= 0) {
+        is_sick[islands.island_of(first + b)] = 1;
+        any = true;
+      }
+    first += set.blocks();
+  });
+  if (!any) return;
+  first = 0;
+  world.each([&](auto& set, auto) {
+    using T = typename std::remove_reference_t<decltype(set)>::Scalar;
+    for (const Index b : set.active()) {
+      const Index island = islands.island_of(first + b);
+      if (island >= 0 && is_sick[island]) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
+    }
+    first += set.blocks();
+  });
+}
+
+}  // namespace delassus

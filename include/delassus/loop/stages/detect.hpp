@@ -1,0 +1,154 @@
+/// Detect: collision detection fills the contact pools, and remembers impulses from step to step.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/collision/collider.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/contact.hpp>
+#include <delassus/constraints/contact/materials.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace delassus {
+
+/// A contact as a host reads it after the step: `impulse` (N·s, world) is what body B received from A.
+struct ContactResult {
+  ContactRecord record;
+  Vec3 impulse = Vec3::Zero();
+};
+
+/// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.
+class ContactBook {
+ public:
+  std::vector<Collider> colliders;
+  std::vector<ContactPoint> points;
+  std::vector<ContactResult> results;  ///< in the order of `points`: by pair, then by feature
+
+  /// One collider for every body with a shape.
+  template <class World>
+  void gather(const World& world) {
+    colliders.clear();
+    anchors_.clear();
+    materials_.clear();
+    world.each([&](const auto& set, auto s) {
+      for (const Index b : set.active()) {
+        if (!set.has_collider(b)) continue;
+        Collider c;
+        c.shape = set.shape(b);
+        c.pose = set.pose(b);
+        const auto& v = set.velocity()[b];
+        c.velocity = v.template head<3>().template cast<double>();
+        if constexpr (std::remove_cvref_t<decltype(v)>::RowsAtCompileTime == 6)
+          c.angular_velocity = v.template tail<3>().template cast<double>();
+        else c.angular_velocity.setZero();
+        c.is_movable = set.moves(b);
+        c.group = set.group(b);
+        c.collides_with = set.collides_with(b);
+        c.key = (std::uint32_t(int(s)) << 28) | std::uint32_t(b);
+        colliders.push_back(c);
+        anchors_.push_back({.set = s, .block = b});
+        materials_.push_back(set.material(b));
+      }
+    });
+  }
+
+  /// Turns points into records.
+  void record() {
+    results.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const ContactPoint& p = points[i];
+      results[i].impulse.setZero();
+      results[i].record = {.a = anchors_[p.a],
+                           .b = anchors_[p.b],
+                           .point_a = p.point_a,
+                           .point_b = p.point_b,
+                           .normal = p.normal,
+                           .gap = p.gap,
+                           .pair = p.pair,
+                           .feature = p.feature,
+                           .material_a = materials_[p.a],
+                           .material_b = materials_[p.b]};
+    }
+  }
+
+  /// The impulse that the contact of this id had last step, or the nearest unclaimed one of its pair within `reach` (m).
+  /// Call in ascending order of pair. Zero when there is none.
+  Vec3 remembered(const ContactRecord& record, double reach) {
+    const auto pair_less = [](const Memory& m, std::uint64_t pair) { return m.pair < pair; };
+    const auto first = std::lower_bound(memory_.begin(), memory_.end(), record.pair, pair_less);
+    Memory* found = nullptr;
+    double nearest = reach * reach;
+    for (auto it = first; it != memory_.end() && it->pair == record.pair; ++it) {
+      if (it->is_taken) continue;
+      if (it->feature == record.feature) {
+        found = &*it;
+        break;
+      }
+    }
+    for (auto it = first; !found && it != memory_.end() && it->pair == record.pair; ++it) {
+      const double distance = (it->point - record.point()).squaredNorm();
+      if (!it->is_taken && distance <= nearest) {
+        nearest = distance;
+        found = &*it;
+      }
+    }
+    if (!found) return Vec3::Zero();
+    found->is_taken = true;
+    return found->impulse;
+  }
+
+  /// Keeps this step's impulses for the next one.
+  void remember() {
+    memory_.resize(results.size());
+    for (std::size_t i = 0; i < results.size(); ++i)
+      memory_[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
+                    results[i].impulse};
+  }
+  void forget() { memory_.clear(); }
+
+ private:
+  struct Memory {
+    std::uint64_t pair;
+    std::uint32_t feature;
+    bool is_taken;
+    Vec3 point, impulse;
+  };
+  std::vector<Anchor> anchors_;
+  std::vector<Index> materials_;
+  std::vector<Memory> memory_;
+};
+
+/// Gives each record to the first contact law that takes its materials; returns how many nobody took.
+template <class Laws>
+Index route_contacts(Laws& laws, const ContactBook& book, const Materials& materials) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    if constexpr (requires { laws.template pool<p>().law.takes(0, 0); }) laws.template pool<p>().items.clear();
+  });
+  Index unclaimed = 0;
+  for (Index r = 0; r < Index(book.results.size()); ++r) {
+    const ContactRecord& record = book.results[r].record;
+    bool is_taken = false;
+    for_each_index<Laws::pool_count>([&](auto p) {
+      auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.law.takes(0, 0); }) {
+        if (is_taken || !pool.law.takes(record.material_a, record.material_b)) return;
+        is_taken = true;
+        auto parameters = pool.law.law.parameters();
+        if (!materials.empty())
+          if (const auto pair = materials.between(record.material_a, record.material_b)) {
+            if constexpr (requires { pool.law.law.set_friction(parameters, 0.0); })
+              pool.law.law.set_friction(parameters, pair->friction);
+            if constexpr (requires { pool.law.law.set_restitution(parameters, 0.0); })
+              pool.law.law.set_restitution(parameters, pair->restitution);
+          }
+        pool.items.push_back({record, contact_frame(record.normal), parameters, r});
+      }
+    });
+    unclaimed += is_taken ? 0 : 1;
+  }
+  return unclaimed;
+}
+
+}  // namespace delassus

@@ -1,0 +1,33 @@
+/// Free motion: what the bodies would do without constraints.
+#pragma once
+
+#include <delassus/compliance/compliance.hpp>
+#include <delassus/integrators/integrator.hpp>
+
+#include <vector>
+
+namespace delassus {
+
+/// v_free = v + A⁻¹ p, p the integrator's impulse. Blocks that do not move keep v.
+template <class Set, class I>
+void free_motion(Set& set, const I& integrator, std::vector<typename Set::Velocity>& p, double h) {
+  set.begin_step(h);
+  set.factor(integrator.scale(h));
+  p.resize(set.blocks());
+  for (auto& x : p) x.setZero();
+  integrator.impulse(set, p, h);
+  const auto& v = set.velocity();
+  if (inner::is_coupled(set)) {
+    if constexpr (requires { set.solve(p); }) {
+      set.solve(p);
+      for (const Index b : set.active()) set.v_free[b] = v[b] + p[b];
+    }
+  } else {
+    for (const Index b : set.active()) {
+      set.v_free[b] = v[b];
+      if (set.moves(b)) set.v_free[b] += set.template solve_block<1>(b, p[b]);
+    }
+  }
+}
+
+}  // namespace delassus

@@ -1,0 +1,55 @@
+/// Linearize: every law writes H and φ of its items.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/writer.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace delassus {
+
+/// H and φ at the present configuration of the world.
+template <class World, class Laws, class Rows>
+void linearize(const World& world, const Laws& laws, Rows& rows) {
+  rows.reset();
+  for_each_index<Laws::pool_count>([&](auto p) {
+    const auto& pool = laws.template pool<p>();
+    auto& out = rows.template pool<p>();
+    using Pool = std::remove_cvref_t<decltype(out)>;
+    for (Index i = 0; i < pool.count(); ++i) {
+      pool.law.linearize(pool.item(i), world, RowWriter<World, Pool>(world, out));
+      out.close();
+    }
+  });
+}
+
+/// H at the integrator's guess q ⊕ h v/2 of the mid-configuration, φ where the step starts.
+template <class World, class Laws, class Rows>
+void linearize_at_midpoint(World& world, const Laws& laws, Rows& rows, Rows& scratch, double h) {
+  linearize(world, laws, scratch);
+  world.each([&](auto& set, auto) { set.shift(h / 2); });
+  linearize(world, laws, rows);
+  world.each([&](auto& set, auto) { set.restore(); });
+  for_each_index<Laws::pool_count>(
+      [&](auto p) { std::swap(rows.template pool<p>().phi, scratch.template pool<p>().phi); });
+}
+
+/// The largest |φ| among the rows that are equalities, m or rad.
+template <class Laws, class Rows>
+double worst_equality(const Laws& laws, const Rows& rows) {
+  double worst = 0;
+  for_each_index<Laws::pool_count>([&](auto p) {
+    using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
+    constexpr auto kinds = row_kinds<Law>();
+    const auto& pool = rows.template pool<p>();
+    for (Index i = 0; i < pool.items(); ++i)
+      for (int k = 0; k < Law::rows; ++k)
+        if (kinds[k] == RowKind::equality && !(pool.stiffness[i][k] > 0))
+          worst = std::max(worst, double(std::abs(pool.phi[i][k])));
+  });
+  return worst;
+}
+
+}  // namespace delassus

@@ -1,0 +1,75 @@
+/// Position projection: after the velocities are final, violations are closed by displacements alone.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/loop/stages/bias.hpp>
+#include <delassus/loop/stages/correct.hpp>
+#include <delassus/loop/stages/solve.hpp>
+
+namespace delassus {
+
+/// The laws of the position problem: equalities stay equalities, bounds stay bounds, friction rows are locked at zero.
+/// One projected Gauss-Seidel pass over the rows of each block.
+template <class Constraints, class T>
+class PositionBook;
+template <class... Laws, class T>
+class PositionBook<Constraints<Laws...>, T> {
+ public:
+  template <int p, int R>
+  void project(Index, Local<R, T>& c) const {
+    for (int k = 0; k < R; ++k) {
+      const T before = c.lambda[k];
+      c.lambda[k] = bound<p>(k, before - c.d[k] / c.W(k, k));
+      c.d += c.W.col(k) * (c.lambda[k] - before);
+    }
+  }
+  template <int p, int R>
+  Vec<R, T> natural_map(Index, const Local<R, T>& c, T scale) const {
+    Vec<R, T> out;
+    for (int k = 0; k < R; ++k) out[k] = scale * c.lambda[k] - bound<p>(k, scale * c.lambda[k] - c.d[k]);
+    return out;
+  }
+  template <int p, int R>
+  void clamp(Index, Vec<R, T>& lambda) const {
+    for (int k = 0; k < R; ++k) lambda[k] = bound<p>(k, lambda[k]);
+  }
+
+ private:
+  template <int p>
+  static T bound(int k, T x) {
+    constexpr auto kinds = row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
+    switch (kinds[k]) {
+      case RowKind::equality: return x;
+      case RowKind::lower: return std::max(T(0), x);
+      case RowKind::upper: return std::min(T(0), x);
+      case RowKind::friction: return T(0);
+    }
+    return x;
+  }
+};
+
+/// d of the position problem: u⁺ + push(φ), the velocity the row has plus the rate its violation asks for; an open
+/// contact only must not close. λ starts at zero.
+template <class World, class Laws, class Rows, class S>
+void make_position_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h) {
+  using T = typename Rows::Scalar;
+  for_each_index<Laws::pool_count>([&](auto p) {
+    using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
+    constexpr auto kinds = row_kinds<Law>();
+    auto& pool = rows.template pool<p>();
+    for (Index i = 0; i < pool.items(); ++i) {
+      const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
+      pool.lambda[i].setZero();
+      pool.d[i].setZero();
+      for (int k = 0; k < Law::rows; ++k) {
+        const double phi = double(pool.phi[i][k]), sign = kinds[k] == RowKind::upper ? -1 : 1;
+        const bool is_soft = pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0;
+        if (kinds[k] == RowKind::equality) pool.d[i][k] = is_soft ? T(0) : T(stabilisation.push(phi, h) + double(u[k]));
+        else if (kinds[k] != RowKind::friction)
+          pool.d[i][k] = T(sign * (sign * phi < 0 ? stabilisation.push(sign * phi, h) : sign * phi / h) + double(u[k]));
+      }
+    }
+  });
+}
+
+}  // namespace delassus

@@ -1,0 +1,88 @@
+/// Solve: island by island, each with its own stopping test and status.
+#pragma once
+
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// Solves one island.
+template <class Book, class Rows, class Operator, int pools, class Solver, class Workspace, class Observer>
+SolveReport solve_island(Book& book, Rows& rows, Operator& W, const Islands<pools>& islands, Index island,
+                         const Solver& solver, Workspace& workspace, double h, Observer& observer) {
+  IslandProblem<Book, Rows, Operator, Observer> problem(book, rows, W, islands, island, h, observer);
+  return solver.solve(problem, workspace);
+}
+
+namespace inner {
+
+/// f(p, i) for every item of an island.
+template <int pools, class F>
+void each_item(const Islands<pools>& islands, Index island, F&& f) {
+  for_each_index<pools>([&](auto p) {
+    for (const Index i : islands.items(p, island)) f(p, i);
+  });
+}
+
+}  // namespace inner
+
+/// The energy that the impulses of an island give its bodies, J: Σ ½ λ·(u_free + u⁺), u without bias.
+template <class Rows, class Operator, int pools>
+double impulse_energy(const Rows& rows, const Operator& W, const Islands<pools>& islands, Index island) {
+  double sum = 0;
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    const auto& pool = rows.template pool<p>();
+    const auto u = W.template residual<p>(rows, i);
+    sum += 0.5 * double(pool.lambda[i].dot(pool.d[i] + u - pool.bias[i] - pool.bias[i]));
+  });
+  return sum;
+}
+
+/// Newton's restitution on several contacts with friction can add energy. Where it did, λ becomes λ_c + s (λ_N − λ_c):
+/// λ_N the solution with restitution, λ_c the one without, s the largest number in [0, 1] for which the impulses add no
+/// more energy than those of λ_c do. Both lie in the cone, which is convex, so λ does.
+template <class Rows, class Operator, int pools, class Solve, class Bounce>
+void guard_energy(Rows& rows, Operator& W, const Islands<pools>& islands, Index island, Bounce& bounce,
+                  Impulses<Rows>& newton, Impulses<Rows>& newton_velocity, const Solve& solve_again) {
+  double bounced = 0;
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    bounced += double(std::get<p>(bounce.pools)[i].squaredNorm());
+  });
+  if (bounced == 0 || !(impulse_energy(rows, W, islands, island) > 0)) return;
+
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    auto& pool = rows.template pool<p>();
+    std::get<p>(newton.pools)[i] = pool.lambda[i];
+    std::get<p>(newton_velocity.pools)[i] = W.template residual<p>(rows, i) - pool.bias[i];
+    pool.bias[i] -= std::get<p>(bounce.pools)[i];
+    pool.d[i] -= std::get<p>(bounce.pools)[i];
+  });
+  solve_again();
+  // E(s) = E_c + b s + a s² with δ = λ_N − λ_c, a = ½ δ·Wδ, b = δ·u_c, u_c the velocity after λ_c.
+  double a = 0, b = 0;
+  const double plain = impulse_energy(rows, W, islands, island);
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    const auto& pool = rows.template pool<p>();
+    const auto velocity = (W.template residual<p>(rows, i) - pool.bias[i]).eval();
+    const auto delta = (std::get<p>(newton.pools)[i] - pool.lambda[i]).eval();
+    a += 0.5 * double(delta.dot(std::get<p>(newton_velocity.pools)[i] - velocity));
+    b += double(delta.dot(velocity));
+  });
+  const double room = std::max(0.0, plain) - plain;  // a s² + b s ≤ room
+  double s = 1;
+  if (a + b > room) {
+    const double root = std::sqrt(std::max(0.0, b * b + 4 * a * room));
+    s = a > 0 ? std::clamp(b > 0 ? 2 * room / (b + root) : (root - b) / (2 * a), 0.0, 1.0) : 0;
+  }
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    auto& pool = rows.template pool<p>();
+    using T = typename Rows::Scalar;
+    const auto change = (T(s) * (std::get<p>(newton.pools)[i] - pool.lambda[i])).eval();
+    pool.lambda[i] += change;
+    W.template commit<p>(rows, i, change);
+  });
+}
+
+}  // namespace delassus

@@ -1,0 +1,28 @@
+/// What a step says of itself.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/core/status.hpp>
+
+namespace delassus {
+
+/// The worst of all islands, and the counts of the step. Returned by every step; nothing in it is optional reading for
+/// a host that cares: not converging is a value, not an exception.
+struct StepReport {
+  Status status = Status::converged;
+  int sweeps = 0;                 ///< of the island that took most
+  double residual = 0;            ///< err_s, largest of the islands
+  double siconos_error = 0;       ///< err, largest of the islands
+  double max_penetration = 0;     ///< m, at the start of the step
+  double max_joint_violation = 0; ///< m or rad, at the start of the step
+  Index contacts = 0;
+  Index rows = 0;
+  Index islands = 0;
+  Index quarantined = 0;          ///< bodies left where they were because something was not finite
+  Index pairs = 0;                ///< near pairs from the broad phase
+  Index queries = 0;              ///< narrow-phase queries
+  Index rejects = 0;              ///< answers of the collision backend that failed their certificate
+  double time = 0;                ///< s, simulated, at the end of the step
+};
+
+}  // namespace delassus

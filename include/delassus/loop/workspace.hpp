@@ -1,0 +1,75 @@
+/// The arrays of a loop that has constraints; one that has none has no workspace.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/loop/stages/detect.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <array>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace delassus::inner {
+
+template <class World>
+struct widths_of;
+template <class... S>
+struct widths_of<World<S...>> {
+  using type = Widths<S::width...>;
+  using Scratch = std::tuple<std::vector<typename S::Velocity>...>;
+};
+
+template <class L>
+inline constexpr bool law_restitutes = requires(const L& law, const typename L::Item& i) { law.restitution(i); };
+
+template <class World, class Laws>
+struct rows_of;
+template <class World, class... L>
+struct rows_of<World, Constraints<L...>> {
+  using type = RowSystem<typename World::Scalar, typename widths_of<World>::type, L::rows...>;
+  static constexpr bool restitutes = (law_restitutes<L> || ...);
+};
+
+/// Takes no room, once for each thing that is absent.
+template <int which>
+struct Nothing {};
+
+/// Arrays of a step; `reset` keeps their capacity, so a warm step allocates nothing.
+template <class World, class Laws, class Compliance, class Solver, class Integrator, class Stabilisation>
+struct Workspace {
+  using Rows = typename rows_of<World, Laws>::type;
+  using Operator = typename Compliance::template Operator<Rows>;
+  static constexpr bool restitutes = rows_of<World, Laws>::restitutes;
+  static constexpr bool at_midpoint = requires { requires Integrator::linearises_at_midpoint; };
+  static constexpr bool projects_position = requires { requires Stabilisation::projects_position; };
+
+  explicit Workspace(const Laws& laws) : book(laws) {}
+
+  Rows rows;
+  Islands<Laws::pool_count> islands;
+  Operator W;
+  LawBook<Laws, typename World::Scalar> book;
+  typename Solver::template Workspace<Rows> solver;
+  std::vector<SolveReport> reports;  ///< of the islands, in their order
+  std::vector<char> is_sick;
+  ContactBook contacts;
+  Materials materials;
+  [[no_unique_address]] std::conditional_t<at_midpoint, Rows, Nothing<1>> at_start;
+  [[no_unique_address]] std::conditional_t<restitutes, Impulses<Rows>, Nothing<2>> bounce;
+  [[no_unique_address]] std::conditional_t<restitutes || projects_position, std::array<Impulses<Rows>, 2>, Nothing<3>> aside;
+  [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
+};
+
+/// A loop without constraints.
+template <class World, class C, class S, class I, class St>
+struct Workspace<World, Constraints<>, C, S, I, St> {
+  explicit Workspace(const Constraints<>&) {}
+};
+
+}  // namespace delassus::inner

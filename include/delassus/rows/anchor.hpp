@@ -1,0 +1,31 @@
+/// An end of a constraint: a material point of some body, with a frame where the body has one.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <cstdint>
+
+namespace delassus {
+
+/// Names a material point by set, block and local coordinates; the set alone knows which blocks move it.
+/// `local` is in the body's frame (m) for bodies with a frame, ignored for a particle. The world is the
+/// anchor without a set; its `local` is in world coordinates.
+struct Anchor {
+  Index set = -1;
+  Index block = -1;
+  Vec3 local = Vec3::Zero();
+  Quat frame = Quat::Identity();
+  bool has_frame = true;
+  std::uint32_t generation = 0;
+  std::uint32_t owner = 0;
+
+  bool is_world() const { return set < 0; }
+};
+
+/// A point of the world (m), with a frame.
+inline Anchor world_anchor(const Vec3& point, const Quat& frame = Quat::Identity()) {
+  return {.local = point, .frame = frame};
+}
+
+}  // namespace delassus

@@ -1,0 +1,104 @@
+/// Groups of constraints that share no moving body: each is solved, stopped, slept and lost by itself.
+#pragma once
+
+#include <delassus/rows/row_system.hpp>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace delassus {
+
+/// Union-find over the blocks of H. Blocks that do not move (A⁻¹ = 0) join nothing.
+///
+/// Islands are numbered by their lowest block, items inside go by pool and insertion: a body far away changes
+/// no order, hence no bit. An item without a moving block belongs to no island; its impulse stays zero.
+template <int pools>
+class Islands {
+ public:
+  Index count() const { return count_; }
+
+  /// The items of pool `p` in island `island`, ascending.
+  std::span<const Index> items(int p, Index island) const {
+    const auto& start = start_[p];
+    return std::span<const Index>(items_[p]).subspan(start[island], start[island + 1] - start[island]);
+  }
+
+  /// The island of a block, or −1 when no constraint holds it. `block` counts through the sets in order.
+  Index island_of(Index block) const { return island_[block]; }
+
+  /// `first_block[s]` is the number of the first block of set s; moves(s, b) tells whether A⁻¹ ≠ 0 there.
+  template <class Rows, class Moves>
+  void find(const Rows& rows, std::span<const Index> first_block, Index blocks, const Moves& moves) {
+    parent_.resize(blocks);
+    for (Index b = 0; b < blocks; ++b) parent_[b] = b;
+    for_each_index<Rows::pool_count>([&](auto p) {
+      const auto& pool = rows.template pool<p>();
+      lowest_[p].assign(pool.items(), -1);
+      for (Index i = 0; i < pool.items(); ++i) join(pool, i, first_block, moves, lowest_[p][i]);
+    });
+    number(rows);
+    for_each_index<Rows::pool_count>([&](auto p) { sort(p); });
+  }
+
+ private:
+  template <class Pool, class Moves>
+  void join(const Pool& pool, Index item, std::span<const Index> first_block, const Moves& moves, Index& seen) {
+    for_each_index<int(std::tuple_size_v<decltype(pool.sets)>)>([&](auto s) {
+      const auto& set = std::get<s>(pool.sets);
+      for (Index e = set.offset[item]; e < set.offset[item + 1]; ++e) {
+        if (!moves(s, set.block[e])) continue;
+        const Index b = first_block[s] + set.block[e];
+        if (seen >= 0) unite(seen, b);
+        seen = b;
+      }
+    });
+  }
+
+  Index root(Index b) {
+    while (parent_[b] != b) b = parent_[b] = parent_[parent_[b]];
+    return b;
+  }
+
+  /// The lower block becomes the root, so that a root names its island's lowest block.
+  void unite(Index a, Index b) {
+    a = root(a);
+    b = root(b);
+    if (a < b) parent_[b] = a;
+    if (b < a) parent_[a] = b;
+  }
+
+  template <class Rows>
+  void number(const Rows&) {
+    const Index blocks = Index(parent_.size());
+    island_.assign(blocks, -1);
+    for (const auto& pool : lowest_)
+      for (const Index b : pool)
+        if (b >= 0) island_[root(b)] = 0;
+    count_ = 0;
+    for (Index b = 0; b < blocks; ++b) {
+      const Index r = root(b);
+      if (r == b && island_[b] == 0) island_[b] = count_++;
+      else island_[b] = r == b ? -1 : island_[r];
+    }
+  }
+
+  /// Counting sort of one pool's items by island; stable, so insertion order stays.
+  void sort(int p) {
+    auto& start = start_[p];
+    start.assign(count_ + 1, 0);
+    for (const Index b : lowest_[p])
+      if (b >= 0) ++start[island_[b] + 1];
+    for (Index k = 0; k < count_; ++k) start[k + 1] += start[k];
+    items_[p].resize(start[count_]);
+    next_.assign(start.begin(), start.end());
+    for (Index i = 0; i < Index(lowest_[p].size()); ++i)
+      if (lowest_[p][i] >= 0) items_[p][next_[island_[lowest_[p][i]]]++] = i;
+  }
+
+  Index count_ = 0;
+  std::vector<Index> parent_, island_, next_;
+  std::array<std::vector<Index>, pools> lowest_, items_, start_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,61 @@
+/// The waist: the rows of one pool of constraints as flat arrays, blocks of fixed size, no law and no body in sight.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <tuple>
+#include <vector>
+
+namespace delassus {
+
+/// The blocks of H that one pool has in one body set of width `w` velocities per block.
+///
+/// Item i owns the entries offset[i] … offset[i+1] − 1; entry e acts on block[e] through H[e] (R × w), and
+/// G[e] = A⁻¹ Hᵀ (w × R) where the set's A is block-diagonal.
+template <int R, int w, class T>
+struct SetBlocks {
+  std::vector<Index> offset{0};
+  std::vector<Index> block;
+  std::vector<Mat<R, w, T>> H;
+  std::vector<Mat<w, R, T>> G;
+
+  void reset() {
+    offset.assign(1, 0);
+    block.clear();
+    H.clear();
+  }
+};
+
+/// All rows of one pool: R per item. Units: phi m or rad, bias, d m/s or rad/s, lambda N·s or N·m·s.
+///
+/// A row with stiffness or damping > 0 is soft. `compliance` (1/kg) and `softness` (in units of the row's own W_kk)
+/// join W's diagonal.
+template <int R, class T, int... widths>
+struct PoolRows {
+  static constexpr int rows = R;
+  using Scalar = T;
+
+  std::tuple<SetBlocks<R, widths, T>...> sets;
+  std::vector<Vec<R, T>> phi, stiffness, damping, bias, compliance, softness, d, lambda;
+
+  Index items() const { return Index(phi.size()); }
+
+  void reset() {
+    std::apply([](auto&... s) { (s.reset(), ...); }, sets);
+    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) array->clear();
+  }
+
+  /// Opens the rows of one more item, all zero.
+  Index append() {
+    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) array->push_back(Vec<R, T>::Zero());
+    return items() - 1;
+  }
+
+  /// Closes the item opened last: its entries end here in every set.
+  void close() {
+    std::apply([](auto&... s) { (s.offset.push_back(Index(s.block.size())), ...); }, sets);
+  }
+};
+
+}  // namespace delassus

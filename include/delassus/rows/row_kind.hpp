@@ -1,0 +1,26 @@
+/// What a row asks of its violation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace delassus {
+
+/// equality φ = 0, λ free · lower φ ≥ 0, λ ≥ 0 · upper φ ≤ 0, λ ≤ 0 · friction: no φ, bounded by its law.
+enum class RowKind : std::uint8_t { equality, lower, upper, friction };
+
+/// The kinds of a law's rows: its own `kinds`, else all equalities when it says `bilateral`, else all `lower`.
+template <class Law>
+constexpr std::array<RowKind, Law::rows> row_kinds() {
+  if constexpr (requires { Law::kinds; }) {
+    return Law::kinds;
+  } else {
+    std::array<RowKind, Law::rows> kinds{};
+    RowKind kind = RowKind::lower;
+    if constexpr (requires { requires Law::bilateral; }) kind = RowKind::equality;
+    for (RowKind& k : kinds) k = kind;
+    return kinds;
+  }
+}
+
+}  // namespace delassus

@@ -1,0 +1,61 @@
+/// All rows of one step: one PoolRows per pool of constraints.
+#pragma once
+
+#include <delassus/rows/pool_rows.hpp>
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace delassus {
+
+/// Velocities per block of each body set, in the world's order.
+template <int... w>
+struct Widths {};
+
+template <class T, class Widths, int... R>
+struct RowSystem;
+
+template <class T, int... w, int... R>
+struct RowSystem<T, Widths<w...>, R...> {
+  using Scalar = T;
+  static constexpr int pool_count = int(sizeof...(R));
+  static constexpr int set_count = int(sizeof...(w));
+
+  /// Rows per item of pool p, velocities per block of set s.
+  template <int p>
+  static constexpr int rows_of = std::array<int, sizeof...(R) + 1>{R..., 0}[p];
+  template <int s>
+  static constexpr int width_of = std::array<int, sizeof...(w) + 1>{w..., 0}[s];
+
+  std::tuple<PoolRows<R, T, w...>...> pools;
+
+  template <int p>
+  auto& pool() {
+    return std::get<p>(pools);
+  }
+  template <int p>
+  const auto& pool() const {
+    return std::get<p>(pools);
+  }
+
+  void reset() {
+    std::apply([](auto&... p) { (p.reset(), ...); }, pools);
+  }
+
+  Index row_count() const {
+    return std::apply([](const auto&... p) { return (Index(0) + ... + (p.items() * p.rows)); }, pools);
+  }
+};
+
+/// Calls f(std::integral_constant<int, 0>{}), … in order: a loop over pools or sets, unrolled.
+template <int count, class F>
+constexpr void for_each_index(F&& f) {
+  [&]<int... i>(std::integer_sequence<int, i...>) {
+    (f(std::integral_constant<int, i>{}), ...);
+  }(std::make_integer_sequence<int, count>{});
+}
+
+}  // namespace delassus

@@ -1,0 +1,83 @@
+/// What a law writes its linearisation with.
+#pragma once
+
+#include <delassus/rows/anchor.hpp>
+#include <delassus/rows/pool_rows.hpp>
+
+namespace delassus {
+
+/// One end of a constraint: the blocks that move one material point, where the law enters its directions.
+template <class World, class Pool>
+class RowEnd {
+ public:
+  using T = typename Pool::Scalar;
+
+  RowEnd(const World& world, Pool& pool, const Anchor& anchor, const Vec3& point)
+      : world_(world), pool_(pool), anchor_(anchor), point_(point) {
+    world_.visit(anchor_.set, [&](const auto& set, auto s) {
+      auto& blocks = std::get<s>(pool_.sets);
+      first_ = Index(blocks.block.size());
+      const int count = set.anchor_blocks(anchor_);
+      for (int k = 0; k < count; ++k) {
+        blocks.block.push_back(set.anchor_block(anchor_, k));
+        blocks.H.emplace_back();
+        blocks.H.back().setZero();
+      }
+    });
+  }
+
+  /// Row k sees the velocity of the point along `direction`: u_k += direction · v(point).
+  void along(int k, const Vec3& direction) {
+    world_.visit(anchor_.set, [&](const auto& set, auto s) {
+      auto& blocks = std::get<s>(pool_.sets);
+      const int count = set.anchor_blocks(anchor_);
+      for (int b = 0; b < count; ++b)
+        blocks.H[first_ + b].row(k) += set.along(anchor_, b, point_, direction).transpose().template cast<T>();
+    });
+  }
+
+  /// Row k sees the rate of turn about `axis`: u_k += axis · ω. The anchor must have a frame.
+  void about(int k, const Vec3& axis) {
+    world_.visit(anchor_.set, [&](const auto& set, auto s) {
+      if constexpr (requires { set.about(anchor_, 0, axis); }) {
+        auto& blocks = std::get<s>(pool_.sets);
+        const int count = set.anchor_blocks(anchor_);
+        for (int b = 0; b < count; ++b)
+          blocks.H[first_ + b].row(k) += set.about(anchor_, b, axis).transpose().template cast<T>();
+      }
+    });
+  }
+
+ private:
+  const World& world_;
+  Pool& pool_;
+  const Anchor& anchor_;
+  Vec3 point_;
+  Index first_ = 0;
+};
+
+/// Writes H and φ of one item. A law never divides by h: the stabilisation alone turns φ into a rate.
+template <class World, class Pool>
+class RowWriter {
+ public:
+  RowWriter(const World& world, Pool& pool) : world_(world), pool_(pool), item_(pool.append()) {}
+
+  /// The blocks that move the material point of `anchor` that is at `point` (world, m) now.
+  RowEnd<World, Pool> end(const Anchor& anchor, const Vec3& point) { return {world_, pool_, anchor, point}; }
+
+  /// Violation of row k, m or rad.
+  void phi(int k, double value) { pool_.phi[item_][k] = typename Pool::Scalar(value); }
+
+  /// Makes row k a spring with a damper, N/m and N·s/m (N·m/rad and N·m·s/rad for a row about an axis).
+  void soft(int k, double stiffness, double damping) {
+    pool_.stiffness[item_][k] = typename Pool::Scalar(stiffness);
+    pool_.damping[item_][k] = typename Pool::Scalar(damping);
+  }
+
+ private:
+  const World& world_;
+  Pool& pool_;
+  Index item_;
+};
+
+}  // namespace delassus

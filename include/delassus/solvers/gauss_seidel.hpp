@@ -1,0 +1,66 @@
+/// Gauss-Seidel sweeps over all constraints of an island, one local law at a time.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// λ_i ← law_i(W_ii, d_i + Σ_j W_ij λ_j) for i = 1 … n, until the criterion holds. Contracts like r/(1 + r) for a heavy
+/// body on a light one of mass ratio r and like cos²(π/2N) for N bodies on each other: `AcceleratedGaussSeidel` is the
+/// default for that reason.
+template <class Criterion = Residual>
+struct BasicGaussSeidel {
+  using plays = role::Solver;
+  double tolerance = 1e-6;       ///< of the criterion
+  int max_iterations = 1000;     ///< sweeps; reaching it is a status
+  int min_iterations = 1;        ///< sweeps even when the warm start is within the tolerance
+  double relaxation = 1;         ///< ω in (0, 2), inside the projection: the result stays in the cone
+  bool scale_tolerance = false;  ///< tolerance × number of rows
+  bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+
+  template <class Rows>
+  struct Workspace {};
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0, "GaussSeidel: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations >= 0, "GaussSeidel: max_iterations " + inner::text(max_iterations) + " must be >= 0");
+    DELASSUS_EXPECT(relaxation > 0 && relaxation < 2,
+                    "GaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace&) const {
+    const int rows = problem.row_count();
+    SolveReport report;
+    report.measure = problem.measure();
+    problem.tell(0, report.measure);
+    if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
+    while (report.sweeps < max_iterations) {
+      if (report.sweeps >= min_iterations && is_done(report.measure, rows)) break;
+      const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
+      for (int k = 0; k < batch && report.sweeps < max_iterations; ++k, ++report.sweeps) problem.sweep(relaxation);
+      if constexpr (Criterion::needs_measure || Problem::Observes::every_sweep) report.measure = problem.measure();
+      else report.measure.last_change = problem.last_change();
+      problem.tell(report.sweeps, report.measure);
+    }
+    const bool is_within = inner::is_within<Criterion>(*this, report.measure, rows);
+    if constexpr (!Criterion::needs_measure) report.measure = problem.measure();
+    report.status = is_within ? Status::converged : inner::verdict<Criterion>(*this, report.measure, rows);
+    return report;
+  }
+
+ private:
+  bool is_done(const Measure& m, int rows) const {
+    return inner::is_within<Criterion>(*this, m, rows) || (Criterion::needs_measure && m.residual <= m.floor);
+  }
+};
+
+using GaussSeidel = BasicGaussSeidel<>;
+
+}  // namespace delassus

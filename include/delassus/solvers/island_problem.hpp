@@ -1,0 +1,165 @@
+/// One island as a solver meets it: visits, sweeps and measurements, nothing else.
+#pragma once
+
+#include <delassus/rows/islands.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/solvers/measure.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+namespace delassus {
+
+/// Impulses of all pools, set aside.
+template <class Rows>
+struct Impulses;
+template <class T, int... w, int... R>
+struct Impulses<RowSystem<T, Widths<w...>, R...>> {
+  std::tuple<std::vector<Vec<R, T>>...> pools;
+
+  void resize_like(const RowSystem<T, Widths<w...>, R...>& rows) {
+    for_each_index<sizeof...(R)>([&](auto p) { std::get<p>(pools).resize(rows.template pool<p>().items()); });
+  }
+};
+
+/// Asks a solver to tell of every sweep.
+struct NoObserver {
+  static constexpr bool every_sweep = false;
+  void begin_island(Index) const {}
+  void operator()(int, const Measure&) const {}
+};
+
+template <class Book, class Rows, class Operator, class Observer = NoObserver>
+class IslandProblem {
+ public:
+  using T = typename Rows::Scalar;
+  using Observes = Observer;
+  static constexpr int pools = Rows::pool_count;
+
+  IslandProblem(Book& book, Rows& rows, Operator& W, const Islands<pools>& islands, Index island, double h,
+                Observer& observer)
+      : book_(book), rows_(rows), W_(W), islands_(islands), island_(island), h_(h), observer_(observer) {}
+
+  int row_count() const {
+    int count = 0;
+    for_each_index<pools>([&](auto p) { count += Rows::template rows_of<p> * int(islands_.items(p, island_).size()); });
+    return count;
+  }
+
+  /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the others
+  /// stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows.
+  double sweep(double relaxation = 1) {
+    T energy = 0, displacement = 0;
+    for_each_index<pools>([&](auto p) {
+      for (const Index i : islands_.items(p, island_)) visit<p>(i, T(relaxation), energy, displacement);
+    });
+    last_change_ = h_ * double(displacement);
+    return double(energy);
+  }
+
+  Measure measure() {
+    MeasureSums sums;
+    for_each_index<pools>([&](auto p) {
+      for (const Index i : islands_.items(p, island_)) add<p>(i, sums);
+    });
+    Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
+    m.last_change = last_change_;
+    return m;
+  }
+
+  double last_change() const { return last_change_; }
+  void tell(int sweeps, const Measure& m) { observer_(sweeps, m); }
+
+  void save(Impulses<Rows>& to) const {
+    each([&](auto p, Index i) { std::get<p>(to.pools)[i] = rows_.template pool<p>().lambda[i]; });
+  }
+  /// λ ← what was saved, and W is told of the difference.
+  void load(const Impulses<Rows>& from) {
+    each([&](auto p, Index i) { assign<p>(i, std::get<p>(from.pools)[i]); });
+  }
+
+  /// λ ← λ + β (λ − before), each brought back into its law's cone.
+  void extrapolate(const Impulses<Rows>& before, double beta) {
+    each([&](auto p, Index i) {
+      auto next = rows_.template pool<p>().lambda[i];
+      next += T(beta) * (next - std::get<p>(before.pools)[i]);
+      book_.template clamp<p>(i, next);
+      assign<p>(i, next);
+    });
+  }
+
+  /// Σ w_i (a_i − λ_i)·(λ_i − b_i).
+  double curvature(const Impulses<Rows>& a, const Impulses<Rows>& b) const {
+    T sum = 0;
+    each([&](auto p, Index i) {
+      const auto& x = rows_.template pool<p>().lambda[i];
+      const T weight = W_.template diagonal<p>(i).trace() / T(Rows::template rows_of<p>);
+      sum += weight * (std::get<p>(a.pools)[i] - x).dot(x - std::get<p>(b.pools)[i]);
+    });
+    return double(sum);
+  }
+
+ private:
+  template <class F>
+  void each(F&& f) const {
+    for_each_index<pools>([&](auto p) {
+      for (const Index i : islands_.items(p, island_)) f(p, i);
+    });
+  }
+
+  template <int p>
+  void assign(Index i, const Vec<Rows::template rows_of<p>, T>& next) {
+    auto& lambda = rows_.template pool<p>().lambda[i];
+    const Vec<Rows::template rows_of<p>, T> change = next - lambda;
+    lambda = next;
+    W_.template commit<p>(rows_, i, change);
+  }
+
+  template <int p>
+  void visit(Index i, T relaxation, T& energy, T& displacement) {
+    constexpr int R = Rows::template rows_of<p>;
+    auto& lambda = rows_.template pool<p>().lambda[i];
+    Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
+    book_.template project<p>(i, c);
+    if (relaxation != T(1)) {
+      c.lambda = lambda + relaxation * (c.lambda - lambda);
+      book_.template clamp<p>(i, c.lambda);
+    }
+    const Vec<R, T> change = c.lambda - lambda;
+    lambda = c.lambda;
+    W_.template commit<p>(rows_, i, change);
+    const T weight = c.W.trace() / T(R), square = change.squaredNorm();
+    energy += weight * square;
+    displacement += weight * std::sqrt(square);
+  }
+
+  template <int p>
+  void add(Index i, MeasureSums& sums) {
+    constexpr int R = Rows::template rows_of<p>;
+    const auto& pool = rows_.template pool<p>();
+    const Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), pool.lambda[i]};
+    const T weight = c.W.trace() / T(R);
+    const double square = double(book_.template natural_map<p>(i, c, weight).squaredNorm());
+    const double lambda = double(c.lambda.squaredNorm());
+    sums.residual += square;
+    sums.worst = std::max(sums.worst, square);
+    sums.siconos += double(book_.template natural_map<p>(i, c, T(1)).squaredNorm());
+    sums.d += double(pool.d[i].squaredNorm());
+    sums.u += double(c.d.squaredNorm());
+    sums.lambda += lambda;
+    sums.reach = std::max(sums.reach, double(weight) * std::sqrt(lambda));
+  }
+
+  Book& book_;
+  Rows& rows_;
+  Operator& W_;
+  const Islands<pools>& islands_;
+  Index island_;
+  double h_;
+  Observer& observer_;
+  double last_change_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace delassus

@@ -1,0 +1,66 @@
+/// The laws of all pools with what they remember between sweeps, as a solver sees them.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/row_system.hpp>
+
+#include <tuple>
+#include <vector>
+
+namespace delassus {
+
+template <class Constraints, class T>
+class LawBook;
+
+/// Calls each law with its item and its memory. `prepare` runs once a step, when W is built.
+template <class... Laws, class T>
+class LawBook<Constraints<Laws...>, T> {
+ public:
+  explicit LawBook(const Constraints<Laws...>& constraints) : constraints_(&constraints) {}
+
+  /// The constraints may have moved with their loop.
+  void attach(const Constraints<Laws...>& constraints) { constraints_ = &constraints; }
+
+  template <class Operator, class Rows>
+  void prepare(const Operator& W, const Rows& rows) {
+    for_each_index<sizeof...(Laws)>([&](auto p) {
+      auto& memory = std::get<p>(memory_);
+      memory.resize(rows.template pool<p>().items());
+      for (std::size_t i = 0; i < memory.size(); ++i)
+        inner::prepare(constraints_->template pool<p>().law, W.template diagonal<p>(Index(i)), memory[i]);
+    });
+  }
+
+  template <int p, int R>
+  void project(Index i, Local<R, T>& c) {
+    const auto& pool = constraints_->template pool<p>();
+    inner::project(pool.law, pool.item(i), c, std::get<p>(memory_)[i]);
+  }
+
+  /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
+  template <int p, int R>
+  Vec<R, T> natural_map(Index i, const Local<R, T>& c, T scale) {
+    const auto& pool = constraints_->template pool<p>();
+    if constexpr (requires { pool.law.natural_map(pool.item(i), c.lambda, c.d, scale); }) {
+      return pool.law.natural_map(pool.item(i), c.lambda, c.d, scale);
+    } else {
+      Local<R, T> trial = c;
+      auto memory = std::get<p>(memory_)[i];
+      inner::project(pool.law, pool.item(i), trial, memory);
+      const Vec<R, T> change = c.lambda - trial.lambda;
+      return (scale * T(R) / c.W.trace()) * (c.W * change);
+    }
+  }
+
+  template <int p, int R>
+  void clamp(Index i, Vec<R, T>& lambda) const {
+    const auto& pool = constraints_->template pool<p>();
+    if constexpr (requires { pool.law.clamp(pool.item(i), lambda); }) pool.law.clamp(pool.item(i), lambda);
+  }
+
+ private:
+  const Constraints<Laws...>* constraints_;
+  std::tuple<std::vector<inner::memory_of_t<Laws, T>>...> memory_;
+};
+
+}  // namespace delassus

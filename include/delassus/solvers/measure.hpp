@@ -1,0 +1,39 @@
+/// How far an impulse is from meeting all laws of an island.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus {
+
+/// With F_i(s) = s λ_i − P_K(s λ_i − ũ_i) and w_i = tr(W_ii)/rows,
+///
+///   residual = √Σ|F_i(w_i)|² / max(|d|, |u|)          in velocity units, free of scale;
+///   siconos  = √Σ|F_i(1)|²  / max(|d|, |u|, |λ|)      the measure of Siconos, which mixes units.
+///
+/// `worst` is the largest share of one constraint in `residual`. `floor` is what rounding leaves of it.
+/// Source: [AcaryBremondHuber2018] for the natural map; the normalisation by the maximum is Siconos'.
+struct Measure {
+  double residual = 0;
+  double siconos = 0;
+  double worst = 0;
+  double floor = 0;
+  double last_change = 0;  ///< Σ|h W_ii Δλ_i| of the last sweep, m: the change expressed as displacement
+};
+
+/// Sums that become a Measure.
+struct MeasureSums {
+  double residual = 0, siconos = 0, d = 0, u = 0, lambda = 0, worst = 0, reach = 0;
+
+  Measure finish(double epsilon) const {
+    const double velocity = std::sqrt(std::max(d, u));
+    const double mixed = std::sqrt(std::max({d, u, lambda}));
+    const auto share = [](double part, double whole) { return part == 0 ? 0 : part / whole; };
+    return {.residual = share(std::sqrt(residual), velocity),
+            .siconos = share(std::sqrt(siconos), mixed),
+            .worst = share(std::sqrt(worst), velocity),
+            .floor = velocity > 0 ? 64 * epsilon * reach / velocity : 0};
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,46 @@
+/// What a solver says of one island.
+#pragma once
+
+#include <delassus/core/status.hpp>
+#include <delassus/solvers/measure.hpp>
+
+#include <algorithm>
+#include <concepts>
+
+namespace delassus {
+
+struct SolveReport {
+  Status status = Status::converged;
+  int sweeps = 0;
+  Measure measure{};
+};
+
+/// The parameters every sweeping solver shares.
+template <class S>
+concept SweepingSolver = requires(const S s) {
+  { s.tolerance } -> std::convertible_to<double>;
+  { s.min_iterations } -> std::convertible_to<int>;
+  { s.max_iterations } -> std::convertible_to<int>;
+};
+
+namespace inner {
+
+/// tolerance, times the number of rows when `scale_tolerance` asks; or every constraint's share when `all_verified`.
+template <class Criterion, class Solver>
+bool is_within(const Solver& solver, const Measure& m, int rows) {
+  if (solver.all_verified) return Criterion::worst(m) <= solver.tolerance;
+  return Criterion::sum(m) <= solver.tolerance * (solver.scale_tolerance ? rows : 1);
+}
+
+/// Sweeps between two measurements: a measurement costs about as much as a sweep.
+inline int patience(int sweeps) { return sweeps < 16 ? 1 : sweeps < 64 ? 4 : 16; }
+
+/// Converged, at the rounding floor above the tolerance, or out of sweeps.
+template <class Criterion, class Solver>
+Status verdict(const Solver& solver, const Measure& m, int rows) {
+  if (is_within<Criterion>(solver, m, rows)) return Status::converged;
+  return m.residual <= m.floor ? Status::stalled : Status::max_iterations;
+}
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,26 @@
+/// Baumgarte's rate: a share of the violation is taken back each step.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/stabilisation/stabilisation.hpp>
+
+#include <algorithm>
+
+namespace delassus {
+
+/// bias = rate · φ/h; a contact is pushed out at most at `max_speed` (m/s).
+struct Baumgarte {
+  using plays = role::Stabilisation;
+  double rate = 0.2;     ///< share of φ per step, in (0, 1]
+  double max_speed = 1;  ///< m/s
+
+  void check() const {
+    DELASSUS_EXPECT(rate > 0 && rate <= 1, "Baumgarte: rate " + inner::text(rate) + " must be in (0, 1]");
+    DELASSUS_EXPECT(max_speed > 0, "Baumgarte: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
+  }
+  double equality(double phi, double h) const { return rate * phi / h; }
+  double penetration(double phi, double h) const { return std::max(rate * phi / h, -max_speed); }
+};
+static_assert(Stabilisation<Baumgarte>);
+
+}  // namespace delassus

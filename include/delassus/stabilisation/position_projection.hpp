@@ -1,0 +1,29 @@
+/// Position projection: overlaps and joint gaps are closed by displacements that never become velocities.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/stabilisation/stabilisation.hpp>
+
+#include <algorithm>
+
+namespace delassus {
+
+/// The velocity solve sees no violation. Afterwards w = A⁻¹ Hᵀ μ with H w + u⁺ + rate · φ/h ≥ 0 (= 0 for joints) moves
+/// the positions by h w, on the same W and with the friction rows locked at μ = 0.
+struct PositionProjection {
+  using plays = role::Stabilisation;
+  static constexpr bool projects_position = true;
+  double rate = 0.2;     ///< share of the violation per step, in (0, 1]
+  double max_speed = 1;  ///< m/s
+
+  void check() const {
+    DELASSUS_EXPECT(rate > 0 && rate <= 1, "PositionProjection: rate " + inner::text(rate) + " must be in (0, 1]");
+    DELASSUS_EXPECT(max_speed > 0, "PositionProjection: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
+  }
+  double equality(double, double) const { return 0; }
+  double penetration(double, double) const { return 0; }
+  double push(double phi, double h) const { return std::max(rate * phi / h, -max_speed); }
+};
+static_assert(Stabilisation<PositionProjection>);
+
+}  // namespace delassus

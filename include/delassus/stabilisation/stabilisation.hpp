@@ -1,0 +1,19 @@
+/// How a violated constraint is pulled back: the one place where a violation becomes a rate.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+
+#include <concepts>
+
+namespace delassus {
+
+/// equality(φ, h): the bias of a joint's row, m/s. penetration(φ, h), φ < 0: the bias of a contact that overlaps,
+/// ≤ 0. A policy that says softness(h) makes violated contact rows yield by that share of their own W_kk; one that
+/// says `projects_position` and has push(φ, h) corrects positions after the step and leaves velocities alone.
+template <class S>
+concept Stabilisation = Plays<S, role::Stabilisation> && requires(const S policy, double phi, double h) {
+  { policy.equality(phi, h) } -> std::same_as<double>;
+  { policy.penetration(phi, h) } -> std::same_as<double>;
+};
+
+}  // namespace delassus
