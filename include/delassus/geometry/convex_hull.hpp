@@ -1,0 +1,128 @@
+/// The convex hull of a point cloud: its vertices, polygonal faces and moments of volume.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/geometry/inner/hull_faces.hpp>
+#include <delassus/geometry/inner/quickhull.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace delassus {
+
+/// A convex polytope in its own frame, m. Faces are polygons, counter-clockwise seen from outside: coplanar triangles
+/// are merged, and points inside the hull, on a face or on an edge are dropped.
+class ConvexHull {
+ public:
+  /// Pre: at least four finite points that do not lie in one plane (thickness > 1e-6 of the extent).
+  explicit ConvexHull(std::span<const Vec3> points) {
+    const double extent = check_points(points);
+    std::vector<inner::HullTriangle> triangles;
+    DELASSUS_EXPECT(inner::quickhull(points, extent, triangles),
+                    "the points of a convex hull lie in one plane or on one line (thickness <= 1e-6 of the extent " +
+                        inner::text(extent) + " m); give points that span a volume, or use a thin Box");
+    const inner::HullFaces merged = inner::merge_coplanar(points, triangles, 1e-7 * extent);
+    vertices_ = merged.vertices;
+    normals_ = merged.normals;
+    face_start_ = merged.start;
+    face_loop_ = merged.loop;
+    find_neighbours();
+    find_moments();
+  }
+
+  std::span<const Vec3> vertices() const { return vertices_; }
+  Index face_count() const { return Index(normals_.size()); }
+  /// Vertex indices of a face, counter-clockwise from outside, and its outward unit normal.
+  std::span<const Index> face(Index f) const { return slice(face_loop_, face_start_, f); }
+  const Vec3& normal(Index f) const { return normals_[f]; }
+  /// The faces that meet in a vertex, ascending.
+  std::span<const Index> faces_around(Index v) const { return slice(around_, around_start_, v); }
+
+  /// ∫ dV, m³ · the centre of volume c, m · ∫ (x − c)(x − c)ᵀ dV, m⁵.
+  double volume() const { return volume_; }
+  const Vec3& centroid() const { return centroid_; }
+  const Mat3& second_moment() const { return second_moment_; }
+  /// Radius of the ball about c that touches the nearest face, and of the one that holds all vertices, m.
+  double inner_radius() const { return inner_radius_; }
+  double outer_radius() const { return outer_radius_; }
+
+  /// The same hull with its centre of volume at the origin.
+  ConvexHull centred() const {
+    ConvexHull moved = *this;
+    for (Vec3& v : moved.vertices_) v -= centroid_;
+    moved.centroid_.setZero();
+    return moved;
+  }
+
+ private:
+  static std::span<const Index> slice(const std::vector<Index>& items, const std::vector<Index>& start, Index i) {
+    return std::span(items).subspan(std::size_t(start[i]), std::size_t(start[i + 1] - start[i]));
+  }
+  static double check_points(std::span<const Vec3> points);
+  void find_neighbours();
+  void find_moments();
+
+  std::vector<Vec3> vertices_, normals_;
+  std::vector<Index> face_start_, face_loop_, around_start_, around_;
+  double volume_ = 0, inner_radius_ = 0, outer_radius_ = 0;
+  Vec3 centroid_ = Vec3::Zero();
+  Mat3 second_moment_ = Mat3::Zero();
+};
+
+/// The longest edge of the cloud's box, m.
+inline double ConvexHull::check_points(std::span<const Vec3> points) {
+  DELASSUS_EXPECT(points.size() >= 4, "a convex hull needs at least 4 points, got " + std::to_string(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    DELASSUS_EXPECT(is_finite(points[i]), "convex hull point #" + std::to_string(i) + " is not finite");
+  Vec3 low = points[0], high = points[0];
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double extent = (high - low).maxCoeff();
+  DELASSUS_EXPECT(std::isfinite(extent) && extent > 0,
+                  "the points of a convex hull span " + inner::text(extent) + " m; give points that span a volume");
+  return extent;
+}
+
+inline void ConvexHull::find_neighbours() {
+  around_start_.assign(vertices_.size() + 1, 0);
+  for (const Index v : face_loop_) ++around_start_[v + 1];
+  for (std::size_t v = 0; v < vertices_.size(); ++v) around_start_[v + 1] += around_start_[v];
+  around_.resize(face_loop_.size());
+  std::vector<Index> next(around_start_.begin(), around_start_.end() - 1);
+  for (Index f = 0; f < face_count(); ++f)
+    for (const Index v : face(f)) around_[next[v]++] = f;
+}
+
+/// Sums tetrahedra from the mean vertex m to the triangles of each face: with edges a, b, c from m,
+/// V = det(a, b, c)/6, ∫ y = V (a + b + c)/4 and ∫ y yᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c, y = x − m.
+inline void ConvexHull::find_moments() {
+  Vec3 mean = Vec3::Zero(), first = Vec3::Zero();
+  for (const Vec3& v : vertices_) mean += v / double(vertices_.size());
+  Mat3 second = Mat3::Zero();
+  for (Index f = 0; f < face_count(); ++f) {
+    const std::span<const Index> loop = face(f);
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
+      const Vec3 a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean, c = vertices_[loop[k + 1]] - mean;
+      const Vec3 s = a + b + c;
+      const double volume = a.dot(b.cross(c)) / 6;
+      volume_ += volume;
+      first += volume / 4 * s;
+      second += volume / 20 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    }
+  }
+  const Vec3 shift = first / volume_;
+  centroid_ = mean + shift;
+  second_moment_ = second - volume_ * shift * shift.transpose();
+  for (const Vec3& v : vertices_) outer_radius_ = std::max(outer_radius_, (v - centroid_).norm());
+  inner_radius_ = outer_radius_;
+  for (Index f = 0; f < face_count(); ++f)
+    inner_radius_ = std::min(inner_radius_, normals_[f].dot(vertices_[face(f)[0]] - centroid_));
+}
+
+}  // namespace delassus

@@ -1,0 +1,99 @@
+/// The face, edge or vertex with which a shape meets a plane: what contact patches are cut from.
+#pragma once
+
+#include <delassus/geometry/support.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace delassus {
+
+/// Up to 16 corners in order around the face; 2 for an edge, 0 when the shape only offers a point. Body frame, m.
+/// `corner` names each corner: the same material point keeps its name in every face it belongs to.
+struct Face {
+  static constexpr int capacity = 16;
+  std::array<Vec3, capacity> point;
+  std::array<std::uint16_t, capacity> corner;
+  int count = 0;
+  Vec3 normal = Vec3::Zero();  ///< outward and unit when count ≥ 3, else zero
+
+  void add(const Vec3& p, int name) {
+    point[count] = p;
+    corner[count] = std::uint16_t(name);
+    ++count;
+  }
+};
+
+namespace inner {
+
+/// A lying cylinder or capsule meets a plane in a segment up to this slope (about 3°).
+inline constexpr double line_slope = 0.05;
+
+inline void box_face(const Shape& s, const Vec3& d, Face& face) {
+  int k = 0;
+  d.cwiseAbs().maxCoeff(&k);
+  const int i = (k + 1) % 3, j = (k + 2) % 3, side = d[k] < 0 ? -1 : 1;
+  face.normal = side * Vec3::Unit(k);
+  constexpr int signs[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  for (const auto& [u, v] : signs) {
+    Vec3 p;
+    p[k] = side * s.size[k];
+    p[i] = u * s.size[i];
+    p[j] = v * s.size[j];
+    face.add(p, (p[0] > 0) + 2 * (p[1] > 0) + 4 * (p[2] > 0));
+  }
+}
+
+/// A segment of the mantle, from the upper end (`name`) to the lower (`name` + 1).
+inline void mantle_line(double radius, double half, const Vec3& d, int name, Face& face) {
+  const double across = std::hypot(d[0], d[1]);
+  const double x = d[0] / across * radius, y = d[1] / across * radius;
+  face.add({x, y, half}, name);
+  face.add({x, y, -half}, name + 1);
+}
+
+/// The cap as an octagon turned with the body (corners 0–7 above, 8–15 below), or a line of the mantle (16, 17).
+inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
+  const double across = std::hypot(d[0], d[1]);
+  if (across > std::abs(d[2])) return mantle_line(s.size[0], s.size[1], d, 16, face);
+  const int side = d[2] < 0 ? -1 : 1;
+  face.normal = side * Vec3::UnitZ();
+  constexpr double c = 0.70710678118654752440;
+  constexpr double octagon[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
+  for (int k = 0; k < 8; ++k)
+    face.add({s.size[0] * octagon[k][0], s.size[0] * octagon[k][1], side * s.size[1]}, side > 0 ? k : 8 + k);
+}
+
+/// Among the faces around the support vertex the one most nearly normal to d; of more than 16 corners an even sample.
+inline void hull_face(const ConvexHull& h, const Vec3& d, Face& face) {
+  Index best = -1;
+  for (const Index f : h.faces_around(support_vertex(h, d)))
+    if (best < 0 || h.normal(f).dot(d) > h.normal(best).dot(d)) best = f;
+  if (best < 0) return;
+  const std::span<const Index> loop = h.face(best);
+  const std::size_t count = std::min(loop.size(), std::size_t(Face::capacity));
+  for (std::size_t k = 0; k < count; ++k) {
+    const Index v = loop[k * loop.size() / count];
+    face.add(h.vertices()[v], int(v & 0x7fff));
+  }
+  face.normal = h.normal(best);
+}
+
+}  // namespace inner
+
+/// The face that looks most along the unit vector `d`, body frame.
+inline Face face_towards(const Shape& s, const Vec3& d) {
+  Face face;
+  switch (s.kind) {
+    case ShapeKind::box: inner::box_face(s, d, face); break;
+    case ShapeKind::cylinder: inner::cylinder_face(s, d, face); break;
+    case ShapeKind::convex_hull: inner::hull_face(*s.hull, d, face); break;
+    case ShapeKind::capsule:
+      if (std::abs(d[2]) <= inner::line_slope) inner::mantle_line(s.size[0], s.size[1], d, 16, face);
+      break;
+    default: break;
+  }
+  return face;
+}
+
+}  // namespace delassus

@@ -1,0 +1,77 @@
+/// Mass, centre of mass and inertia of a solid of constant density.
+#pragma once
+
+#include <delassus/geometry/convex_hull.hpp>
+#include <delassus/geometry/shape.hpp>
+
+namespace delassus {
+
+/// kg · body frame, m · kg·m² about the centre, axes of the body frame.
+struct MassProperties {
+  double mass = 0;
+  Vec3 centre = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+};
+
+namespace inner {
+
+inline constexpr double pi = 3.14159265358979323846;
+
+inline MassProperties solid(double mass, double xx, double yy, double zz) {
+  return {.mass = mass, .inertia = Vec3(xx, yy, zz).asDiagonal()};
+}
+
+inline MassProperties unit_solid(const Sphere& s) {
+  const double r2 = s.radius * s.radius, m = 4.0 / 3 * pi * r2 * s.radius, i = 0.4 * m * r2;
+  return solid(m, i, i, i);
+}
+
+inline MassProperties unit_solid(const Box& b) {
+  const double m = b.x * b.y * b.z, x = b.x * b.x, y = b.y * b.y, z = b.z * b.z;
+  return solid(m, m / 12 * (y + z), m / 12 * (z + x), m / 12 * (x + y));
+}
+
+inline MassProperties unit_solid(const Cylinder& c) {
+  const double r2 = c.radius * c.radius, m = pi * r2 * c.height, across = m * (r2 / 4 + c.height * c.height / 12);
+  return solid(m, across, across, m * r2 / 2);
+}
+
+/// A cylinder and two half-balls of mass m₂/2, whose own centres lie 3r/8 beyond the ends of the segment.
+inline MassProperties unit_solid(const Capsule& c) {
+  const MassProperties rod = unit_solid(Cylinder{c.radius, c.height}), ball = unit_solid(Sphere{c.radius});
+  const double half = c.height / 2, cap = 3.0 / 8 * c.radius;
+  const double across = rod.inertia(0, 0) + ball.inertia(0, 0) + ball.mass * (half * half + 2 * half * cap);
+  return solid(rod.mass + ball.mass, across, across, rod.inertia(2, 2) + ball.inertia(2, 2));
+}
+
+/// I = tr(S) 1 − S with the second moment S.
+inline MassProperties unit_solid(const ConvexHull& h) {
+  const Mat3& s = h.second_moment();
+  return {.mass = h.volume(), .centre = h.centroid(), .inertia = s.trace() * Mat3::Identity() - s};
+}
+
+/// Of density 1 kg/m³.
+inline MassProperties unit_solid(const Shape& s) {
+  switch (s.kind) {
+    case ShapeKind::sphere: return unit_solid(Sphere{s.size[0]});
+    case ShapeKind::box: return unit_solid(Box{2 * s.size[0], 2 * s.size[1], 2 * s.size[2]});
+    case ShapeKind::capsule: return unit_solid(Capsule{s.size[0], 2 * s.size[1]});
+    case ShapeKind::cylinder: return unit_solid(Cylinder{s.size[0], 2 * s.size[1]});
+    case ShapeKind::convex_hull: return unit_solid(*s.hull);
+    default: return {};
+  }
+}
+
+}  // namespace inner
+
+/// Of `shape` filled with `density` (kg/m³). Pre: the shape has a volume.
+inline MassProperties mass_properties(const Shape& shape, double density) {
+  DELASSUS_EXPECT(shape.has_volume(), std::string("a ") + name(shape.kind) +
+                                          " has no finite volume; give mass and inertia instead of a density");
+  MassProperties result = inner::unit_solid(shape);
+  result.mass *= density;
+  result.inertia *= density;
+  return result;
+}
+
+}  // namespace delassus

@@ -1,0 +1,104 @@
+/// Coplanar triangles of a hull become one polygon, and the points that no edge needs are dropped.
+#pragma once
+
+#include <delassus/geometry/inner/quickhull.hpp>
+
+#include <cmath>
+#include <numeric>
+
+namespace delassus::inner {
+
+struct HullFaces {
+  std::vector<Vec3> vertices{}, normals{};
+  std::vector<Index> start{0}, loop{};
+};
+
+/// Grows a region from the largest triangle left, over neighbours whose corners lie within `tolerance` of its plane.
+/// Returns the region of each triangle.
+inline std::vector<Index> coplanar_regions(std::span<const Vec3> points, std::span<const HullTriangle> triangles,
+                                           double tolerance, Index& count) {
+  struct Edge {
+    Index u, v, triangle;
+    bool operator<(const Edge& o) const { return std::pair(u, v) < std::pair(o.u, o.v); }
+  };
+  std::vector<Edge> edges;
+  for (Index t = 0; t < Index(triangles.size()); ++t)
+    for (int k = 0; k < 3; ++k) edges.push_back({triangles[t].v[k], triangles[t].v[(k + 1) % 3], t});
+  std::sort(edges.begin(), edges.end());
+
+  std::vector<Index> seeds(triangles.size()), region(triangles.size(), -1), front;
+  std::iota(seeds.begin(), seeds.end(), 0);
+  std::stable_sort(seeds.begin(), seeds.end(), [&](Index s, Index t) { return triangles[s].area > triangles[t].area; });
+  count = 0;
+  for (const Index seed : seeds) {
+    if (region[seed] >= 0) continue;
+    const HullTriangle& plane = triangles[seed];
+    region[seed] = count;
+    front.assign(1, seed);
+    while (!front.empty()) {
+      const HullTriangle& t = triangles[front.back()];
+      front.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        const auto twin = std::lower_bound(edges.begin(), edges.end(), Edge{t.v[(k + 1) % 3], t.v[k], 0});
+        if (twin == edges.end() || twin->u != t.v[(k + 1) % 3] || twin->v != t.v[k]) continue;
+        if (region[twin->triangle] >= 0) continue;
+        bool is_coplanar = true;
+        for (const Index v : triangles[twin->triangle].v)
+          is_coplanar = is_coplanar && std::abs(plane.normal.dot(points[v]) - plane.offset) <= tolerance;
+        if (!is_coplanar) continue;
+        region[twin->triangle] = count;
+        front.push_back(twin->triangle);
+      }
+    }
+    ++count;
+  }
+  return region;
+}
+
+/// Appends one face: its corners sorted by their angle around their mean, seen against the normal.
+inline void append_face(std::span<const Vec3> points, std::vector<Index>& corners, const Vec3& normal,
+                        std::span<const Index> new_index, HullFaces& faces) {
+  Vec3 centre = Vec3::Zero();
+  for (const Index v : corners) centre += points[v] / double(corners.size());
+  const Vec3 x = (points[corners[0]] - centre).normalized(), y = normal.cross(x);
+  const auto angle = [&](Index v) { return std::atan2(y.dot(points[v] - centre), x.dot(points[v] - centre)); };
+  std::sort(corners.begin(), corners.end(), [&](Index u, Index v) { return angle(u) < angle(v); });
+  Vec3 newell = Vec3::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    newell += (points[corners[i]] - centre).cross(points[corners[(i + 1) % corners.size()]] - centre);
+  for (const Index v : corners) faces.loop.push_back(new_index[v]);
+  faces.start.push_back(Index(faces.loop.size()));
+  faces.normals.push_back(newell.normalized());
+}
+
+/// Polygons from triangles. A vertex stays when at least three faces meet in it.
+inline HullFaces merge_coplanar(std::span<const Vec3> points, std::span<const HullTriangle> triangles,
+                                double tolerance) {
+  Index count = 0;
+  const std::vector<Index> region = coplanar_regions(points, triangles, tolerance, count);
+  std::vector<std::vector<Index>> corners(count);
+  std::vector<Vec3> normals(count, Vec3::Zero());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    corners[region[t]].insert(corners[region[t]].end(), triangles[t].v.begin(), triangles[t].v.end());
+    normals[region[t]] += triangles[t].area * triangles[t].normal;
+  }
+  std::vector<Index> meets(points.size(), 0), new_index(points.size(), -1);
+  for (std::vector<Index>& face : corners) {
+    std::sort(face.begin(), face.end());
+    face.erase(std::unique(face.begin(), face.end()), face.end());
+    for (const Index v : face) ++meets[v];
+  }
+  HullFaces faces;
+  for (Index v = 0; v < Index(points.size()); ++v) {
+    if (meets[v] < 3) continue;
+    new_index[v] = Index(faces.vertices.size());
+    faces.vertices.push_back(points[v]);
+  }
+  for (Index f = 0; f < count; ++f) {
+    std::erase_if(corners[f], [&](Index v) { return meets[v] < 3; });
+    if (corners[f].size() >= 3) append_face(points, corners[f], normals[f].normalized(), new_index, faces);
+  }
+  return faces;
+}
+
+}  // namespace delassus::inner

@@ -1,0 +1,114 @@
+/// Quickhull: the triangles of a point cloud's convex hull, the farthest outside point first.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// Counter-clockwise from outside; the plane is normal · x = offset. `outside` are the points it still has to cover.
+struct HullTriangle {
+  std::array<Index, 3> v{};
+  Vec3 normal = Vec3::Zero();
+  double offset = 0, area = 0;
+  std::vector<Index> outside{};
+  Index farthest = -1;
+  double farthest_distance = 0;
+};
+
+inline HullTriangle hull_triangle(std::span<const Vec3> points, Index a, Index b, Index c) {
+  HullTriangle t{.v = {a, b, c}};
+  t.normal = (points[b] - points[a]).cross(points[c] - points[a]);
+  t.area = 0.5 * t.normal.norm();
+  if (t.area > 0) t.normal /= 2 * t.area;
+  t.offset = t.normal.dot(points[a] + points[b] + points[c]) / 3;
+  return t;
+}
+
+/// Gives point `p` to the triangle that sees it from farthest away, or to none when it lies inside all.
+inline void hand_out(std::span<const Vec3> points, Index p, double tolerance, std::span<HullTriangle> triangles) {
+  HullTriangle* best = nullptr;
+  double best_distance = tolerance;
+  for (HullTriangle& t : triangles) {
+    const double distance = t.normal.dot(points[p]) - t.offset;
+    if (distance > best_distance) best_distance = distance, best = &t;
+  }
+  if (!best) return;
+  best->outside.push_back(p);
+  if (best_distance > best->farthest_distance) best->farthest = p, best->farthest_distance = best_distance;
+}
+
+/// Four points that span the cloud well, in positive orientation. False when the cloud is thinner than `thin`.
+inline bool first_tetrahedron(std::span<const Vec3> points, double thin, std::array<Index, 4>& corner) {
+  const auto farthest = [&](const auto& measure) {
+    Index best = 0;
+    for (Index i = 1; i < Index(points.size()); ++i)
+      if (measure(points[i]) > measure(points[best])) best = i;
+    return best;
+  };
+  const Index a = farthest([](const Vec3& p) { return -p[0]; });
+  const Index b = farthest([&](const Vec3& p) { return (p - points[a]).squaredNorm(); });
+  const Vec3 along = (points[b] - points[a]).normalized();
+  const Index c = farthest([&](const Vec3& p) { return (p - points[a]).cross(along).squaredNorm(); });
+  if ((points[c] - points[a]).cross(along).norm() <= thin) return false;
+  const Vec3 across = along.cross(points[c] - points[a]).normalized();
+  const Index d = farthest([&](const Vec3& p) { return std::abs((p - points[a]).dot(across)); });
+  const double height = (points[d] - points[a]).dot(across);
+  corner = height < 0 ? std::array<Index, 4>{a, b, c, d} : std::array<Index, 4>{a, c, b, d};
+  return std::abs(height) > thin;
+}
+
+/// Replaces the triangles that see `p` by a fan from `p` to their horizon.
+inline void add_hull_point(std::span<const Vec3> points, Index p, double tolerance,
+                           std::vector<HullTriangle>& triangles) {
+  std::vector<std::pair<Index, Index>> edges;
+  std::vector<Index> orphans;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    HullTriangle& t = triangles[i];
+    if (t.normal.dot(points[p]) - t.offset <= tolerance) {
+      if (kept != i) triangles[kept] = std::move(t);
+      ++kept;
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) edges.emplace_back(t.v[k], t.v[(k + 1) % 3]);
+    orphans.insert(orphans.end(), t.outside.begin(), t.outside.end());
+  }
+  triangles.resize(kept);
+  std::sort(edges.begin(), edges.end());
+  std::sort(orphans.begin(), orphans.end());
+  for (const auto& [u, v] : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), std::pair(v, u)))
+      triangles.push_back(hull_triangle(points, u, v, p));
+  const std::span<HullTriangle> fan(triangles.data() + kept, triangles.size() - kept);
+  for (const Index q : orphans)
+    if (q != p) hand_out(points, q, tolerance, fan);
+}
+
+/// The hull of `points` as triangles. False when the cloud is thinner than 1e-6 of its `extent`.
+/// A point counts as outside a plane from 1e-12 of the extent on. Source of the method: [BarberDobkinHuhdanpaa1996].
+inline bool quickhull(std::span<const Vec3> points, double extent, std::vector<HullTriangle>& triangles) {
+  std::array<Index, 4> c{};
+  if (!first_tetrahedron(points, 1e-6 * extent, c)) return false;
+  const double tolerance = 1e-12 * extent;
+  triangles = {hull_triangle(points, c[0], c[1], c[2]), hull_triangle(points, c[0], c[3], c[1]),
+               hull_triangle(points, c[1], c[3], c[2]), hull_triangle(points, c[2], c[3], c[0])};
+  for (Index p = 0; p < Index(points.size()); ++p)
+    if (std::find(c.begin(), c.end(), p) == c.end()) hand_out(points, p, tolerance, triangles);
+  for (;;) {
+    const auto far = std::max_element(triangles.begin(), triangles.end(), [](const auto& s, const auto& t) {
+      return s.farthest_distance < t.farthest_distance;
+    });
+    if (far->farthest < 0) return true;
+    add_hull_point(points, far->farthest, tolerance, triangles);
+  }
+}
+
+}  // namespace delassus::inner

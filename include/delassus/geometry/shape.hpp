@@ -1,0 +1,99 @@
+/// The shapes a body can have: six kinds, in one plain tagged struct.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace delassus {
+
+class ConvexHull;
+
+/// Ball around the origin of the body. m.
+struct Sphere {
+  double radius = 0;
+};
+
+/// Box around the origin, its edges along the axes. `x`, `y`, `z` are full edge lengths, m.
+struct Box {
+  double x = 0, y = 0, z = 0;
+};
+
+/// All points within `radius` of a segment of length `height` along z, its middle at the origin. m.
+struct Capsule {
+  double radius = 0, height = 0;
+};
+
+/// Solid cylinder along z, its middle at the origin. `height` is the full height, m.
+struct Cylinder {
+  double radius = 0, height = 0;
+};
+
+/// Everything on one side of a plane, in the body's frame: the solid is normal · x ≤ offset.
+/// `normal` points out of the solid and need not be given as a unit vector; `offset` is in m along the unit normal.
+struct HalfSpace {
+  Vec3 normal = Vec3::UnitZ();
+  double offset = 0;
+};
+
+enum class ShapeKind : std::uint8_t { none, sphere, box, capsule, cylinder, half_space, convex_hull };
+
+/// Any of the shapes above, or none. Trivially copyable. `size` holds half lengths:
+/// sphere (r) · box (x/2, y/2, z/2) · capsule and cylinder (r, height/2) · half-space (unit normal, offset).
+/// A hull is pointed at, not owned: it must outlive the shape. Sets of bodies copy it when a body is added.
+struct Shape {
+  ShapeKind kind = ShapeKind::none;
+  std::array<double, 4> size{};
+  const ConvexHull* hull = nullptr;
+
+  constexpr Shape() = default;
+  constexpr Shape(const Sphere& s) : kind(ShapeKind::sphere), size{s.radius} {}
+  constexpr Shape(const Box& b) : kind(ShapeKind::box), size{0.5 * b.x, 0.5 * b.y, 0.5 * b.z} {}
+  constexpr Shape(const Capsule& c) : kind(ShapeKind::capsule), size{c.radius, 0.5 * c.height} {}
+  constexpr Shape(const Cylinder& c) : kind(ShapeKind::cylinder), size{c.radius, 0.5 * c.height} {}
+  Shape(const HalfSpace& h) : kind(ShapeKind::half_space) {
+    const Vec3 n = h.normal.stableNormalized();
+    size = {n[0], n[1], n[2], h.offset};
+  }
+  constexpr Shape(const ConvexHull& h) : kind(ShapeKind::convex_hull), hull(&h) {}
+
+  constexpr bool has_volume() const { return kind != ShapeKind::none && kind != ShapeKind::half_space; }
+};
+
+namespace inner {
+
+inline void check_length(double value, const char* what, const std::string& where) {
+  DELASSUS_EXPECT(std::isfinite(value) && value > 0,
+                  where + ": " + what + " " + text(value) + " m must be finite and > 0");
+}
+
+}  // namespace inner
+
+constexpr const char* name(ShapeKind kind) {
+  constexpr const char* names[] = {"no shape", "sphere", "box", "capsule", "cylinder", "half-space", "convex hull"};
+  return names[int(kind)];
+}
+
+/// Refuses a shape that cannot exist, in a sentence that begins with `where`. A hull was checked when it was made.
+inline void check(const Shape& s, const std::string& where) {
+  using enum ShapeKind;
+  if (s.kind == sphere || s.kind == capsule || s.kind == cylinder)
+    inner::check_length(s.size[0], (std::string(name(s.kind)) + " radius").c_str(), where);
+  if (s.kind == capsule || s.kind == cylinder)
+    inner::check_length(2 * s.size[1], (std::string(name(s.kind)) + " height").c_str(), where);
+  if (s.kind == box)
+    for (int i = 0; i < 3; ++i)
+      inner::check_length(2 * s.size[i], (std::string("box edge ") + "xyz"[i]).c_str(), where);
+  if (s.kind == half_space) {
+    const Vec3 n(s.size[0], s.size[1], s.size[2]);
+    DELASSUS_EXPECT(is_finite(n) && n.squaredNorm() > 0.5,
+                    where + ": half-space normal is zero or not finite; it must point out of the solid");
+    DELASSUS_EXPECT(std::isfinite(s.size[3]), where + ": half-space offset " + inner::text(s.size[3]) + " m is not finite");
+  }
+  if (s.kind == convex_hull) DELASSUS_EXPECT(s.hull != nullptr, where + ": convex hull is missing; pass a ConvexHull");
+}
+
+}  // namespace delassus
