@@ -1,0 +1,25 @@
+// Ten boxes, stacked with gaps of a millimetre, come to rest on each other.
+// prints: top at 9\.[45]
+#include <delassus/delassus.hpp>
+
+#include <cstdio>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}},
+                     Constraints{Contact{Coulomb{.friction = 0.6}}},
+                     AcceleratedGaussSeidel{.tolerance = 1e-6}};
+
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  rigid.add_fixed(HalfSpace{});
+  RigidBodies::Handle top;
+  for (int i = 0; i < 10; ++i)
+    top = rigid.add({.position = {0, 0, 0.501 + 1.001 * i}, .mass = 1.0, .shape = Box{1, 1, 1}});
+
+  for (int i = 0; i < 200; ++i) {
+    const StepReport report = loop.step(5e-3);
+    if (i % 50 == 0) std::printf("%s, %d sweeps, %d contacts\n", name(report.status), report.sweeps, report.contacts);
+  }
+  std::printf("top at %.4f m\n", rigid.position(top).z());
+}
