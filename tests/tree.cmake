@@ -33,6 +33,10 @@ set(scripts ${PROJECT_SOURCE_DIR}/scripts)
 delassus_tree_test(tree/includes ${Python3_EXECUTABLE} ${scripts}/check_includes.py ${PROJECT_SOURCE_DIR})
 delassus_tree_test(tree/includes_self_test ${Python3_EXECUTABLE} ${scripts}/check_includes.py --self-test)
 
+# --- the pages: programs shown are the examples, links lead somewhere -----------------------------------------------
+delassus_tree_test(tree/docs ${Python3_EXECUTABLE} ${scripts}/check_docs.py ${PROJECT_SOURCE_DIR})
+delassus_tree_test(tree/docs_self_test ${Python3_EXECUTABLE} ${scripts}/check_docs.py --self-test)
+
 # --- every header by itself -----------------------------------------------------------------------------------------
 delassus_tree_test(tree/headers_alone ${Python3_EXECUTABLE} ${scripts}/check_headers.py ${PROJECT_SOURCE_DIR}
   --cache ${PROJECT_BINARY_DIR}/headers_alone --compiler ${compilers} --system ${include_dirs} --absent ${absent})

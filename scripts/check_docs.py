@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Checks the pages: programs shown in them are the examples, letter by letter, and links to files lead somewhere.
+
+    scripts/check_docs.py [ROOT]         one line per mistake, exit code 1 if there is one
+    scripts/check_docs.py --write        copies the examples into the pages that show them
+    scripts/check_docs.py --self-test    makes each mistake once and expects to be told
+
+A page shows an example by a code block after the line `<!-- from examples/x.cpp -->`. The example's leading comments
+speak to its tests and are left out.
+"""
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+SHOWN = re.compile(r"(<!-- from (\S+) -->\n```cpp\n)(.*?)(```)", re.DOTALL)
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+
+
+def pages(root):
+    yield from sorted(root.glob("*.md"))
+    yield from sorted((root / "docs").rglob("*.md"))
+
+
+def program(path):
+    """The text of an example, from its first line that is no comment."""
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    while lines and (lines[0].startswith("//") or not lines[0].strip()):
+        lines.pop(0)
+    return "".join(lines)
+
+
+def complaints(root):
+    for page in pages(root):
+        name, text = page.relative_to(root), page.read_text(encoding="utf-8")
+        for _, source, shown, _ in SHOWN.findall(text):
+            if not (root / source).exists():
+                yield f"{name}: shows {source}, which does not exist"
+            elif shown != program(root / source):
+                yield f"{name}: what it shows of {source} is not that program; scripts/check_docs.py --write copies it"
+        for target in LINK.findall(CODE.sub("", text)):
+            if "://" not in target and not target.startswith("mailto:") and not (page.parent / target).exists():
+                yield f"{name}: the link to {target} leads nowhere"
+
+
+def write(root):
+    for page in pages(root):
+        text = page.read_text(encoding="utf-8")
+        new = SHOWN.sub(lambda m: m[1] + program(root / m[2]) + m[4], text)
+        if new != text:
+            page.write_text(new, encoding="utf-8")
+            print(f"{page.relative_to(root)}: brought up to date")
+
+
+def self_test():
+    example = "// prints: x\nint main() {}\n"
+    cases = [
+        ("<!-- from examples/a.cpp -->\n```cpp\nint main() {}\n```\n[a](examples/a.cpp) [b](https://x.y)\n", None),
+        ("<!-- from examples/a.cpp -->\n```cpp\nint main(){}\n```\n", "is not that program"),
+        ("<!-- from examples/b.cpp -->\n```cpp\nint main() {}\n```\n", "does not exist"),
+        ("[a](docs/gone.md)\n", "leads nowhere"),
+    ]
+    failures = 0
+    for text, word in cases:
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "examples").mkdir()
+            (root / "examples/a.cpp").write_text(example)
+            (root / "README.md").write_text(text)
+            told = list(complaints(root))
+        if bool(told) != (word is not None) or (word and word not in told[0]):
+            failures += 1
+            print(f"expected {word!r}, told {told}")
+    print(f"check_docs: {len(cases)} self-tests, {failures} failed")
+    return failures
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return 1 if self_test() else 0
+    here = Path(__file__).resolve().parent.parent
+    if sys.argv[1:] == ["--write"]:
+        write(here)
+    root = Path(sys.argv[1]) if sys.argv[1:] and sys.argv[1] != "--write" else here
+    found = list(complaints(root))
+    for sentence in found:
+        print(sentence)
+    print(f"check_docs: {len(list(pages(root)))} pages, {len(found)} mistakes")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
