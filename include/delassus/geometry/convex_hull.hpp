@@ -14,17 +14,18 @@
 
 namespace delassus {
 
-/// A convex polytope in its own frame, m. Faces are polygons, counter-clockwise seen from outside: coplanar triangles
-/// are merged, and points inside the hull, on a face or on an edge are dropped.
+/// A convex polytope in its own frame, m. Faces are polygons, counter-clockwise seen from outside: coplanar
+/// triangles are merged, and points inside the hull, on a face or on an edge are dropped.
 class ConvexHull {
  public:
   /// Pre: at least four finite points that do not lie in one plane (thickness > 1e-6 of the extent).
   explicit ConvexHull(std::span<const Vec3> points) {
     const double extent = check_points(points);
     std::vector<inner::HullTriangle> triangles;
-    DELASSUS_EXPECT(inner::quickhull(points, extent, triangles),
-                    "the points of a convex hull lie in one plane or on one line (thickness <= 1e-6 of the extent " +
-                        inner::text(extent) + " m); give points that span a volume, or use a thin Box");
+    DELASSUS_EXPECT(
+        inner::quickhull(points, extent, triangles),
+        "the points of a convex hull lie in one plane or on one line (thickness <= 1e-6 of the extent " +
+            inner::text(extent) + " m); give points that span a volume, or use a thin Box");
     const inner::HullFaces merged = inner::merge_coplanar(points, triangles, 1e-7 * extent);
     vertices_ = merged.vertices;
     normals_ = merged.normals;
@@ -59,7 +60,8 @@ class ConvexHull {
   }
 
  private:
-  static std::span<const Index> slice(const std::vector<Index>& items, const std::vector<Index>& start, Index i) {
+  static std::span<const Index> slice(const std::vector<Index>& items, const std::vector<Index>& start,
+                                      Index i) {
     return std::span(items).subspan(std::size_t(start[i]), std::size_t(start[i + 1] - start[i]));
   }
   static double check_points(std::span<const Vec3> points);
@@ -75,7 +77,8 @@ class ConvexHull {
 
 /// The longest edge of the cloud's box, m.
 inline double ConvexHull::check_points(std::span<const Vec3> points) {
-  DELASSUS_EXPECT(points.size() >= 4, "a convex hull needs at least 4 points, got " + std::to_string(points.size()));
+  DELASSUS_EXPECT(points.size() >= 4,
+                  "a convex hull needs at least 4 points, got " + std::to_string(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     DELASSUS_EXPECT(is_finite(points[i]), "convex hull point #" + std::to_string(i) + " is not finite");
   Vec3 low = points[0], high = points[0];
@@ -84,8 +87,9 @@ inline double ConvexHull::check_points(std::span<const Vec3> points) {
     high = high.cwiseMax(p);
   }
   const double extent = (high - low).maxCoeff();
-  DELASSUS_EXPECT(std::isfinite(extent) && extent > 0,
-                  "the points of a convex hull span " + inner::text(extent) + " m; give points that span a volume");
+  DELASSUS_EXPECT(
+      std::isfinite(extent) && extent > 0,
+      "the points of a convex hull span " + inner::text(extent) + " m; give points that span a volume");
   return extent;
 }
 
@@ -100,7 +104,8 @@ inline void ConvexHull::find_neighbours() {
 }
 
 /// Sums tetrahedra from the mean vertex m to the triangles of each face: with edges a, b, c from m,
-/// V = det(a, b, c)/6, ∫ y = V (a + b + c)/4 and ∫ y yᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c, y = x − m.
+/// V = det(a, b, c)/6, ∫ y = V (a + b + c)/4 and ∫ y yᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c, y
+/// = x − m.
 inline void ConvexHull::find_moments() {
   Vec3 mean = Vec3::Zero(), first = Vec3::Zero();
   for (const Vec3& v : vertices_) mean += v / double(vertices_.size());
@@ -108,7 +113,8 @@ inline void ConvexHull::find_moments() {
   for (Index f = 0; f < face_count(); ++f) {
     const std::span<const Index> loop = face(f);
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      const Vec3 a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean, c = vertices_[loop[k + 1]] - mean;
+      const Vec3 a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean,
+                 c = vertices_[loop[k + 1]] - mean;
       const Vec3 s = a + b + c;
       const double volume = a.dot(b.cross(c)) / 6;
       volume_ += volume;

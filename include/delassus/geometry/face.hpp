@@ -8,8 +8,8 @@
 
 namespace delassus {
 
-/// Up to 16 corners in order around the face; 2 for an edge, 0 when the shape only offers a point. Body frame, m.
-/// `corner` names each corner: the same material point keeps its name in every face it belongs to.
+/// Up to 16 corners in order around the face; 2 for an edge, 0 when the shape only offers a point. Body
+/// frame, m. `corner` names each corner: the same material point keeps its name in every face it belongs to.
 struct Face {
   static constexpr int capacity = 16;
   std::array<Vec3, capacity> point;
@@ -52,7 +52,8 @@ inline void mantle_line(double radius, double half, const Vec3& d, int name, Fac
   face.add({x, y, -half}, name + 1);
 }
 
-/// The cap as an octagon turned with the body (corners 0–7 above, 8–15 below), or a line of the mantle (16, 17).
+/// The cap as an octagon turned with the body (corners 0–7 above, 8–15 below), or a line of the mantle (16,
+/// 17).
 inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
   const double across = std::hypot(d[0], d[1]);
   if (across > std::abs(d[2])) return mantle_line(s.size[0], s.size[1], d, 16, face);
@@ -64,7 +65,8 @@ inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
     face.add({s.size[0] * octagon[k][0], s.size[0] * octagon[k][1], side * s.size[1]}, side > 0 ? k : 8 + k);
 }
 
-/// Among the faces around the support vertex the one most nearly normal to d; of more than 16 corners an even sample.
+/// Among the faces around the support vertex the one most nearly normal to d; of more than 16 corners an even
+/// sample.
 inline void hull_face(const ConvexHull& h, const Vec3& d, Face& face) {
   Index best = -1;
   for (const Index f : h.faces_around(support_vertex(h, d)))
@@ -85,13 +87,20 @@ inline void hull_face(const ConvexHull& h, const Vec3& d, Face& face) {
 inline Face face_towards(const Shape& s, const Vec3& d) {
   Face face;
   switch (s.kind) {
-    case ShapeKind::box: inner::box_face(s, d, face); break;
-    case ShapeKind::cylinder: inner::cylinder_face(s, d, face); break;
-    case ShapeKind::convex_hull: inner::hull_face(*s.hull, d, face); break;
+    case ShapeKind::box:
+      inner::box_face(s, d, face);
+      break;
+    case ShapeKind::cylinder:
+      inner::cylinder_face(s, d, face);
+      break;
+    case ShapeKind::convex_hull:
+      inner::hull_face(*s.hull, d, face);
+      break;
     case ShapeKind::capsule:
       if (std::abs(d[2]) <= inner::line_slope) inner::mantle_line(s.size[0], s.size[1], d, 16, face);
       break;
-    default: break;
+    default:
+      break;
   }
   return face;
 }

@@ -32,7 +32,8 @@ inline MassProperties unit_solid(const Box& b) {
 }
 
 inline MassProperties unit_solid(const Cylinder& c) {
-  const double r2 = c.radius * c.radius, m = pi * r2 * c.height, across = m * (r2 / 4 + c.height * c.height / 12);
+  const double r2 = c.radius * c.radius, m = pi * r2 * c.height,
+               across = m * (r2 / 4 + c.height * c.height / 12);
   return solid(m, across, across, m * r2 / 2);
 }
 
@@ -53,12 +54,18 @@ inline MassProperties unit_solid(const ConvexHull& h) {
 /// Of density 1 kg/m³.
 inline MassProperties unit_solid(const Shape& s) {
   switch (s.kind) {
-    case ShapeKind::sphere: return unit_solid(Sphere{s.size[0]});
-    case ShapeKind::box: return unit_solid(Box{2 * s.size[0], 2 * s.size[1], 2 * s.size[2]});
-    case ShapeKind::capsule: return unit_solid(Capsule{s.size[0], 2 * s.size[1]});
-    case ShapeKind::cylinder: return unit_solid(Cylinder{s.size[0], 2 * s.size[1]});
-    case ShapeKind::convex_hull: return unit_solid(*s.hull);
-    default: return {};
+    case ShapeKind::sphere:
+      return unit_solid(Sphere{s.size[0]});
+    case ShapeKind::box:
+      return unit_solid(Box{2 * s.size[0], 2 * s.size[1], 2 * s.size[2]});
+    case ShapeKind::capsule:
+      return unit_solid(Capsule{s.size[0], 2 * s.size[1]});
+    case ShapeKind::cylinder:
+      return unit_solid(Cylinder{s.size[0], 2 * s.size[1]});
+    case ShapeKind::convex_hull:
+      return unit_solid(*s.hull);
+    default:
+      return {};
   }
 }
 
@@ -66,8 +73,9 @@ inline MassProperties unit_solid(const Shape& s) {
 
 /// Of `shape` filled with `density` (kg/m³). Pre: the shape has a volume.
 inline MassProperties mass_properties(const Shape& shape, double density) {
-  DELASSUS_EXPECT(shape.has_volume(), std::string("a ") + name(shape.kind) +
-                                          " has no finite volume; give mass and inertia instead of a density");
+  DELASSUS_EXPECT(shape.has_volume(),
+                  std::string("a ") + name(shape.kind) +
+                      " has no finite volume; give mass and inertia instead of a density");
   MassProperties result = inner::unit_solid(shape);
   result.mass *= density;
   result.inertia *= density;

@@ -33,7 +33,8 @@ struct Cylinder {
 };
 
 /// Everything on one side of a plane, in the body's frame: the solid is normal · x ≤ offset.
-/// `normal` points out of the solid and need not be given as a unit vector; `offset` is in m along the unit normal.
+/// `normal` points out of the solid and need not be given as a unit vector; `offset` is in m along the unit
+/// normal.
 struct HalfSpace {
   Vec3 normal = Vec3::UnitZ();
   double offset = 0;
@@ -73,11 +74,13 @@ inline void check_length(double value, const char* what, const std::string& wher
 }  // namespace inner
 
 constexpr const char* name(ShapeKind kind) {
-  constexpr const char* names[] = {"no shape", "sphere", "box", "capsule", "cylinder", "half-space", "convex hull"};
+  constexpr const char* names[] = {"no shape", "sphere",     "box",        "capsule",
+                                   "cylinder", "half-space", "convex hull"};
   return names[int(kind)];
 }
 
-/// Refuses a shape that cannot exist, in a sentence that begins with `where`. A hull was checked when it was made.
+/// Refuses a shape that cannot exist, in a sentence that begins with `where`. A hull was checked when it was
+/// made.
 inline void check(const Shape& s, const std::string& where) {
   using enum ShapeKind;
   if (s.kind == sphere || s.kind == capsule || s.kind == cylinder)
@@ -91,9 +94,11 @@ inline void check(const Shape& s, const std::string& where) {
     const Vec3 n(s.size[0], s.size[1], s.size[2]);
     DELASSUS_EXPECT(is_finite(n) && n.squaredNorm() > 0.5,
                     where + ": half-space normal is zero or not finite; it must point out of the solid");
-    DELASSUS_EXPECT(std::isfinite(s.size[3]), where + ": half-space offset " + inner::text(s.size[3]) + " m is not finite");
+    DELASSUS_EXPECT(std::isfinite(s.size[3]),
+                    where + ": half-space offset " + inner::text(s.size[3]) + " m is not finite");
   }
-  if (s.kind == convex_hull) DELASSUS_EXPECT(s.hull != nullptr, where + ": convex hull is missing; pass a ConvexHull");
+  if (s.kind == convex_hull)
+    DELASSUS_EXPECT(s.hull != nullptr, where + ": convex hull is missing; pass a ConvexHull");
 }
 
 }  // namespace delassus

@@ -17,8 +17,10 @@ using Aabb = Eigen::AlignedBox3d;
 /// A convex body, as distances and penetrations see it: a core, and all points within a radius of the core.
 template <class S>
 concept ConvexSupport = requires(const S& s, const Vec3& direction) {
-  { core_support(s, direction) } -> std::same_as<Vec3>;   // argmax of direction · x over the core, body frame, m
-  { core_radius(s) } -> std::convertible_to<double>;      // what the core is thickened by, m
+  {
+    core_support(s, direction)
+    } -> std::same_as<Vec3>;                          // argmax of direction · x over the core, body frame, m
+  { core_radius(s) } -> std::convertible_to<double>;  // what the core is thickened by, m
 };
 
 namespace inner {
@@ -47,12 +49,17 @@ inline Index support_vertex(const ConvexHull& h, const Vec3& d) {
 /// Spheres and capsules have a point and a segment as their cores; every other shape is its own core.
 inline Vec3 core_support(const Shape& s, const Vec3& d) {
   switch (s.kind) {
-    case ShapeKind::capsule: return {0, 0, inner::with_sign(s.size[1], d[2])};
+    case ShapeKind::capsule:
+      return {0, 0, inner::with_sign(s.size[1], d[2])};
     case ShapeKind::box:
-      return {inner::with_sign(s.size[0], d[0]), inner::with_sign(s.size[1], d[1]), inner::with_sign(s.size[2], d[2])};
-    case ShapeKind::cylinder: return inner::cylinder_support(s.size[0], s.size[1], d);
-    case ShapeKind::convex_hull: return s.hull->vertices()[inner::support_vertex(*s.hull, d)];
-    default: return Vec3::Zero();
+      return {inner::with_sign(s.size[0], d[0]), inner::with_sign(s.size[1], d[1]),
+              inner::with_sign(s.size[2], d[2])};
+    case ShapeKind::cylinder:
+      return inner::cylinder_support(s.size[0], s.size[1], d);
+    case ShapeKind::convex_hull:
+      return s.hull->vertices()[inner::support_vertex(*s.hull, d)];
+    default:
+      return Vec3::Zero();
   }
 }
 
@@ -61,7 +68,8 @@ inline double core_radius(const Shape& s) {
 }
 static_assert(ConvexSupport<Shape>);
 
-/// The point of the body farthest along the unit vector `n`, body frame. Not for half-spaces, which have none.
+/// The point of the body farthest along the unit vector `n`, body frame. Not for half-spaces, which have
+/// none.
 template <ConvexSupport S>
 Vec3 support(const S& s, const Vec3& n) {
   return core_support(s, n) + core_radius(s) * n;
@@ -70,35 +78,49 @@ Vec3 support(const S& s, const Vec3& n) {
 /// The farthest any point of the shape is from the origin of its frame, m; 0 for a half-space.
 inline double outer_radius(const Shape& s) {
   switch (s.kind) {
-    case ShapeKind::sphere: return s.size[0];
-    case ShapeKind::box: return Vec3(s.size[0], s.size[1], s.size[2]).norm();
-    case ShapeKind::capsule: return s.size[0] + s.size[1];
-    case ShapeKind::cylinder: return std::hypot(s.size[0], s.size[1]);
-    case ShapeKind::convex_hull: return s.hull->centroid().norm() + s.hull->outer_radius();
-    default: return 0;
+    case ShapeKind::sphere:
+      return s.size[0];
+    case ShapeKind::box:
+      return Vec3(s.size[0], s.size[1], s.size[2]).norm();
+    case ShapeKind::capsule:
+      return s.size[0] + s.size[1];
+    case ShapeKind::cylinder:
+      return std::hypot(s.size[0], s.size[1]);
+    case ShapeKind::convex_hull:
+      return s.hull->centroid().norm() + s.hull->outer_radius();
+    default:
+      return 0;
   }
 }
 
 /// The size L of a shape, m, to which tolerances and margins are relative: its largest half extent.
 inline double length_scale(const Shape& s) {
   switch (s.kind) {
-    case ShapeKind::box: return std::max({s.size[0], s.size[1], s.size[2]});
-    case ShapeKind::cylinder: return std::max(s.size[0], s.size[1]);
-    case ShapeKind::convex_hull: return s.hull->outer_radius();
-    default: return outer_radius(s);
+    case ShapeKind::box:
+      return std::max({s.size[0], s.size[1], s.size[2]});
+    case ShapeKind::cylinder:
+      return std::max(s.size[0], s.size[1]);
+    case ShapeKind::convex_hull:
+      return s.hull->outer_radius();
+    default:
+      return outer_radius(s);
   }
 }
 
 /// A point well inside the shape, body frame.
-inline Vec3 middle(const Shape& s) { return s.kind == ShapeKind::convex_hull ? s.hull->centroid() : Vec3::Zero(); }
+inline Vec3 middle(const Shape& s) {
+  return s.kind == ShapeKind::convex_hull ? s.hull->centroid() : Vec3::Zero();
+}
 
-/// The smallest box with axes of the world around a posed shape, m. Infinite for a half-space, empty for no shape.
+/// The smallest box with axes of the world around a posed shape, m. Infinite for a half-space, empty for no
+/// shape.
 inline Aabb tight_box(const Shape& s, const Pose& pose) {
   const Mat3& R = pose.rotation;
   const Vec3& x = pose.position;
   Vec3 reach;
   switch (s.kind) {
-    case ShapeKind::none: return Aabb();
+    case ShapeKind::none:
+      return Aabb();
     case ShapeKind::half_space: {
       reach.setConstant(std::numeric_limits<double>::infinity());
       return Aabb(-reach, reach);
@@ -108,9 +130,15 @@ inline Aabb tight_box(const Shape& s, const Pose& pose) {
       for (const Vec3& v : s.hull->vertices()) box.extend(R * v);
       return Aabb(box.min() + x, box.max() + x);
     }
-    case ShapeKind::sphere: reach.setConstant(s.size[0]); break;
-    case ShapeKind::box: reach = R.cwiseAbs() * Vec3(s.size[0], s.size[1], s.size[2]); break;
-    case ShapeKind::capsule: reach = R.col(2).cwiseAbs() * s.size[1] + Vec3::Constant(s.size[0]); break;
+    case ShapeKind::sphere:
+      reach.setConstant(s.size[0]);
+      break;
+    case ShapeKind::box:
+      reach = R.cwiseAbs() * Vec3(s.size[0], s.size[1], s.size[2]);
+      break;
+    case ShapeKind::capsule:
+      reach = R.col(2).cwiseAbs() * s.size[1] + Vec3::Constant(s.size[0]);
+      break;
     case ShapeKind::cylinder:
       reach = R.col(2).cwiseAbs() * s.size[1] +
               s.size[0] * (1 - R.col(2).array().square()).max(0).sqrt().matrix();

@@ -13,10 +13,11 @@ struct HullFaces {
   std::vector<Index> start{0}, loop{};
 };
 
-/// Grows a region from the largest triangle left, over neighbours whose corners lie within `tolerance` of its plane.
-/// Returns the region of each triangle.
-inline std::vector<Index> coplanar_regions(std::span<const Vec3> points, std::span<const HullTriangle> triangles,
-                                           double tolerance, Index& count) {
+/// Grows a region from the largest triangle left, over neighbours whose corners lie within `tolerance` of its
+/// plane. Returns the region of each triangle.
+inline std::vector<Index> coplanar_regions(std::span<const Vec3> points,
+                                           std::span<const HullTriangle> triangles, double tolerance,
+                                           Index& count) {
   struct Edge {
     Index u, v, triangle;
     bool operator<(const Edge& o) const { return std::pair(u, v) < std::pair(o.u, o.v); }
@@ -28,7 +29,8 @@ inline std::vector<Index> coplanar_regions(std::span<const Vec3> points, std::sp
 
   std::vector<Index> seeds(triangles.size()), region(triangles.size(), -1), front;
   std::iota(seeds.begin(), seeds.end(), 0);
-  std::stable_sort(seeds.begin(), seeds.end(), [&](Index s, Index t) { return triangles[s].area > triangles[t].area; });
+  std::stable_sort(seeds.begin(), seeds.end(),
+                   [&](Index s, Index t) { return triangles[s].area > triangles[t].area; });
   count = 0;
   for (const Index seed : seeds) {
     if (region[seed] >= 0) continue;
@@ -61,7 +63,9 @@ inline void append_face(std::span<const Vec3> points, std::vector<Index>& corner
   Vec3 centre = Vec3::Zero();
   for (const Index v : corners) centre += points[v] / double(corners.size());
   const Vec3 x = (points[corners[0]] - centre).normalized(), y = normal.cross(x);
-  const auto angle = [&](Index v) { return std::atan2(y.dot(points[v] - centre), x.dot(points[v] - centre)); };
+  const auto angle = [&](Index v) {
+    return std::atan2(y.dot(points[v] - centre), x.dot(points[v] - centre));
+  };
   std::sort(corners.begin(), corners.end(), [&](Index u, Index v) { return angle(u) < angle(v); });
   Vec3 newell = Vec3::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i)

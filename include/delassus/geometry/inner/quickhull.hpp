@@ -13,7 +13,8 @@
 
 namespace delassus::inner {
 
-/// Counter-clockwise from outside; the plane is normal · x = offset. `outside` are the points it still has to cover.
+/// Counter-clockwise from outside; the plane is normal · x = offset. `outside` are the points it still has to
+/// cover.
 struct HullTriangle {
   std::array<Index, 3> v{};
   Vec3 normal = Vec3::Zero();
@@ -33,7 +34,8 @@ inline HullTriangle hull_triangle(std::span<const Vec3> points, Index a, Index b
 }
 
 /// Gives point `p` to the triangle that sees it from farthest away, or to none when it lies inside all.
-inline void hand_out(std::span<const Vec3> points, Index p, double tolerance, std::span<HullTriangle> triangles) {
+inline void hand_out(std::span<const Vec3> points, Index p, double tolerance,
+                     std::span<HullTriangle> triangles) {
   HullTriangle* best = nullptr;
   double best_distance = tolerance;
   for (HullTriangle& t : triangles) {
@@ -45,7 +47,8 @@ inline void hand_out(std::span<const Vec3> points, Index p, double tolerance, st
   if (best_distance > best->farthest_distance) best->farthest = p, best->farthest_distance = best_distance;
 }
 
-/// Four points that span the cloud well, in positive orientation. False when the cloud is thinner than `thin`.
+/// Four points that span the cloud well, in positive orientation. False when the cloud is thinner than
+/// `thin`.
 inline bool first_tetrahedron(std::span<const Vec3> points, double thin, std::array<Index, 4>& corner) {
   const auto farthest = [&](const auto& measure) {
     Index best = 0;
@@ -93,7 +96,8 @@ inline void add_hull_point(std::span<const Vec3> points, Index p, double toleran
 }
 
 /// The hull of `points` as triangles. False when the cloud is thinner than 1e-6 of its `extent`.
-/// A point counts as outside a plane from 1e-12 of the extent on. Source of the method: [BarberDobkinHuhdanpaa1996].
+/// A point counts as outside a plane from 1e-12 of the extent on. Source of the method:
+/// [BarberDobkinHuhdanpaa1996].
 inline bool quickhull(std::span<const Vec3> points, double extent, std::vector<HullTriangle>& triangles) {
   std::array<Index, 4> c{};
   if (!first_tetrahedron(points, 1e-6 * extent, c)) return false;
