@@ -1,0 +1,66 @@
+/// Two support calls that prove or refuse any kernel's answer.
+#pragma once
+
+#include <delassus/collision/inner/difference.hpp>
+#include <delassus/collision/signed_pair.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus {
+
+/// Accepts an answer whose normal n is a unit vector and whose distance is what n proves,
+///
+///   | h(n) + distance | ≤ 1e-3 max(|distance|, 1e-3 L),   h(n) = n · (s_A(n) − s_B(−n)),
+///
+/// or, for `far`, one with −h(n) > margin. h is an upper bound of the depth, so an accepted normal always
+/// separates. On acceptance the witnesses are rebuilt: heights along n from the support points, so that b − a
+/// = −h(n) n exactly.
+inline bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale,
+                    SignedPair& r) {
+  if (r.status == PairStatus::failed || !is_finite(r.normal) || !std::isfinite(r.distance)) return false;
+  if (!(std::abs(r.normal.squaredNorm() - 1) < 1e-9)) return false;
+  const Vec3& n = r.normal;
+  const double height_a = n.dot(support(a, n));
+  const double height_b = n.dot(b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * n)))));
+  const double proven = height_b - height_a;
+  if (r.status == PairStatus::far) return proven > (1 - 1e-3) * margin;
+  const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
+  if (!(std::abs(proven - r.distance) <= tolerance)) return false;
+  if (!is_finite(r.point_a) || !is_finite(r.point_b)) return false;
+  const Vec3 middle = 0.5 * (r.point_a + r.point_b), across = middle - n * n.dot(middle);
+  r.distance = proven;
+  r.point_a = across + height_a * n;
+  r.point_b = across + height_b * n;
+  return true;
+}
+
+/// The answer of last resort: the least h(n) over the face normals of both bodies, the line of centres and
+/// the guess. Always finite and always a valid separating translation, though not always the shortest.
+inline SignedPair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess) {
+  const inner::Difference difference{a, b, b_in_a};
+  const Mat3& R = b_in_a.rotation;
+  SignedPair r{.status = PairStatus::near, .distance = -std::numeric_limits<double>::infinity()};
+  const auto consider = [&](const Vec3& direction) {
+    const double length = direction.norm();
+    if (!(length > 0)) return;
+    const Vec3 n = direction / length;
+    const double distance = -difference.reach(n);
+    if (distance > r.distance) r.distance = distance, r.normal = n;
+  };
+  const auto consider_faces = [&](const Shape& s, const Mat3& turn) {
+    for (int k = 0; k < 3; ++k)
+      for (const double sign : {1.0, -1.0}) consider(sign * turn.col(k));
+    if (s.kind == ShapeKind::convex_hull)
+      for (Index f = 0; f < s.hull->face_count(); ++f) consider(turn * s.hull->normal(f));
+  };
+  consider(guess);
+  consider(b_in_a.to_world(middle(b)) - middle(a));
+  consider_faces(a, Mat3::Identity());
+  consider_faces(b, Mat3(-R));
+  r.point_a = support(a, r.normal);
+  r.point_b = r.point_a + r.distance * r.normal;
+  return r;
+}
+
+}  // namespace delassus

@@ -1,0 +1,93 @@
+/// Pairs whose distance has a formula: a sphere with a sphere, box, capsule or cylinder, and two capsules.
+#pragma once
+
+#include <delassus/collision/inner/nearest.hpp>
+#include <delassus/collision/signed_pair.hpp>
+
+namespace delassus {
+namespace inner {
+
+/// Sphere B against shape A; `center` is the sphere's, in the frame of A.
+inline SignedPair sphere_against(const Shape& a, double radius, const Vec3& center, const Vec3& wish) {
+  const NearestSurface s = nearest_surface(a, center, wish);
+  SignedPair r{.status = PairStatus::near, .distance = s.distance - radius, .normal = s.normal};
+  r.point_a = center - s.distance * s.normal;
+  r.point_b = center - radius * s.normal;
+  return r;
+}
+
+/// Parameters s, t ∈ [−1, 1] of the nearest points s·u and x + t·v of two segments with the half vectors u,
+/// v. Source: [Ericson2005], §5.1.9; parallel ones meet in the middle of their overlap.
+inline void nearest_on_segments(const Vec3& u, const Vec3& v, const Vec3& x, double& s, double& t) {
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ux = u.dot(x), vx = v.dot(x);
+  const double determinant = u.cross(v).squaredNorm();
+  if (determinant > 1e-12 * uu * vv) {
+    s = std::clamp((ux * vv - vx * uv) / determinant, -1.0, 1.0);
+  } else {
+    const double middle = ux / uu, half = std::abs(uv) / uu;
+    const double low = std::max(-1.0, middle - half), high = std::min(1.0, middle + half);
+    s = std::clamp(0.5 * (low + high), -1.0, 1.0);
+  }
+  t = std::clamp((s * uv - vx) / vv, -1.0, 1.0);
+  s = std::clamp((t * uv + ux) / uu, -1.0, 1.0);
+}
+
+inline SignedPair two_capsules(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& wish) {
+  const Vec3 u = a.size[1] * Vec3::UnitZ(), v = b.size[1] * b_in_a.rotation.col(2);
+  double s = 0, t = 0;
+  nearest_on_segments(u, v, b_in_a.position, s, t);
+  const Vec3 on_a = s * u, on_b = b_in_a.position + t * v, apart = on_b - on_a;
+  const double length = apart.norm();
+  SignedPair r{.status = PairStatus::near, .distance = length - a.size[0] - b.size[0]};
+  if (length > 1e-14 * (a.size[1] + b.size[1])) {
+    r.normal = apart / length;
+  } else {
+    // The axes cross: out of their common plane, or across them when they are one line.
+    const Vec3 out = u.cross(v);
+    const bool is_plane = out.squaredNorm() > 1e-12 * u.squaredNorm() * v.squaredNorm();
+    r.normal =
+        is_plane ? Vec3(with_sign(1, out.dot(wish)) * out.normalized()) : perpendicular(Vec3::UnitZ(), wish);
+  }
+  r.point_a = on_a + a.size[0] * r.normal;
+  r.point_b = on_b - b.size[0] * r.normal;
+  return r;
+}
+
+inline bool is_simple(const Shape& s) {
+  return s.kind == ShapeKind::sphere || s.kind == ShapeKind::box || s.kind == ShapeKind::capsule ||
+         s.kind == ShapeKind::cylinder;
+}
+
+/// Turns an answer for (B, A) in the frame of B into one for (A, B) in the frame of A.
+inline SignedPair swapped(const SignedPair& r, const Pose& b_in_a) {
+  SignedPair s = r;
+  s.normal = -(b_in_a.rotation * r.normal);
+  s.point_a = b_in_a.to_world(r.point_b);
+  s.point_b = b_in_a.to_world(r.point_a);
+  return s;
+}
+
+}  // namespace inner
+
+/// True when the pair has a formula, whose answer is then in `r`. Exact, in the frame of A.
+inline bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess,
+                        SignedPair& r) {
+  const Vec3 wish = guess.squaredNorm() > 0 ? guess : b_in_a.position;
+  if (b.kind == ShapeKind::sphere && inner::is_simple(a)) {
+    r = inner::sphere_against(a, b.size[0], b_in_a.position, wish);
+    return true;
+  }
+  if (a.kind == ShapeKind::sphere && inner::is_simple(b)) {
+    const Vec3 center = -(b_in_a.rotation.transpose() * b_in_a.position);
+    r = inner::swapped(inner::sphere_against(b, a.size[0], center, -(b_in_a.rotation.transpose() * wish)),
+                       b_in_a);
+    return true;
+  }
+  if (a.kind == ShapeKind::capsule && b.kind == ShapeKind::capsule) {
+    r = inner::two_capsules(a, b, b_in_a, wish);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace delassus

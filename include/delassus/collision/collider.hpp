@@ -1,0 +1,40 @@
+/// What collision detection is given and what it answers.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/geometry/shape.hpp>
+#include <delassus/math/pose.hpp>
+
+#include <cstdint>
+
+namespace delassus {
+
+/// A posed, moving shape. m, m/s, rad/s, world frame.
+struct Collider {
+  Shape shape{};
+  Pose pose{};
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+  bool is_movable = true;  ///< two colliders that neither move are never paired
+  std::uint32_t group = 1;
+  std::uint32_t collides_with = ~0u;  ///< pairs when each one's group meets the other's mask
+  std::uint32_t key = 0;              ///< names this collider from step to step; unique
+};
+
+/// One contact. `a` and `b` index the colliders of this call, key of a < key of b. World frame.
+struct ContactPoint {
+  Index a = -1, b = -1;
+  Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();  ///< point_b − point_a = gap · normal
+  Vec3 normal = Vec3::UnitZ();                          ///< unit, from A to B
+  double gap = 0;                                       ///< m, negative when the bodies overlap
+  std::uint64_t pair = 0;                               ///< key of a · 2³² + key of b
+  std::uint32_t feature = 0;  ///< names the point within its pair, kept from step to step
+};
+
+/// Counts of one call: pairs the broad phase offered, pairs whose distance was computed, answers of the
+/// kernel that the certificate refused (the native kernel answered instead), contact points.
+struct CollisionReport {
+  Index pairs = 0, queries = 0, rejects = 0, points = 0;
+};
+
+}  // namespace delassus

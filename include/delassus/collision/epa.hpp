@@ -1,0 +1,138 @@
+/// EPA: the depth of two overlapping or touching cores, from the simplex where GJK stopped.
+#pragma once
+
+#include <delassus/collision/inner/polytope.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delassus::inner {
+
+/// The best supporting plane found and the witnesses on it. h = h(normal) is the depth of the cores, m.
+struct EpaResult {
+  Vec3 normal = Vec3::Zero(), point_a = Vec3::Zero(), point_b = Vec3::Zero();
+  double h = std::numeric_limits<double>::infinity();
+};
+
+/// A unit vector perpendicular to the unit vector `axis`, as near to `wish` as can be.
+inline Vec3 perpendicular(const Vec3& axis, const Vec3& wish) {
+  const Vec3 across = wish - axis * axis.dot(wish);
+  const double length = across.norm();
+  if (length > 1e-6 * wish.norm()) return across / length;
+  int k = 0;
+  axis.cwiseAbs().minCoeff(&k);
+  return axis.cross(Vec3::Unit(k)).normalized();
+}
+
+/// Grows the simplex to one more dimension: takes the support point that lies farthest from its hull.
+/// False when the difference is flat there, to 1e-9 of `size`.
+template <class D>
+bool grow(const D& difference, std::array<DifferencePoint, 4>& p, int& count, double size) {
+  DifferencePoint best{};
+  double best_height = 0;
+  const auto consider = [&](const Vec3& direction, const auto& height) {
+    const DifferencePoint q = difference.core(direction);
+    const double value = height(q.w - p[0].w);
+    if (value > best_height) best = q, best_height = value;
+  };
+  if (count == 1) {
+    for (int k = 0; k < 6; ++k)
+      consider((k < 3 ? 1.0 : -1.0) * Vec3::Unit(k % 3), [](const Vec3& d) { return d.norm(); });
+  } else if (count == 2) {
+    const Vec3 axis = (p[1].w - p[0].w).normalized(), x = perpendicular(axis, Vec3::UnitX()),
+               y = axis.cross(x);
+    constexpr double c = 0.5, s = 0.86602540378443864676;
+    constexpr double hexagon[6][2] = {{1, 0}, {c, s}, {-c, s}, {-1, 0}, {-c, -s}, {c, -s}};
+    for (const auto& [u, v] : hexagon)
+      consider(u * x + v * y, [&](const Vec3& d) { return d.cross(axis).norm(); });
+  } else {
+    const Vec3 normal = (p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized();
+    for (const double sign : {1.0, -1.0})
+      consider(sign * normal, [&](const Vec3& d) { return std::abs(d.dot(normal)); });
+  }
+  if (!(best_height > 1e-9 * size)) return false;
+  p[count++] = best;
+  return true;
+}
+
+/// The depth of a flat difference is that of its plane, line or point: any normal perpendicular to it will
+/// do.
+template <class D>
+EpaResult flat_depth(const D& difference, const std::array<DifferencePoint, 4>& p, int count,
+                     const Vec3& guess) {
+  EpaResult r;
+  r.point_a = p[0].a;
+  r.point_b = p[0].b;
+  if (count == 3) {
+    const Vec3 normal = (p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized();
+    const double up = normal.dot(difference.core(normal).w), down = -normal.dot(difference.core(-normal).w);
+    const bool is_up = up != down ? up < down : normal.dot(guess) >= 0;
+    r.normal = is_up ? normal : Vec3(-normal);
+    r.h = is_up ? up : down;
+    return r;
+  }
+  r.normal = count == 2 ? perpendicular((p[1].w - p[0].w).normalized(), guess) : guess.normalized();
+  r.h = r.normal.dot(difference.core(r.normal).w);
+  return r;
+}
+
+/// The points of the simplex that span it: each adds a dimension of at least 1e-9 of `size`.
+inline int independent(const Simplex& s, double size, std::array<DifferencePoint, 4>& p) {
+  int count = 0;
+  for (int i = 0; i < s.count; ++i) {
+    const Vec3 d = count > 0 ? Vec3(s.p[i].w - p[0].w) : Vec3::Zero();
+    double height = size;
+    if (count == 1) height = d.norm();
+    if (count == 2) height = d.cross((p[1].w - p[0].w).normalized()).norm();
+    if (count == 3) height = std::abs(d.dot((p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized()));
+    if (height > 1e-9 * size) p[count++] = s.p[i];
+  }
+  return count;
+}
+
+/// min over unit n of h(n), by outer approximation: the nearest face of the polytope bounds it below, the
+/// support plane in that face's direction above. Every h(n) met is a valid depth, and the least of them is
+/// the answer, so rounding in the polytope cannot make it wrong, only less than minimal. Ends when the bounds
+/// meet to 1e-8 of the size. The origin may lie a little outside: then h < 0 is minus the distance. Source:
+/// [VanDenBergen2001].
+template <class D>
+EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
+  double size = 0;
+  for (int k = 0; k < 3; ++k)
+    size = std::max(size, (difference.core(Vec3::Unit(k)).w - difference.core(-Vec3::Unit(k)).w).norm());
+  std::array<DifferencePoint, 4> corner;
+  int count = independent(start, size, corner);
+  while (count < 4)
+    if (!grow(difference, corner, count, size)) return flat_depth(difference, corner, count, guess);
+
+  const double tolerance = 1e-8 * size;
+  Polytope polytope(corner);
+  EpaResult best;
+  Polytope::Face best_face{};
+  for (;;) {
+    const int f = polytope.nearest_face();
+    if (f < 0) break;
+    const Polytope::Face face = polytope.face(f);
+    if (best.h - face.offset <= tolerance) break;
+    const DifferencePoint q = difference.core(face.normal);
+    const double h = face.normal.dot(q.w);
+    if (h < best.h) {
+      best.h = h;
+      best.normal = face.normal;
+      best_face = face;
+    }
+    if (h - face.offset <= tolerance || polytope.is_full()) break;
+    if (!polytope.extend(q, 1e-14 * size)) polytope.retire(f);
+  }
+  if (best.h == std::numeric_limits<double>::infinity()) return best;
+  Simplex carrier{
+      .p = {polytope.point(best_face.v[0]), polytope.point(best_face.v[1]), polytope.point(best_face.v[2])},
+      .count = 3};
+  nearest_on_triangle(carrier);
+  best.point_a = carrier.mix(&DifferencePoint::a);
+  best.point_b = carrier.mix(&DifferencePoint::b);
+  return best;
+}
+
+}  // namespace delassus::inner

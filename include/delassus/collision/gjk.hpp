@@ -1,0 +1,64 @@
+/// GJK: the distance of two convex cores, or the news that they overlap.
+#pragma once
+
+#include <delassus/collision/inner/simplex.hpp>
+#include <delassus/collision/signed_pair.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace delassus::inner {
+
+/// A simplex of A − B with the origin's nearest point on it, and the best separating direction seen.
+struct GjkResult {
+  Simplex simplex;
+  Vec3 normal = Vec3::Zero();  ///< unit, from A to B
+  double separation = 0;       ///< −h(normal) of the cores: a proven lower bound of their distance, m
+  bool is_apart = false;       ///< separation > 0 and clear of rounding
+};
+
+/// Walks v, the point of A − B nearest to the origin; with n = −v/|v| each support point w proves
+///
+///   v·w/|v| = −h(n) ≤ distance ≤ |v|.
+///
+/// Ends when the bounds meet to 1e-10, when −h exceeds `margin`, or when the origin lies within 1e-10 of the
+/// size of the difference: then the direction of v holds no digits, and EPA goes on from the simplex. Source:
+/// [GilbertJohnsonKeerthi1988]; the stopping bound is that of [VanDenBergen2003].
+template <class D>
+GjkResult gjk(const D& difference, Vec3 direction, double margin) {
+  GjkResult r;
+  r.separation = -std::numeric_limits<double>::infinity();
+  r.simplex.add(difference.core(direction));
+  r.simplex.weight[0] = 1;
+  Vec3 v = r.simplex.p[0].w;
+  double size = v.norm();
+  for (int iteration = 0; iteration < 128; ++iteration) {
+    const double length = v.norm();
+    if (length <= 1e-10 * size) return r;
+    const Vec3 n = -v / length;
+    const DifferencePoint q = difference.core(n);
+    size = std::max(size, q.w.norm());
+    const double separation = -n.dot(q.w);
+    if (separation > r.separation) r.separation = separation, r.normal = n;
+    r.is_apart = r.separation > 1e-10 * size;
+    if (r.separation > margin || length - separation <= 1e-10 * length) return r;
+    for (int i = 0; i < r.simplex.count; ++i)
+      if ((q.w - r.simplex.p[i].w).squaredNorm() <= 1e-28 * size * size) return r;
+    const Simplex before = r.simplex;
+    r.simplex.add(q);
+    bool is_inside = false;
+    const Vec3 next = nearest(r.simplex, is_inside);
+    if (is_inside) {
+      r.is_apart = false;
+      return r;
+    }
+    if (next.squaredNorm() >= length * length) {
+      r.simplex = before;
+      return r;
+    }
+    v = next;
+  }
+  return r;
+}
+
+}  // namespace delassus::inner

@@ -1,0 +1,55 @@
+/// The native kernel: formulas where they exist, GJK while the cores are apart, EPA when they are not.
+#pragma once
+
+#include <delassus/collision/closed_forms.hpp>
+#include <delassus/collision/epa.hpp>
+#include <delassus/collision/gjk.hpp>
+
+namespace delassus {
+
+/// Exact to 1e-8 of the size for any convex pair, apart, touching or deep. Scale free: no absolute length
+/// enters.
+struct GjkEpa {
+  SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
+                  PairCache& cache) const noexcept {
+    SignedPair r;
+    if (closed_form(a, b, b_in_a, cache.guess, r)) {
+      if (r.distance > margin) r.status = PairStatus::far;
+      return r;
+    }
+    return convex(a, b, b_in_a, margin, cache.guess);
+  }
+
+  /// The general answer, for any two bodies with a support function.
+  template <ConvexSupport A, ConvexSupport B>
+  static SignedPair convex(const A& a, const B& b, const Pose& b_in_a, double margin, Vec3 guess) noexcept {
+    const inner::Difference difference{a, b, b_in_a};
+    const double radius = difference.radius();
+    if (!(guess.squaredNorm() > 0)) guess = b_in_a.position;
+    if (!(guess.squaredNorm() > 0)) guess = Vec3::UnitZ();
+    const inner::GjkResult apart = inner::gjk(difference, guess, margin + radius);
+    if (apart.is_apart) {
+      const inner::Simplex& s = apart.simplex;
+      SignedPair r = answer(apart.normal, apart.separation - radius, s.mix(&inner::DifferencePoint::a),
+                            s.mix(&inner::DifferencePoint::b), core_radius(a), core_radius(b));
+      if (r.distance > margin) r.status = PairStatus::far;
+      return r;
+    }
+    const inner::EpaResult deep = inner::epa(difference, apart.simplex, guess);
+    if (!(deep.h < std::numeric_limits<double>::infinity())) return {};
+    return answer(deep.normal, -deep.h - radius, deep.point_a, deep.point_b, core_radius(a), core_radius(b));
+  }
+
+ private:
+  static SignedPair answer(const Vec3& normal, double distance, const Vec3& core_a, const Vec3& core_b,
+                           double radius_a, double radius_b) {
+    return {.status = PairStatus::near,
+            .distance = distance,
+            .normal = normal,
+            .point_a = core_a + radius_a * normal,
+            .point_b = core_b - radius_b * normal};
+  }
+};
+static_assert(NarrowKernel<GjkEpa>);
+
+}  // namespace delassus

@@ -1,0 +1,66 @@
+/// The surface point of a simple shape nearest to a given point, with its sign: what spheres need of the
+/// others.
+#pragma once
+
+#include <delassus/collision/epa.hpp>
+#include <delassus/geometry/shape.hpp>
+
+namespace delassus::inner {
+
+/// `distance` < 0 inside; `normal` is the unit outward direction from the surface to the point (or out, when
+/// inside).
+struct NearestSurface {
+  Vec3 normal;
+  double distance;
+};
+
+/// Where the shape offers no direction (its centre, its axis), the one nearest to `wish` is taken.
+inline NearestSurface nearest_surface_of_ball(double radius, const Vec3& p, const Vec3& wish) {
+  const double length = p.norm();
+  if (length > 0) return {p / length, length - radius};
+  return {wish.squaredNorm() > 0 ? wish.normalized() : Vec3(Vec3::UnitZ()), -radius};
+}
+
+inline NearestSurface nearest_surface_of_box(const Vec3& half, const Vec3& p) {
+  const Vec3 beyond = p - p.cwiseMax(-half).cwiseMin(half);
+  const double length = beyond.norm();
+  if (length > 0) return {beyond / length, length};
+  int k = 0;
+  const double inside = (half - p.cwiseAbs()).minCoeff(&k);
+  return {with_sign(1, p[k]) * Vec3::Unit(k), -inside};
+}
+
+inline NearestSurface nearest_surface_of_capsule(double radius, double half, const Vec3& p,
+                                                 const Vec3& wish) {
+  const Vec3 from_axis = p - Vec3(0, 0, std::clamp(p[2], -half, half));
+  const double length = from_axis.norm();
+  if (length > 0) return {from_axis / length, length - radius};
+  return {perpendicular(Vec3::UnitZ(), wish), -radius};
+}
+
+inline NearestSurface nearest_surface_of_cylinder(double radius, double half, const Vec3& p,
+                                                  const Vec3& wish) {
+  const double rho = std::hypot(p[0], p[1]), side = rho - radius, cap = std::abs(p[2]) - half;
+  const Vec3 outward = rho > 0 ? Vec3(p[0] / rho, p[1] / rho, 0) : perpendicular(Vec3::UnitZ(), wish);
+  const Vec3 along = with_sign(1, p[2]) * Vec3::UnitZ();
+  if (side > 0 && cap > 0) {
+    const double length = std::hypot(side, cap);
+    return {(side * outward + cap * along) / length, length};
+  }
+  return side > cap ? NearestSurface{outward, side} : NearestSurface{along, cap};
+}
+
+inline NearestSurface nearest_surface(const Shape& s, const Vec3& p, const Vec3& wish) {
+  switch (s.kind) {
+    case ShapeKind::box:
+      return nearest_surface_of_box({s.size[0], s.size[1], s.size[2]}, p);
+    case ShapeKind::capsule:
+      return nearest_surface_of_capsule(s.size[0], s.size[1], p, wish);
+    case ShapeKind::cylinder:
+      return nearest_surface_of_cylinder(s.size[0], s.size[1], p, wish);
+    default:
+      return nearest_surface_of_ball(s.size[0], p, wish);
+  }
+}
+
+}  // namespace delassus::inner

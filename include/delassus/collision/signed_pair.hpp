@@ -1,0 +1,40 @@
+/// The one question a narrow-phase kernel answers: how far are two convex bodies apart, or how deep do they
+/// overlap?
+#pragma once
+
+#include <delassus/geometry/support.hpp>
+
+#include <concepts>
+#include <cstdint>
+
+namespace delassus {
+
+/// far: farther apart than the margin · near: the distance is known, negative when the bodies overlap ·
+/// failed: no answer.
+enum class PairStatus : std::uint8_t { far, near, failed };
+
+/// The minimal translation that brings two bodies into touch. In the frame of A, m.
+struct SignedPair {
+  PairStatus status = PairStatus::failed;
+  double distance = 0;                                  ///< < 0 is the depth of penetration
+  Vec3 normal = Vec3::Zero();                           ///< unit, from A to B, also when they overlap
+  Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();  ///< witnesses: b − a = distance · normal
+};
+
+/// What the engine remembers of a pair for its kernel: the last normal in the frame of A, zero when there is
+/// none.
+struct PairCache {
+  Vec3 guess = Vec3::Zero();
+};
+
+/// A kernel answers for shapes other than half-spaces, with B posed in the frame of A. It need not be right:
+/// each answer is certified, and replaced when it fails. It must not throw, and must give the same answer
+/// when asked again.
+template <class K>
+concept NarrowKernel = requires(K& k, const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
+                                PairCache& cache) {
+  { k.pair(a, b, b_in_a, margin, cache) }
+  noexcept->std::same_as<SignedPair>;  // signed distance up to `margin`, m
+};
+
+}  // namespace delassus
