@@ -1,0 +1,26 @@
+/// Which colliders come near each other: what a broad phase promises.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/geometry/support.hpp>
+
+#include <compare>
+#include <span>
+#include <vector>
+
+namespace delassus {
+
+/// Two positions in the array of boxes, i < j.
+struct CandidatePair {
+  Index i, j;
+  friend auto operator<=>(const CandidatePair&, const CandidatePair&) = default;
+};
+
+/// Finds every pair of boxes that touch or overlap, each once, in any order. An empty box pairs with nothing;
+/// infinite boxes do not occur. What it remembers may only change how fast it is.
+template <class B>
+concept BroadPhase = requires(B& b, std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+  b.find(boxes, pairs);  // appends to `pairs`
+};
+
+}  // namespace delassus

@@ -1,0 +1,173 @@
+/// Collision detection: boxes, pairs, certified distances, patches, and points that keep their names.
+#pragma once
+
+#include <delassus/collision/broad_phase.hpp>
+#include <delassus/collision/certificate.hpp>
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/gjk_epa.hpp>
+#include <delassus/collision/half_space.hpp>
+#include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/settle.hpp>
+#include <delassus/collision/manifold.hpp>
+#include <delassus/collision/pair_memory.hpp>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace delassus {
+
+/// Asks `Kernel` for distances and `Broad` for pairs; everything else of a contact is decided here, the same
+/// for all.
+template <NarrowKernel Kernel, BroadPhase Broad>
+class CollisionEngine {
+ public:
+  /// Contacts within the margin, sorted by pair and then by feature; `out` is cleared first. h is the step,
+  /// s.
+  CollisionReport detect(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
+                         std::vector<ContactPoint>& out) {
+    out.clear();
+    report_ = {};
+    find_pairs(colliders, h, settings);
+    next_memory_.clear();
+    std::size_t last = 0;
+    const PairMemory nothing;
+    for (const Job& job : jobs_) {
+      while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
+      const bool is_known = last < memory_.size() && memory_[last].pair == job.pair;
+      collide(colliders, job, h, settings, is_known ? memory_[last] : nothing, out);
+    }
+    memory_.swap(next_memory_);
+    report_.points = Index(out.size());
+    return report_;
+  }
+
+  /// Forgets every pair, as after a jump in time.
+  void reset() { memory_.clear(); }
+
+  Kernel& kernel() { return kernel_; }
+  /// What outlives a step: with it restored, the next step is the same to the bit.
+  void memory(auto& archive) { archive(memory_); }
+
+ private:
+  struct Job {
+    std::uint64_t pair;
+    Index a, b;
+    bool operator<(const Job& o) const { return pair < o.pair; }
+  };
+
+  void find_pairs(std::span<const Collider> colliders, double h, const CollisionSettings& settings) {
+    boxes_.clear();
+    half_spaces_.clear();
+    pairs_.clear();
+    jobs_.clear();
+    for (Index i = 0; i < Index(colliders.size()); ++i) {
+      const bool is_bounded = colliders[i].shape.kind != ShapeKind::half_space;
+      if (!is_bounded) half_spaces_.push_back(i);
+      boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
+    }
+    broad_.find(boxes_, pairs_);
+    for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j);
+    for (const Index plane : half_spaces_)
+      for (Index i = 0; i < Index(colliders.size()); ++i)
+        if (!boxes_[i].isEmpty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
+          add_job(colliders, plane, i);
+    std::sort(jobs_.begin(), jobs_.end());
+    report_.pairs = Index(jobs_.size());
+  }
+
+  void add_job(std::span<const Collider> colliders, Index a, Index b) {
+    const Collider &x = colliders[a], &y = colliders[b];
+    if (!x.is_movable && !y.is_movable) return;
+    if ((x.group & y.collides_with) == 0 || (y.group & x.collides_with) == 0) return;
+    if (x.key > y.key) std::swap(a, b);
+    jobs_.push_back({std::uint64_t(colliders[a].key) << 32 | colliders[b].key, a, b});
+  }
+
+  /// One pair: distance, patch, choice of points, names. In the frame of A until the points are written.
+  void collide(std::span<const Collider> colliders, const Job& job, double h,
+               const CollisionSettings& settings, const PairMemory& last, std::vector<ContactPoint>& out) {
+    const Collider &a = colliders[job.a], &b = colliders[job.b];
+    const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
+                      .rotation = a.pose.rotation.transpose() * b.pose.rotation};
+    const double scale = inner::pair_scale(a.shape, b.shape);
+    const double reach = settings.contact_distance + inner::widest_margin(a, b, scale, h, settings);
+    PairMemory& now = next_memory_.emplace_back();
+    now.pair = job.pair;
+    now.owner = last.owner;
+    ++report_.queries;
+
+    SignedPair r = measure(a, b, b_in_a, reach, scale, last, now);
+    now.normal = a.pose.rotation * r.normal;
+    if (r.status == PairStatus::far) return;
+    const double margin =
+        settings.contact_distance +
+        inner::margin_along(a, b, now.normal, a.pose.to_world(r.point_a), scale, h, settings);
+    if (r.distance > margin) return;
+    if (!is_half_space(a) && !is_half_space(b))
+      contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
+    emit(a, job, b_in_a, settings, scale, last, now, out);
+  }
+
+  static bool is_half_space(const Collider& c) { return c.shape.kind == ShapeKind::half_space; }
+
+  /// The certified signed distance. Of a half-space the patch comes with it.
+  SignedPair measure(const Collider& a, const Collider& b, const Pose& b_in_a, double reach, double scale,
+                     const PairMemory& last, PairMemory& now) {
+    if (is_half_space(a))
+      return half_space_patch(b.shape, b_in_a, inner::plane_of(a.shape, Pose{}), true, reach, scale, patch_);
+    if (is_half_space(b))
+      return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
+    PairCache cache{.guess = a.pose.rotation.transpose() * last.normal};
+    SignedPair r = kernel_.pair(a.shape, b.shape, b_in_a, reach, cache);
+    if (!certify(a.shape, b.shape, b_in_a, reach, scale, r)) {
+      ++report_.rejects;
+      r = GjkEpa{}.pair(a.shape, b.shape, b_in_a, reach, cache);
+      if (!certify(a.shape, b.shape, b_in_a, reach, scale, r))
+        r = coarse_pair(a.shape, b.shape, b_in_a, cache.guess);
+    }
+    if (r.status == PairStatus::near)
+      now.owner = inner::settle_normal(a.shape, b.shape, b_in_a, scale, last.owner, r);
+    return r;
+  }
+
+  void emit(const Collider& a, const Job& job, const Pose& b_in_a, const CollisionSettings& settings,
+            double scale, const PairMemory& last, PairMemory& now, std::vector<ContactPoint>& out) {
+    const Vec3 n_a = a.pose.rotation.transpose() * now.normal;
+    const inner::Continuation continues(patch_, last, b_in_a, scale);
+    const int limit = std::clamp(settings.max_points, 1, PairMemory::capacity);
+    const inner::Choice choice = inner::reduce(patch_, continues, n_a, scale, limit);
+    for (const bool is_old : {true, false})
+      for (int k = 0; k < choice.count; ++k) {
+        const int i = choice.index[k], before = continues.of[i];
+        if ((before >= 0) != is_old) continue;
+        const PatchPoint& p = patch_.point[i];
+        const std::uint32_t id = is_old ? last.point[before].id : inner::fresh_id(p.name, now);
+        now.point[now.count++] = {p.name, id, p.a, b_in_a.to_local(p.b)};
+        const Vec3 shift = 0.5 * settings.contact_distance * now.normal;
+        out.push_back({.a = job.a,
+                       .b = job.b,
+                       .point_a = a.pose.to_world(p.a) + shift,
+                       .point_b = a.pose.to_world(p.b) - shift,
+                       .normal = now.normal,
+                       .gap = p.gap - settings.contact_distance,
+                       .pair = job.pair,
+                       .feature = id});
+      }
+    std::sort(out.end() - choice.count, out.end(),
+              [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
+  }
+
+  Kernel kernel_;
+  Broad broad_;
+  CollisionReport report_;
+  Patch patch_;
+  std::vector<Aabb> boxes_;
+  std::vector<Index> half_spaces_;
+  std::vector<CandidatePair> pairs_;
+  std::vector<Job> jobs_;
+  std::vector<PairMemory> memory_, next_memory_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,45 @@
+/// Any shape against a half-space: each corner of its lowest face is a contact.
+#pragma once
+
+#include <delassus/collision/manifold.hpp>
+#include <delassus/collision/signed_pair.hpp>
+
+namespace delassus {
+
+/// A plane in the frame of A: the solid is normal · x ≤ offset.
+struct Plane {
+  Vec3 normal;
+  double offset;
+};
+
+/// `s`, posed in the frame of A, over the plane. Gives the deepest point and the corners with a gap up to
+/// `margin`.
+inline SignedPair half_space_patch(const Shape& s, const Pose& pose, const Plane& plane, bool plane_is_a,
+                                   double margin, double scale, Patch& patch) {
+  const Vec3 down = -(pose.rotation.transpose() * plane.normal);
+  const auto contact = [&](const Vec3& point, std::uint32_t name) {
+    const double gap = plane.normal.dot(point) - plane.offset;
+    const Vec3 foot = point - gap * plane.normal;
+    return plane_is_a ? PatchPoint{foot, point, gap, name} : PatchPoint{point, foot, gap, name};
+  };
+  const PatchPoint lowest = contact(pose.to_world(support(s, down)), Patch::witness);
+  const Face face = face_towards(s, down);
+  patch.count = 0;
+  double deepest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < face.count; ++k) {
+    const PatchPoint p =
+        contact(pose.to_world(face.point[k]), inner::corner_name(!plane_is_a, face.corner[k]));
+    if (p.gap > margin) continue;
+    deepest = std::min(deepest, p.gap);
+    patch.add(p);
+  }
+  if (!(deepest <= lowest.gap + 1e-4 * scale)) patch.add(lowest);
+  inner::drop_twins(scale, patch);
+  return {.status = lowest.gap > margin ? PairStatus::far : PairStatus::near,
+          .distance = lowest.gap,
+          .normal = plane_is_a ? plane.normal : Vec3(-plane.normal),
+          .point_a = lowest.a,
+          .point_b = lowest.b};
+}
+
+}  // namespace delassus

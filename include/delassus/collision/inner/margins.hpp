@@ -1,0 +1,85 @@
+/// How early a pair is noticed: boxes and margins that grow with size and speed.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/half_space.hpp>
+#include <delassus/geometry/support.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus {
+
+/// `margin`: contacts are made up to this gap, m; negative means automatic, max(5e-3 L, |vₙ| h), at most L/2,
+/// with L the smaller size of the pair. `contact_distance`: thickness of every pair, m; the gap is what is
+/// left beyond it.
+struct CollisionSettings {
+  double margin = -1;
+  double contact_distance = 0;
+  int max_points = 4;  ///< of one pair, at most 8
+};
+
+namespace inner {
+
+inline constexpr double margin_share = 5e-3, margin_limit = 0.5;
+
+inline double pair_scale(const Shape& a, const Shape& b) {
+  if (a.kind == ShapeKind::half_space) return length_scale(b);
+  if (b.kind == ShapeKind::half_space) return length_scale(a);
+  return std::min(length_scale(a), length_scale(b));
+}
+
+/// No point of the body is faster than this, m/s.
+inline double top_speed(const Collider& c) {
+  return c.velocity.norm() + c.angular_velocity.norm() * outer_radius(c.shape);
+}
+
+inline double limited_margin(double way, double scale) {
+  return std::min(std::max(margin_share * scale, way), margin_limit * scale);
+}
+
+/// A margin that no contact of the pair exceeds, whatever its normal.
+inline double widest_margin(const Collider& a, const Collider& b, double scale, double h,
+                            const CollisionSettings& s) {
+  return s.margin >= 0 ? s.margin : limited_margin((top_speed(a) + top_speed(b)) * h, scale);
+}
+
+/// The margin of a contact at `point` with the world normal n; vₙ is the relative normal velocity there.
+inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, const Vec3& point,
+                           double scale, double h, const CollisionSettings& s) {
+  if (s.margin >= 0) return s.margin;
+  const Vec3 of_a = a.velocity + a.angular_velocity.cross(point - a.pose.position);
+  const Vec3 of_b = b.velocity + b.angular_velocity.cross(point - b.pose.position);
+  return limited_margin(std::abs(n.dot(of_b - of_a)) * h, scale);
+}
+
+/// The tight box, wider by the collider's share of any margin: a pair within its margin has boxes that touch.
+/// A body that is not finite has none. (min(x, L_a/2) + min(y, L_b/2) ≥ min(x + y, min(L_a, L_b)/2), and L_a
+/// + L_b ≥ 2 min(L_a, L_b).)
+inline Aabb alarm_box(const Collider& c, double h, const CollisionSettings& s) {
+  Aabb box = tight_box(c.shape, c.pose);
+  if (box.isEmpty() || !is_finite(box.sizes()) || !std::isfinite(top_speed(c))) return Aabb();
+  const double scale = length_scale(c.shape);
+  const double share =
+      s.margin >= 0 ? 0.5 * s.margin
+                    : std::min(std::max(0.5 * margin_share * scale, top_speed(c) * h), margin_limit * scale);
+  const Vec3 more = Vec3::Constant(0.5 * s.contact_distance + share + 1e-12 * box.sizes().maxCoeff());
+  return Aabb(box.min() - more, box.max() + more);
+}
+
+inline Plane plane_of(const Shape& s, const Pose& pose) {
+  const Vec3 n = pose.rotation * Vec3(s.size[0], s.size[1], s.size[2]);
+  return {n, s.size[3] + n.dot(pose.position)};
+}
+
+/// False when the box, with all the margin its pair with this half-space can have, lies clear of the solid.
+inline bool may_touch(const Collider& half_space, const Aabb& box, double h, const CollisionSettings& s) {
+  const Plane plane = plane_of(half_space.shape, half_space.pose);
+  const double lowest = plane.normal.dot(box.center()) - 0.5 * plane.normal.cwiseAbs().dot(box.sizes());
+  const double share =
+      s.margin >= 0 ? 0.5 * s.margin : std::max(half_space.velocity.norm() * h, 0.5 * box.sizes().maxCoeff());
+  return lowest - plane.offset <= s.contact_distance + share;
+}
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,108 @@
+/// Of a patch with many corners the few that carry it, the same few as long as they do.
+#pragma once
+
+#include <delassus/collision/pair_memory.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace delassus::inner {
+
+/// Chosen points of a patch, by index.
+struct Choice {
+  std::array<std::int8_t, PairMemory::capacity> index{};
+  int count = 0;
+
+  void add(int i) { index[count++] = std::int8_t(i); }
+  bool has(int i) const {
+    for (int k = 0; k < count; ++k)
+      if (index[k] == i) return true;
+    return false;
+  }
+};
+
+/// Twice the area spanned by the chosen points, seen along n: the sum over their hull, which few points make
+/// cheap.
+inline double spread(const Patch& patch, const Choice& c, const Vec3& n) {
+  double area2 = 0;
+  for (int i = 0; i < c.count; ++i)
+    for (int j = 0; j < c.count; ++j) {
+      const Vec3 &p = patch.point[c.index[i]].a, &q = patch.point[c.index[j]].a;
+      bool is_hull_edge = i != j;
+      for (int k = 0; k < c.count && is_hull_edge; ++k)
+        is_hull_edge = k == i || k == j || (q - p).cross(patch.point[c.index[k]].a - p).dot(n) >= 0;
+      if (is_hull_edge) area2 += p.cross(q).dot(n);
+    }
+  return area2;
+}
+
+inline int deepest(const Patch& patch) {
+  int best = 0;
+  for (int i = 1; i < patch.count; ++i)
+    if (patch.point[i].gap < patch.point[best].gap) best = i;
+  return best;
+}
+
+/// Adds the points farthest from all chosen ones until there are `limit`.
+inline void fill(const Patch& patch, int limit, Choice& c) {
+  while (c.count < limit) {
+    int best = -1;
+    double best_distance = -1;
+    for (int i = 0; i < patch.count; ++i) {
+      if (c.has(i)) continue;
+      double distance = std::numeric_limits<double>::infinity();
+      for (int k = 0; k < c.count; ++k)
+        distance = std::min(distance, (patch.point[i].a - patch.point[c.index[k]].a).squaredNorm());
+      if (distance > best_distance) best_distance = distance, best = i;
+    }
+    if (best < 0) return;
+    c.add(best);
+  }
+}
+
+/// The deepest point, the one farthest from it, and those farthest to either side of the line between them.
+inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
+  Choice c;
+  c.add(deepest(patch));
+  fill(patch, 2, c);
+  const Vec3 &p = patch.point[c.index[0]].a, &q = patch.point[c.index[1]].a;
+  const Vec3 across = n.cross(q - p);
+  for (const double side : {1.0, -1.0}) {
+    int best = -1;
+    double reach = 0;
+    for (int i = 0; i < patch.count && c.count < limit; ++i) {
+      const double r = side * across.dot(patch.point[i].a - p);
+      if (!c.has(i) && r > reach) reach = r, best = i;
+    }
+    if (best >= 0) c.add(best);
+  }
+  fill(patch, limit, c);
+  return c;
+}
+
+/// At most `limit` points. Last step's stay while they span three quarters of what a new choice would and
+/// miss the deepest by no more than 1e-4 of the scale; a choice that changes every step makes a stack walk.
+inline Choice reduce(const Patch& patch, const Continuation& continues, const Vec3& n, double scale,
+                     int limit) {
+  Choice kept;
+  if (patch.count <= limit) {
+    for (int i = 0; i < patch.count; ++i) kept.add(i);
+    return kept;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < patch.count && kept.count < limit; ++i) {
+    if (continues.of[i] < 0) continue;
+    kept.add(i);
+    least = std::min(least, patch.point[i].gap);
+  }
+  const Choice anew = choose_anew(patch, n, limit);
+  const int lowest = deepest(patch);
+  if (!(least <= patch.point[lowest].gap + 1e-4 * scale)) {
+    if (kept.count == limit) return anew;
+    kept.add(lowest);
+  }
+  fill(patch, limit, kept);
+  return spread(patch, kept, n) >= 0.75 * spread(patch, anew, n) ? kept : anew;
+}
+
+}  // namespace delassus::inner

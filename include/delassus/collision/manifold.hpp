@@ -1,0 +1,124 @@
+/// The contact patch of two bodies: where their faces overlap along the contact normal.
+#pragma once
+
+#include <delassus/collision/inner/clip.hpp>
+#include <delassus/collision/signed_pair.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus {
+
+/// One point of a patch. b − a = gap · normal; `name` says which corners or edges make it.
+struct PatchPoint {
+  Vec3 a, b;
+  double gap;
+  std::uint32_t name;
+};
+
+struct Patch {
+  static constexpr int capacity = inner::ClipPolygon::capacity + 1;
+  static constexpr std::uint32_t witness = 0;  ///< the name of the kernel's own witness
+  std::array<PatchPoint, capacity> point;
+  int count = 0;
+  void add(const PatchPoint& p) {
+    if (count < capacity) point[count++] = p;
+  }
+};
+
+namespace inner {
+
+inline Face posed(Face face, const Pose& pose) {
+  for (int k = 0; k < face.count; ++k) face.point[k] = pose.to_world(face.point[k]);
+  face.normal = pose.rotation * face.normal;
+  return face;
+}
+
+/// The other order of corners, so that both faces run counter-clockwise about the normal from A to B.
+inline void reverse(Face& face) {
+  std::reverse(face.point.begin(), face.point.begin() + face.count);
+  std::reverse(face.corner.begin(), face.corner.begin() + face.count);
+}
+
+/// The corners of the overlap, lifted along n from the subject to the plane of the polygon `clip`.
+inline void overlap_of_faces(const Face& subject, const Face& clip, const Vec3& n, bool subject_is_a,
+                             double margin, double slack, Patch& patch) {
+  const FaceClipper clipper(subject, clip, n, subject_is_a, slack);
+  const double slope = clip.normal.dot(n);
+  for (int i = 0; i < clipper.polygon().count; ++i) {
+    const ClipCorner& corner = clipper.polygon().corner[i];
+    const double lift = clip.normal.dot(corner.point - clip.point[0]) / slope;
+    const double gap = subject_is_a ? -lift : lift;
+    if (gap > margin) continue;
+    const Vec3 foot = corner.point - lift * n;
+    patch.add(subject_is_a ? PatchPoint{corner.point, foot, gap, corner.name}
+                           : PatchPoint{foot, corner.point, gap, corner.name});
+  }
+}
+
+/// Two nearly parallel lines overlap in a stretch, whose ends are the contacts.
+inline void overlap_of_lines(const Face& a, const Face& b, const Vec3& n, double margin, double scale,
+                             Patch& patch) {
+  const Vec3 u = a.point[1] - a.point[0], v = b.point[1] - b.point[0];
+  const double length = u.norm();
+  if (std::abs(u.cross(v).dot(n)) > line_slope * length * v.norm()) return;
+  const Vec3 e = u / length;
+  const double b0 = e.dot(b.point[0] - a.point[0]), b1 = e.dot(b.point[1] - a.point[0]);
+  const double low = std::max(0.0, std::min(b0, b1)), high = std::min(length, std::max(b0, b1));
+  if (!(high - low > 1e-3 * scale)) return;
+  for (const double s : {low, high}) {
+    const Vec3 on_a = a.point[0] + s * e, on_b = b.point[0] + v * ((s - b0) / (b1 - b0));
+    const double gap = n.dot(on_b - on_a);
+    if (gap > margin) continue;
+    const Vec3 middle = 0.5 * (on_a + on_b);
+    const bool is_end_of_a = s == 0.0 || s == length;
+    const std::uint32_t name = is_end_of_a ? corner_name(true, a.corner[s == 0.0 ? 0 : 1])
+                                           : corner_name(false, b.corner[s == b0 ? 0 : 1]);
+    patch.add({middle - 0.5 * gap * n, middle + 0.5 * gap * n, gap, name});
+  }
+}
+
+/// Drops corners that coincide with an earlier one, to 1e-3 of the scale: crossings of edges that nearly
+/// meet. The witness, which comes last and only when it is deeper, takes the place of its twin.
+inline void drop_twins(double scale, Patch& patch) {
+  int kept = 0;
+  for (int i = 0; i < patch.count; ++i) {
+    int k = 0;
+    while (k < kept && (patch.point[k].a - patch.point[i].a).squaredNorm() >= 1e-6 * scale * scale) ++k;
+    if (k == kept)
+      ++kept;
+    else if (patch.point[i].name != Patch::witness)
+      continue;
+    patch.point[k] = patch.point[i];
+  }
+  patch.count = kept;
+}
+
+}  // namespace inner
+
+/// The patch in the frame of A, for the certified answer `r`: all corners with a gap up to `margin`, and the
+/// witness when they miss its depth by more than 1e-4 of the scale (a round rim between two corners, a
+/// vertex, crossing edges).
+inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, const SignedPair& r,
+                          double margin, double scale, Patch& patch) {
+  const Vec3& n = r.normal;
+  patch.count = 0;
+  const Face face_a = face_towards(a, n);
+  Face face_b = inner::posed(face_towards(b, Vec3(-(b_in_a.rotation.transpose() * n))), b_in_a);
+  if (face_b.count >= 3) inner::reverse(face_b);
+  const double slope_a = face_a.normal.dot(n), slope_b = -face_b.normal.dot(n), steepest = 0.2;
+  const double slack = 1e-7 * scale;
+  if (face_a.count == 2 && face_b.count == 2) {
+    inner::overlap_of_lines(face_a, face_b, n, margin, scale, patch);
+  } else if (face_a.count >= 2 && face_b.count >= 2 && std::max(slope_a, slope_b) > steepest) {
+    const bool clip_is_a = slope_a >= slope_b;
+    inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
+                            slack, patch);
+  }
+  double deepest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < patch.count; ++i) deepest = std::min(deepest, patch.point[i].gap);
+  if (!(deepest <= r.distance + 1e-4 * scale)) patch.add({r.point_a, r.point_b, r.distance, Patch::witness});
+  inner::drop_twins(scale, patch);
+}
+
+}  // namespace delassus

@@ -1,0 +1,24 @@
+/// The collision backend that needs nothing else: our own broad phase and our own kernel.
+#pragma once
+
+#include <delassus/collision/engine.hpp>
+#include <delassus/collision/sweep_and_prune.hpp>
+#include <delassus/core/roles.hpp>
+
+namespace delassus {
+
+/// Sweep and prune, then formulas, GJK and EPA.
+struct NativeCollision {
+  using plays = role::Collision;
+
+  double margin = -1;  ///< contacts up to this gap, m; negative: by size and speed (CollisionSettings)
+  double contact_distance = 0;  ///< thickness between the bodies, m
+  int max_points = 4;           ///< of one pair
+  CollisionEngine<GjkEpa, SweepAndPrune> engine{};
+
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
+    return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
+  }
+};
+
+}  // namespace delassus

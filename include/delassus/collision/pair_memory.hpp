@@ -1,0 +1,73 @@
+/// What is kept of a pair from step to step: its normal and its points, so that contacts keep their names.
+#pragma once
+
+#include <delassus/collision/inner/settle.hpp>
+#include <delassus/collision/manifold.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace delassus {
+
+/// A contact as it was: its name in the patch, the id it was given when it was born, and where it was on each
+/// body.
+struct RememberedPoint {
+  std::uint32_t name = 0, id = 0;
+  Vec3 local_a, local_b;
+};
+
+struct PairMemory {
+  static constexpr int capacity = 8;
+  std::uint64_t pair = 0;
+  Vec3 normal = Vec3::Zero();  ///< world frame
+  std::array<RememberedPoint, capacity> point;
+  std::uint8_t count = 0;
+  inner::NormalOwner owner = inner::NormalOwner::kernel;
+};
+
+namespace inner {
+
+/// For each point of the patch the remembered one it continues, or −1: first by name, then by place. The
+/// place may have moved by 2e-2 of the scale on one of the bodies: a corner that slides over a face stays
+/// where it is on its own.
+struct Continuation {
+  std::array<std::int8_t, Patch::capacity> of;
+
+  Continuation(const Patch& patch, const PairMemory& last, const Pose& b_in_a, double scale) {
+    of.fill(-1);
+    std::array<bool, PairMemory::capacity> is_taken{};
+    for (int i = 0; i < patch.count; ++i)
+      for (int k = 0; k < last.count && of[i] < 0; ++k)
+        if (!is_taken[k] && last.point[k].name == patch.point[i].name) take(i, k, is_taken);
+    for (int k = 0; k < last.count; ++k) {
+      if (is_taken[k]) continue;
+      int nearest = -1;
+      double best = 4e-4 * scale * scale;
+      for (int i = 0; i < patch.count; ++i) {
+        if (of[i] >= 0) continue;
+        const double on_a = (patch.point[i].a - last.point[k].local_a).squaredNorm();
+        const double on_b = (b_in_a.to_local(patch.point[i].b) - last.point[k].local_b).squaredNorm();
+        if (std::min(on_a, on_b) < best) best = std::min(on_a, on_b), nearest = i;
+      }
+      if (nearest >= 0) take(nearest, k, is_taken);
+    }
+  }
+
+ private:
+  void take(int i, int k, std::array<bool, PairMemory::capacity>& is_taken) {
+    of[i] = std::int8_t(k);
+    is_taken[k] = true;
+  }
+};
+
+/// An id for a newborn point: its name, or the next number that no point of the pair has.
+inline std::uint32_t fresh_id(std::uint32_t name, const PairMemory& now) {
+  for (std::uint32_t id = name;; ++id) {
+    bool is_used = false;
+    for (int k = 0; k < now.count; ++k) is_used = is_used || now.point[k].id == id;
+    if (!is_used) return id;
+  }
+}
+
+}  // namespace inner
+}  // namespace delassus

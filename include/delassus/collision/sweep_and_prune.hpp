@@ -1,0 +1,77 @@
+/// Sweep and prune: boxes sorted along one axis, each tested against those that begin before it ends.
+#pragma once
+
+#include <delassus/collision/broad_phase.hpp>
+
+#include <algorithm>
+
+namespace delassus {
+
+/// Keeps last step's order, so that sorting by insertion is nearly free while things move little. The axis is
+/// the one along which the centres of the boxes spread most.
+class SweepAndPrune {
+ public:
+  void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+    const int axis = widest_axis(boxes);
+    if (Index(boxes.size()) != count_ || axis != axis_) restart(boxes, axis);
+    sort(boxes);
+    for (std::size_t s = 0; s < order_.size(); ++s) {
+      const Index i = order_[s];
+      if (boxes[i].isEmpty()) continue;
+      const double end = boxes[i].max()[axis];
+      for (std::size_t t = s + 1; t < order_.size() && start(boxes, order_[t]) <= end; ++t) {
+        const Index j = order_[t];
+        if (!boxes[j].isEmpty() && boxes[i].intersects(boxes[j]))
+          pairs.push_back({std::min(i, j), std::max(i, j)});
+      }
+    }
+  }
+
+ private:
+  /// Where a box begins along the axis; an empty one begins at +∞.
+  double start(std::span<const Aabb> boxes, Index i) const { return boxes[i].min()[axis_]; }
+
+  void sort(std::span<const Aabb> boxes) {
+    for (std::size_t s = 1; s < order_.size(); ++s) {
+      const Index moving = order_[s];
+      std::size_t t = s;
+      for (; t > 0 && start(boxes, moving) < start(boxes, order_[t - 1]); --t) order_[t] = order_[t - 1];
+      order_[t] = moving;
+    }
+  }
+
+  void restart(std::span<const Aabb> boxes, int axis) {
+    axis_ = axis;
+    count_ = Index(boxes.size());
+    order_.resize(boxes.size());
+    for (Index i = 0; i < count_; ++i) order_[i] = i;
+    std::sort(order_.begin(), order_.end(),
+              [&](Index i, Index j) { return start(boxes, i) < start(boxes, j); });
+  }
+
+  /// Changes only when another axis spreads twice as much.
+  int widest_axis(std::span<const Aabb> boxes) const {
+    Vec3 sum = Vec3::Zero(), low = Vec3::Zero();
+    Vec3 squares = Vec3::Zero();
+    Index count = 0;
+    for (const Aabb& box : boxes) {
+      if (box.isEmpty()) continue;
+      if (count++ == 0) low = box.center();
+      const Vec3 centre = box.center() - low;
+      sum += centre;
+      squares += centre.cwiseProduct(centre);
+    }
+    if (count == 0) return axis_;
+    const Vec3 variance = squares - sum.cwiseProduct(sum) / double(count);
+    int widest = 0;
+    variance.maxCoeff(&widest);
+    return variance[widest] > 2 * variance[axis_] ? widest : axis_;
+  }
+
+  std::vector<Index> order_;
+  Index count_ = -1;
+  int axis_ = 0;
+};
+static_assert(BroadPhase<SweepAndPrune>);
+
+}  // namespace delassus
