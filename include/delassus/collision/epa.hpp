@@ -98,15 +98,19 @@ inline int independent(const Simplex& s, double size, std::array<DifferencePoint
 /// [VanDenBergen2001].
 template <class D>
 EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
-  double size = 0;
-  for (int k = 0; k < 3; ++k)
-    size = std::max(size, (difference.core(Vec3::Unit(k)).w - difference.core(-Vec3::Unit(k)).w).norm());
+  double size = 0, size_a = 0, size_b = 0;
+  for (int k = 0; k < 3; ++k) {
+    const DifferencePoint high = difference.core(Vec3::Unit(k)), low = difference.core(-Vec3::Unit(k));
+    size = std::max(size, (high.w - low.w).norm());
+    size_a = std::max(size_a, (high.a - low.a).norm());
+    size_b = std::max(size_b, (high.b - low.b).norm());
+  }
   std::array<DifferencePoint, 4> corner;
   int count = independent(start, size, corner);
   while (count < 4)
     if (!grow(difference, corner, count, size)) return flat_depth(difference, corner, count, guess);
 
-  const double tolerance = 1e-8 * size;
+  const double tolerance = std::max(1e-8 * std::min(size_a, size_b), 1e-14 * size);
   Polytope polytope(corner);
   EpaResult best;
   Polytope::Face best_face{};

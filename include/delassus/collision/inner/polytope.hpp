@@ -13,7 +13,7 @@ namespace delassus::inner {
 /// point.
 class Polytope {
  public:
-  static constexpr int max_points = 128, max_faces = 2 * max_points;
+  static constexpr int max_points = 240, max_faces = 2 * max_points;
   struct Face {
     std::array<std::uint8_t, 3> v;
     Vec3 normal;
