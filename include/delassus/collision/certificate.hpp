@@ -35,6 +35,15 @@ inline bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double m
   return true;
 }
 
+/// True when another direction, say last step's normal, proves a greater distance than the answer: then the
+/// answer is not the shortest way out, though it is one.
+inline bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& other, double scale,
+                      const SignedPair& r) {
+  if (r.status != PairStatus::near || !(other.squaredNorm() > 0.5)) return false;
+  const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
+  return -inner::Difference{a, b, b_in_a}.reach(other) > r.distance + tolerance;
+}
+
 /// The answer of last resort: the least h(n) over the face normals of both bodies, the line of centres and
 /// the guess. Always finite and always a valid separating translation, though not always the shortest.
 inline SignedPair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess) {

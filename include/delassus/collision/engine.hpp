@@ -121,7 +121,8 @@ class CollisionEngine {
       return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
     PairCache cache{.guess = a.pose.rotation.transpose() * last.normal};
     SignedPair r = kernel_.pair(a.shape, b.shape, b_in_a, reach, cache);
-    if (!certify(a.shape, b.shape, b_in_a, reach, scale, r)) {
+    if (!certify(a.shape, b.shape, b_in_a, reach, scale, r) ||
+        is_beaten(a.shape, b.shape, b_in_a, cache.guess, scale, r)) {
       ++report_.rejects;
       r = GjkEpa{}.pair(a.shape, b.shape, b_in_a, reach, cache);
       if (!certify(a.shape, b.shape, b_in_a, reach, scale, r))

@@ -1,0 +1,26 @@
+/// Collision detection with libccd 2.1.
+#pragma once
+
+#include <delassus/adapters/ccd_kernel.hpp>
+#include <delassus/collision/engine.hpp>
+#include <delassus/collision/sweep_and_prune.hpp>
+#include <delassus/core/roles.hpp>
+
+namespace delassus {
+
+/// Sweep and prune, and libccd's penetrations, each certified; a refused one is computed by GjkEpa and
+/// counted as a reject. Nothing is allocated in a warm step, by us or by libccd.
+struct CcdCollision {
+  using plays = role::Collision;
+
+  double margin = -1;  ///< contacts up to this gap, m; negative: by size and speed (CollisionSettings)
+  double contact_distance = 0;  ///< thickness between the bodies, m
+  int max_points = 4;           ///< of one pair
+  CollisionEngine<CcdKernel, SweepAndPrune> engine{};
+
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
+    return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,105 @@
+/// The broad phase of FCL: its dynamic tree of boxes, fed with our tight boxes.
+#pragma once
+
+#include <delassus/collision/broad_phase.hpp>
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/shape/box.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace delassus {
+
+/// FCL takes the cube around a turned shape for its box, up to six times too many pairs; so each box of ours
+/// goes in as an unturned proxy with that very box. The tree is refitted once a step. It allocates nodes when
+/// the number of boxes changes, and not otherwise. A copy starts with an empty tree.
+class FclTree {
+ public:
+  FclTree() = default;
+  FclTree(const FclTree&) {}
+  FclTree& operator=(const FclTree&) { return *this; }
+  FclTree(FclTree&&) = default;
+  FclTree& operator=(FclTree&&) = default;
+
+  void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+    if (!fits(boxes)) restart(boxes);
+    for (const Index i : listed_) place(*proxies_[i], boxes[i]);
+    Query query{boxes, pairs};
+    if (listed_.size() < 2) return;
+    tree_->update();
+    tree_->collide(&query, &FclTree::report);
+  }
+
+ private:
+  using Tree = fcl::DynamicAABBTreeCollisionManagerd;
+  struct Query {
+    std::span<const Aabb> boxes;
+    std::vector<CandidatePair>& pairs;
+  };
+
+  static bool report(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+    const Query& query = *static_cast<Query*>(data);
+    const Index i = index(*a), j = index(*b);
+    if (query.boxes[i].intersects(query.boxes[j])) query.pairs.push_back({std::min(i, j), std::max(i, j)});
+    return false;
+  }
+
+  static Index index(const fcl::CollisionObjectd& proxy) {
+    return Index(reinterpret_cast<std::intptr_t>(proxy.getUserData()));
+  }
+
+  /// The proxy's box holds ours: centre ± half may round a few units of the last place inwards.
+  static void place(fcl::CollisionObjectd& proxy, const Aabb& box) {
+    const Vec3 centre = box.center();
+    const double rounding = 4 * std::numeric_limits<double>::epsilon();
+    const Vec3 half = 0.5 * box.sizes() + rounding * (box.min().cwiseAbs() + box.max().cwiseAbs());
+    auto& local = const_cast<fcl::CollisionGeometryd&>(*proxy.collisionGeometry()).aabb_local;
+    local.min_ = -half;
+    local.max_ = half;
+    proxy.setTranslation(centre);
+    proxy.computeAABB();
+  }
+
+  /// True while the same boxes are there as when the tree was built; an empty box is not in the tree.
+  bool fits(std::span<const Aabb> boxes) const {
+    if (!tree_ || proxies_.size() != boxes.size()) return false;
+    std::size_t next = 0;
+    for (Index i = 0; i < Index(boxes.size()); ++i) {
+      if (boxes[i].isEmpty()) continue;
+      if (next == listed_.size() || listed_[next] != i) return false;
+      ++next;
+    }
+    return next == listed_.size();
+  }
+
+  void restart(std::span<const Aabb> boxes) {
+    tree_ = std::make_unique<Tree>();
+    while (proxies_.size() < boxes.size()) {
+      proxies_.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(1.0, 1.0, 1.0)));
+      proxies_.back()->setUserData(reinterpret_cast<void*>(std::intptr_t(proxies_.size() - 1)));
+    }
+    proxies_.resize(boxes.size());
+    listed_.clear();
+    std::vector<fcl::CollisionObjectd*> objects;
+    for (Index i = 0; i < Index(boxes.size()); ++i) {
+      if (boxes[i].isEmpty()) continue;
+      listed_.push_back(i);
+      place(*proxies_[i], boxes[i]);
+      objects.push_back(proxies_[i].get());
+    }
+    if (objects.empty()) return;
+    tree_->registerObjects(objects);
+    tree_->setup();
+  }
+
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> proxies_;
+  std::vector<Index> listed_;
+  std::unique_ptr<Tree> tree_;
+};
+static_assert(BroadPhase<FclTree>);
+
+}  // namespace delassus
