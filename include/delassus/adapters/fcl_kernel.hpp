@@ -1,6 +1,7 @@
 /// The narrow phase of FCL: signed distances of convex pairs, for the engine to certify.
 #pragma once
 
+#include <delassus/collision/gjk.hpp>
 #include <delassus/collision/signed_pair.hpp>
 
 #include <fcl/geometry/shape/box.h>
@@ -91,12 +92,14 @@ class FclHulls {
 ///   capsule–capsule                                                       its formula in `distance`
 ///   other overlapping pairs                                               `collide`, which is libccd's MPR
 ///   pairs apart                                                           `distance`, unsigned, to 1e-9
-/// Signed `distance` is never asked: its EPA can end the process on touching bodies. Queries run in the frame
-/// of A, scaled by a power of two to unit size, since FCL's tolerances are absolute. What FCL throws is a
-/// failed answer.
+/// Debian's libfcl asserts: `distance` ends the process on some bodies that touch, and its signed form on
+/// some that overlap. So the latter is never asked, and the former only when a few steps of our GJK have
+/// proven a gap of 1e-8 of the size. Queries run in the frame of A, scaled by a power of two to unit size,
+/// since FCL's tolerances are absolute. What FCL throws is a failed answer.
 class FclKernel {
  public:
-  SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, PairCache&) noexcept {
+  SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
+                  PairCache& cache) noexcept {
     try {
       const double scale = std::ldexp(1.0, -std::ilogb(std::min(length_scale(a), length_scale(b))));
       fcl::Transform3d pose = fcl::Transform3d::Identity();
@@ -106,7 +109,9 @@ class FclKernel {
       with_geometry(a, scale, [&](const Geometry& ga) {
         with_geometry(b, scale, [&](const Geometry& gb) {
           const bool has_signed_distance = a.kind == ShapeKind::capsule && b.kind == ShapeKind::capsule;
-          if (has_signed_distance || !overlap(ga, gb, pose, r)) apart(ga, gb, pose, r);
+          if (has_signed_distance ||
+              (!overlap(ga, gb, pose, r) && is_clear(a, b, b_in_a, cache.guess, 1e-8 / scale)))
+            apart(ga, gb, pose, r);
         });
       });
       r.distance /= scale;
@@ -138,6 +143,13 @@ class FclKernel {
       default:
         return;
     }
+  }
+
+  static bool is_clear(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess, double gap) {
+    const inner::Difference difference{a, b, b_in_a};
+    const double wanted = gap + difference.radius();
+    const Vec3 direction = guess.squaredNorm() > 0 ? guess : Vec3(b_in_a.position + Vec3::UnitZ() * gap);
+    return inner::gjk(difference, direction, wanted).separation > wanted;
   }
 
   /// False when FCL sees no overlap. The normal is that of the deepest of at most four contacts.

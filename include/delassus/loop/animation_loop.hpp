@@ -27,7 +27,6 @@ namespace delassus {
 /// each role, defaults where none is named. What is not named is not compiled.
 template <class... Policies>
 class AnimationLoop {
-  static consteval bool is_sound();
   using Parts = inner::Parts<Policies...>;
 
  public:
@@ -124,7 +123,7 @@ class AnimationLoop {
   void advance();
 
  private:
-  static constexpr bool sound = is_sound();
+  static constexpr bool sound = inner::loop_is_sound<Parts, Policies...>();
   using Work = std::conditional_t<
       sound, inner::Workspace<WorldType, Laws, typename Parts::Compliance, typename Parts::Solver,
                               typename Parts::Integrator, typename Parts::Stabilisation>,
@@ -154,17 +153,6 @@ class AnimationLoop {
   long steps_ = 0;
 };
 
-
-template <class... Policies>
-consteval bool AnimationLoop<Policies...>::is_sound() {
-  if constexpr (!(inner::has_role<Policies>() && ...)) return false;
-  else if constexpr (!inner::has_one_world<Policies...>()) return false;
-  else if constexpr (!inner::one_of_each<Policies...>()) return false;
-  else if constexpr (!(inner::plays_its_role<Policies>() && ...)) return false;
-  else if constexpr (!inner::has_one_scalar<WorldType>()) return false;
-  else if constexpr (!inner::laws_are_sound<Laws>()) return false;
-  else return inner::collision_fits<Laws, typename Parts::Collision>();
-}
 
 template <class... Policies>
 AnimationLoop<Policies...>::AnimationLoop(Policies... policies)

@@ -128,5 +128,16 @@ consteval bool hears() {
   return all;
 }
 
+template <class Parts, class... Policies>
+consteval bool loop_is_sound() {
+  if constexpr (!(has_role<Policies>() && ...)) return false;
+  else if constexpr (!has_one_world<Policies...>()) return false;
+  else if constexpr (!one_of_each<Policies...>()) return false;
+  else if constexpr (!(plays_its_role<Policies>() && ...)) return false;
+  else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
+  else if constexpr (!laws_are_sound<typename Parts::Laws>()) return false;
+  else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
+}
+
 }  // namespace inner
 }  // namespace delassus

@@ -103,7 +103,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
           pool.bias[i][k] = T(sign * row.bias);
           if constexpr (requires { stabilisation.softness(h); })
             if (row.is_closed) pool.softness[i][k] = T(stabilisation.softness(h));
-          if constexpr (requires { std::get<p>(bounce.pools); })
+          if constexpr (requires { bounce.pools; })
             std::get<p>(bounce.pools)[i][k] = T(sign * (row.bias - row.plain));
         }
       }

@@ -124,7 +124,8 @@ class ContactBook {
 template <class Laws>
 Index route_contacts(Laws& laws, const ContactBook& book, const Materials& materials) {
   for_each_index<Laws::pool_count>([&](auto p) {
-    if constexpr (requires { laws.template pool<p>().law.takes(0, 0); }) laws.template pool<p>().items.clear();
+    auto& pool = laws.template pool<p>();
+    if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) pool.items.clear();
   });
   Index unclaimed = 0;
   for (Index r = 0; r < Index(book.results.size()); ++r) {
@@ -132,7 +133,7 @@ Index route_contacts(Laws& laws, const ContactBook& book, const Materials& mater
     bool is_taken = false;
     for_each_index<Laws::pool_count>([&](auto p) {
       auto& pool = laws.template pool<p>();
-      if constexpr (requires { pool.law.takes(0, 0); }) {
+      if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) {
         if (is_taken || !pool.law.takes(record.material_a, record.material_b)) return;
         is_taken = true;
         auto parameters = pool.law.law.parameters();
