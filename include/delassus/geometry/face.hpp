@@ -38,7 +38,7 @@ inline void box_face(const Shape& s, const Vec3& d, Face& face) {
   for (const auto& [u, v] : signs) {
     Vec3 p;
     p[k] = side * s.size[k];
-    p[i] = u * s.size[i];
+    p[i] = side * u * s.size[i];
     p[j] = v * s.size[j];
     face.add(p, (p[0] > 0) + 2 * (p[1] > 0) + 4 * (p[2] > 0));
   }
@@ -62,7 +62,8 @@ inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
   constexpr double c = 0.70710678118654752440;
   constexpr double octagon[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
   for (int k = 0; k < 8; ++k)
-    face.add({s.size[0] * octagon[k][0], s.size[0] * octagon[k][1], side * s.size[1]}, side > 0 ? k : 8 + k);
+    face.add({s.size[0] * octagon[k][0], side * s.size[0] * octagon[k][1], side * s.size[1]},
+             side > 0 ? k : 8 + k);
 }
 
 /// Among the faces around the support vertex the one most nearly normal to d; of more than 16 corners an even

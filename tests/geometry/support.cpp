@@ -1,0 +1,111 @@
+#include "catch.hpp"
+
+#include <delassus/geometry/face.hpp>
+#include <delassus/geometry/support.hpp>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace delassus;
+
+namespace {
+
+struct Shapes {
+  ConvexHull hull{std::vector<Vec3>{{1, 0, -1}, {-1, 1, -1}, {-1, -1, -1}, {0.2, 0.1, 2}, {0.5, 0.6, 0.4}}};
+  std::vector<Shape> all{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8}, hull};
+};
+
+Vec3 direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const double x = normal(random), y = normal(random), z = normal(random);
+  return Vec3(x, y, z).normalized();
+}
+
+}  // namespace
+
+TEST_CASE("no support point lies beyond another's plane") {
+  std::mt19937 random(1);
+  const Shapes shapes;
+  for (const Shape& s : shapes.all) {
+    std::vector<Vec3> directions, points;
+    for (int i = 0; i < 100; ++i) {
+      directions.push_back(direction(random));
+      points.push_back(support(s, directions.back()));
+    }
+    for (int i = 0; i < 100; ++i)
+      for (int j = 0; j < 100; ++j)
+        CHECK(directions[i].dot(points[j]) <= directions[i].dot(points[i]) + 1e-15);
+  }
+}
+
+TEST_CASE("the tight box touches the body on all six sides") {
+  const Shapes shapes;
+  for (const Shape& s : shapes.all) {
+    const Pose pose{.position = {1, 2, 3},
+                    .rotation = Quat(0.1, 0.2, 0.3, 0.4).normalized().toRotationMatrix()};
+    const Aabb box = tight_box(s, pose);
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 axis = pose.rotation.transpose().col(k);
+      CHECK(box.max()[k] == Approx(pose.to_world(support(s, axis))[k]).epsilon(1e-14));
+      CHECK(box.min()[k] == Approx(pose.to_world(support(s, Vec3(-axis)))[k]).epsilon(1e-14));
+    }
+  }
+  CHECK(tight_box(Shape{}, Pose{}).isEmpty());
+  CHECK(std::isinf(tight_box(HalfSpace{}, Pose{}).max()[0]));
+}
+
+TEST_CASE("a face holds the support point, looks outward and lies in its plane") {
+  std::mt19937 random(3);
+  const Shapes shapes;
+  for (const Shape& s : shapes.all)
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 d = direction(random), reach = support(s, d);
+      const Face face = face_towards(s, d);
+      if (face.count < 3) continue;
+      CHECK(face.normal.dot(d) > 0);
+      double highest = -10;
+      for (int k = 0; k < face.count; ++k) {
+        highest = std::max(highest, d.dot(face.point[k]));
+        CHECK(std::abs(face.normal.dot(face.point[k] - face.point[0])) < 1e-14);
+        const Vec3 edge = face.point[(k + 1) % face.count] - face.point[k];
+        CHECK(edge.cross(face.point[(k + 2) % face.count] - face.point[k]).dot(face.normal) > 0);
+      }
+      // A cap is an octagon in its rim: it may miss the rim by r (1 − cos 22.5°) < 0.0762 r.
+      CHECK(highest <= d.dot(reach) + 1e-15);
+      CHECK(highest >= d.dot(reach) - (s.kind == ShapeKind::cylinder ? 0.0762 * s.size[0] : 1e-15));
+    }
+}
+
+TEST_CASE("a corner keeps its name in every face it belongs to") {
+  const Shape box = Box{1, 1, 1};
+  const Face up = face_towards(box, Vec3::UnitZ()), side = face_towards(box, Vec3::UnitX());
+  int shared = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      CHECK((up.corner[i] == side.corner[j]) == (up.point[i] == side.point[j]));
+      shared += up.corner[i] == side.corner[j];
+    }
+  CHECK(shared == 2);
+}
+
+TEST_CASE("a capsule offers a line only when it lies, a cylinder a cap or a line, a sphere nothing") {
+  CHECK(face_towards(Capsule{0.2, 1}, Vec3::UnitX()).count == 2);
+  CHECK(face_towards(Capsule{0.2, 1}, Vec3(1, 0, 0.1).normalized()).count == 0);
+  CHECK(face_towards(Cylinder{0.2, 1}, Vec3::UnitZ()).count == 8);
+  CHECK(face_towards(Cylinder{0.2, 1}, Vec3::UnitX()).count == 2);
+  CHECK(face_towards(Sphere{1}, Vec3::UnitX()).count == 0);
+}
+
+TEST_CASE("a face of a hull with more than sixteen corners is sampled evenly") {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 64; ++i)
+    for (const double z : {-1.0, 1.0})
+      points.push_back({std::cos(i * M_PI / 32), std::sin(i * M_PI / 32), z});
+  const ConvexHull hull(points);
+  const Face face = face_towards(hull, Vec3::UnitZ());
+  CHECK(face.count == Face::capacity);
+  Vec3 mean = Vec3::Zero();
+  for (int k = 0; k < face.count; ++k) mean += face.point[k] / face.count;
+  CHECK((mean - Vec3::UnitZ()).norm() < 1e-14);
+}
