@@ -17,6 +17,8 @@
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
+#include <delassus/listeners/convergence_record.hpp>
+#include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>

@@ -19,7 +19,7 @@ namespace delassus {
 ///   A = mass · diag(m 1, R I Rᵀ),   f = (m g + forces, torques about the centre of mass).
 ///
 /// The gyroscopic term is not in f: a step kicks at fixed R, so that impulses enter P and L exactly, then drifts
-/// by free rotation with the midpoint rule (`midpoint_rate`), which keeps L and the energy of each body.
+/// by free rotation by the midpoint rule (`midpoint_rate`), which keeps L and the energy of each body.
 template <class T>
 class BasicRigidBodies {
  public:
@@ -155,12 +155,10 @@ class BasicRigidBodies {
   Vec3 point(const Anchor& a) const { return (x_[a.block] + R_[a.block] * a.local.template cast<T>()).template cast<double>(); }
   Quat frame(const Anchor& a) const { return q_[a.block].template cast<double>() * a.frame; }
 
-  /// Kick and drift: x₊ = x + h v_next; R₊ = R cay(h Ω̄), L kept. A body whose v_next is not finite stays where it is.
-  void advance(double h) { advance(h, [this](Index b) { return Vec<3, T>(v_next[b].template head<3>()); }); }
-  /// The same with the mean of the old and the new velocity for the positions: the midpoint rule.
-  void advance_midpoint(double h) {
-    advance(h, [this](Index b) { return Vec<3, T>(T(0.5) * (v_[b] + v_next[b]).template head<3>()); });
-  }
+  /// Kick and drift: x₊ = x + h v_next, and free rotation from ω_next. A body whose v_next is not finite stays where it is.
+  void advance(double h) { advance_with(h, T(0)); }
+  /// The midpoint rule: x₊ = x + h (v + v_next)/2, and rotation with the angular impulse I (ω_next − ω).
+  void advance_midpoint(double h) { advance_with(h, T(0.5)); }
 
   /// How many bodies the last advance left where they were.
   Index held() const { return held_; }
@@ -211,8 +209,8 @@ class BasicRigidBodies {
   }
   void set_mass(Index b);
   void turn(Index b);
-  template <class Mean>
-  void advance(double h, const Mean& mean_velocity);
+  void advance_with(double h, T old_share);
+  void follow(Index b, T h);
 
   Slots slots_;
   std::uint32_t owner_ = inner::next_owner();
@@ -313,9 +311,9 @@ void BasicRigidBodies<T>::begin_step(double h) {
   }
 }
 
+/// `old_share` of the old velocity in the mean that moves a body: 0 for kick and drift, ½ for the midpoint rule.
 template <class T>
-template <class Mean>
-void BasicRigidBodies<T>::advance(double h_, const Mean& mean_velocity) {
+void BasicRigidBodies<T>::advance_with(double h_, T old_share) {
   const T h = T(h_);
   held_ = 0;
   for (const Index b : slots_.active()) {
@@ -325,26 +323,36 @@ void BasicRigidBodies<T>::advance(double h_, const Mean& mean_velocity) {
       ++held_;
       continue;
     }
-    x_[b] += h * mean_velocity(b);
-    if (motion_[b] == Motion::dynamic) {
-      // L = R I Rᵀ ω after the kick; the drift turns the body under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
-      const Vec<3, T> rate = R_[b].transpose() * v_next[b].template tail<3>();
-      const Vec<3, T> momentum = R_[b] * (inertia_[b] * rate);
-      q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], rate, h))).normalized();
-      turn(b);
-      v_[b].template head<3>() = v_next[b].template head<3>();
-      v_[b].template tail<3>() = inverse_inertia_world_[b] * momentum;
-    } else {
-      q_[b] = (exponential<T>(h * v_next[b].template tail<3>()) * q_[b]).normalized();
-      if (target_[b].is_set) {
-        x_[b] = target_[b].position.template cast<T>();
-        q_[b] = target_[b].orientation.template cast<T>();
-        target_[b].is_set = false;
-        v_[b].setZero();
-      }
-      turn(b);
+    if (motion_[b] == Motion::kinematic) {
+      follow(b, h);
+      continue;
     }
+    x_[b] += h * (old_share * v_[b] + (T(1) - old_share) * v_next[b]).template head<3>();
+    // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
+    const Vec<3, T> kicked = R_[b].transpose() * v_next[b].template tail<3>();
+    const Vec<3, T> start = old_share > T(0) ? Vec<3, T>(R_[b].transpose() * v_[b].template tail<3>()) : kicked;
+    const Vec<3, T> momentum = inertia_[b] * kicked;
+    const Vec<3, T> before = old_share > T(0) ? Vec<3, T>(inertia_[b] * start) : momentum;
+    const Vec<3, T> spatial = R_[b] * momentum;
+    q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], start, before, momentum, h))).normalized();
+    turn(b);
+    v_[b].template head<3>() = v_next[b].template head<3>();
+    v_[b].template tail<3>() = inverse_inertia_world_[b] * spatial;
   }
+}
+
+/// A kinematic body goes where it was told, exactly.
+template <class T>
+void BasicRigidBodies<T>::follow(Index b, T h) {
+  x_[b] += h * v_next[b].template head<3>();
+  q_[b] = (exponential<T>(h * v_next[b].template tail<3>()) * q_[b]).normalized();
+  if (target_[b].is_set) {
+    x_[b] = target_[b].position.template cast<T>();
+    q_[b] = target_[b].orientation.template cast<T>();
+    target_[b].is_set = false;
+    v_[b].setZero();
+  }
+  turn(b);
 }
 
 template <class T>

@@ -91,12 +91,19 @@ class AnimationLoop {
   const auto& part() const {
     return part_of<Role>(*this);
   }
+  /// A policy of the list, by type.
   template <class P>
-  P& get() {
+  static constexpr bool has = (std::is_same_v<P, Policies> || ...);
+  template <class P>
+  P& get()
+    requires(has<P>)
+  {
     return std::get<P>(policies_);
   }
   template <class P>
-  const P& get() const {
+  const P& get() const
+    requires(has<P>)
+  {
     return std::get<P>(policies_);
   }
 
@@ -107,6 +114,12 @@ class AnimationLoop {
   {
     return work_.reports;
   }
+  /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
+  template <class F>
+  void each_constraint(F&& f) const;
+  /// f(x_a, x_b) for every constraint with two anchors: where they are now, m.
+  template <class F>
+  void each_joint(F&& f) const;
   double time() const { return start_ + double(steps_) * h_; }
 
   // --- the stages, in the plain order; a host that interleaves its own work calls begin(h), then these ----------------
@@ -246,6 +259,34 @@ void AnimationLoop<Policies...>::with_observer(F&& f) {
 }
 
 template <class... Policies>
+template <class F>
+void AnimationLoop<Policies...>::each_constraint(F&& f) const {
+  if constexpr (has_constraints) {
+    auto book = work_.book;
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = work_.rows.template pool<p>();
+      constexpr int R = Work::Rows::template rows_of<p>;
+      for (Index i = 0; i < pool.items(); ++i) {
+        const Local<R, Scalar> c{work_.W.template diagonal<p>(i), work_.W.template residual<p>(work_.rows, i), pool.lambda[i]};
+        f(int(p), i, pool.lambda[i], double(book.template natural_map<p>(i, c, c.W.trace() / Scalar(R)).norm()), h_);
+      }
+    });
+  }
+}
+
+template <class... Policies>
+template <class F>
+void AnimationLoop<Policies...>::each_joint(F&& f) const {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    const auto& pool = laws().template pool<p>();
+    for (Index i = 0; i < pool.count(); ++i) {
+      const auto& item = pool.item(i);
+      if constexpr (requires { item.a.owner, item.b.owner; }) f(world().point(item.a), world().point(item.b));
+    }
+  });
+}
+
+template <class... Policies>
 void AnimationLoop<Policies...>::begin(double h) {
   DELASSUS_EXPECT(std::isfinite(h) && h > 0, "step: h = " + inner::text(h) + " s must be finite and > 0");
   if (h != h_) {
@@ -256,6 +297,7 @@ void AnimationLoop<Policies...>::begin(double h) {
   h_ = h;
   report_ = {};
   if constexpr (has_constraints) work_.book.attach(laws());
+  tell<stage::Begin>();
 }
 
 template <class... Policies>

@@ -5,8 +5,9 @@
 
 namespace delassus {
 
-/// In the order of the plain scheme. `Step` is heard once, when everything is done.
+/// In the order of the plain scheme, each heard when it is done. `Begin` is heard first, `Step` when all is done.
 namespace stage {
+struct Begin { static constexpr const char* name = "begin"; };
 struct Detect { static constexpr const char* name = "detect"; };
 struct Linearize { static constexpr const char* name = "linearize"; };
 struct FreeMotion { static constexpr const char* name = "free motion"; };
@@ -25,7 +26,7 @@ struct Listens {
   template <class Stage>
   static constexpr bool to = (std::is_same_v<Stage, Stages> || ...);
 };
-using ListensToAll = Listens<stage::Detect, stage::Linearize, stage::FreeMotion, stage::Islands, stage::Bias,
+using ListensToAll = Listens<stage::Begin, stage::Detect, stage::Linearize, stage::FreeMotion, stage::Islands, stage::Bias,
                              stage::Build, stage::Solve, stage::Correct, stage::Advance, stage::Step>;
 
 }  // namespace delassus

@@ -37,37 +37,40 @@ Eigen::Quaternion<T> cayley(const Vec<3, T>& theta) {
   return q;
 }
 
-/// One step of free rotation by the implicit midpoint rule, in the body's frame:
+/// One step of rotation by the implicit midpoint rule, in the body's frame. a = I Ω is the momentum before, c the one
+/// after the step's angular impulse, both in the axes of R:
 ///
-///   I (Ω₊ − Ω) + h Ω̄ × I Ω̄ = 0,   Ω̄ = (Ω + Ω₊)/2,   R₊ = R cay(h Ω̄).
+///   cay(h Ω̄) I Ω₊ = c,   Ω̄ = (Ω + Ω₊)/2,   R₊ = R cay(h Ω̄),
 ///
-/// Keeps ½ Ω·IΩ (the rule keeps quadratic invariants) and the angular momentum R I Ω, since the equation is
-/// cay(h Ω̄) I Ω₊ = I Ω multiplied by I + h Ω̄^/2. Returns Ω̄; Ω₊ = 2 Ω̄ − Ω. Newton's method with step halving:
-/// F(Ω̄) = 2 I (Ω̄ − Ω) + h Ω̄ × I Ω̄, F′ = 2 I + h (Ω̄^ I − (I Ω̄)^). Source: [SimoWong1991], the midpoint member.
+/// so that R₊ I Ω₊ = R c: the spatial angular momentum takes the impulse exactly. With no impulse (c = a) it is
+/// I (Ω₊ − Ω) + h Ω̄ × I Ω̄ = 0, which keeps ½ Ω·IΩ too, since the rule keeps quadratic invariants. Returns Ω̄.
+///
+/// Newton's method with step halving from Ω, on the equation multiplied by I + h Ω̄^/2:
+///   F(Ω̄) = m − c + h/2 Ω̄ × (m + c),  m = 2 I Ω̄ − a = I Ω₊,   F′ = 2 I + h/2 (2 Ω̄^ I − (m + c)^).
+/// Source: [SimoWong1991], the midpoint member.
 template <class T>
-Vec<3, T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, T h) {
-  Vec<3, T> mid = rate;
-  Vec<3, T> momentum = inertia * mid;
-  Vec<3, T> residual = h * mid.cross(momentum);
-  const T start = residual.norm();
-  const T floor = std::numeric_limits<T>::epsilon() * momentum.norm();
-  T size = start;
+Vec<3, T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c, T h) {
+  Vec<3, T> mid = rate, sum = T(2) * (inertia * mid) - a + c;
+  Vec<3, T> residual = sum - T(2) * c + (h / 2) * mid.cross(sum);
+  T size = residual.norm();
+  const T floor = std::numeric_limits<T>::epsilon() * c.norm();
   for (int iteration = 0; iteration < 20 && size > floor; ++iteration) {
-    const Mat<3, 3, T> slope = T(2) * inertia + h * (skew(mid) * inertia - skew(momentum));
+    const Mat<3, 3, T> slope = T(2) * inertia + (h / 2) * (T(2) * skew(mid) * inertia - skew(sum));
     const Vec<3, T> move = slope.inverse() * residual;
     T step = 1;
-    for (int halving = 0; halving < 8; ++halving, step /= 2) {
+    for (int halving = 0;; ++halving, step /= 2) {
       const Vec<3, T> trial = mid - step * move;
-      const Vec<3, T> trial_momentum = inertia * trial;
-      const Vec<3, T> trial_residual = T(2) * (trial_momentum - inertia * rate) + h * trial.cross(trial_momentum);
+      const Vec<3, T> trial_sum = T(2) * (inertia * trial) - a + c;
+      const Vec<3, T> trial_residual = trial_sum - T(2) * c + (h / 2) * trial.cross(trial_sum);
       const T trial_size = trial_residual.norm();
-      if (!(trial_size < size) && halving < 7) continue;
-      if (!(trial_size < size)) return mid;
-      mid = trial;
-      momentum = trial_momentum;
-      residual = trial_residual;
-      size = trial_size;
-      break;
+      if (trial_size < size) {
+        mid = trial;
+        sum = trial_sum;
+        residual = trial_residual;
+        size = trial_size;
+        break;
+      }
+      if (halving == 7) return mid;
     }
   }
   return mid;

@@ -71,6 +71,12 @@ struct Contact {
   void clamp(const Item& item, Vec<rows, T>& lambda) const {
     law.clamp(item.parameters, lambda);
   }
+  template <class T>
+  bool is_sliding(const Item& item, const Vec<rows, T>& lambda) const
+    requires requires { law.is_sliding(item.parameters, lambda); }
+  {
+    return law.is_sliding(item.parameters, lambda);
+  }
   /// e of this contact, where the law has one.
   double restitution(const Item& item) const
     requires requires { item.parameters.restitution; }

@@ -86,6 +86,13 @@ struct Coulomb {
     lambda = project_on_cone(lambda, T(p.friction));
   }
 
+  /// |λ_t| = μ λ_n > 0 to rounding.
+  template <class T>
+  bool is_sliding(const Parameters& p, const Vec<3, T>& lambda) const {
+    constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
+    return lambda[0] > 0 && std::hypot(lambda[1], lambda[2]) >= T(p.friction) * lambda[0] * (T(1) - rounding);
+  }
+
  private:
   template <class T>
   static Vec<3, T> slip(const Vec<3, T>& b, T mu, Memory<T>& memory) {

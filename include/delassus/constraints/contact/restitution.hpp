@@ -56,6 +56,12 @@ struct Restitution {
   void clamp(const Parameters& p, Vec<rows, T>& lambda) const {
     law.clamp(p.law, lambda);
   }
+  template <class T>
+  bool is_sliding(const Parameters& p, const Vec<rows, T>& lambda) const
+    requires requires { law.is_sliding(p.law, lambda); }
+  {
+    return law.is_sliding(p.law, lambda);
+  }
 };
 
 template <class Law>

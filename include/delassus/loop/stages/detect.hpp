@@ -17,6 +17,7 @@ namespace delassus {
 struct ContactResult {
   ContactRecord record;
   Vec3 impulse = Vec3::Zero();
+  bool is_sliding = false;  ///< the friction impulse is as large as the cone allows
 };
 
 /// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.

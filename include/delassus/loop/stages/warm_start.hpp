@@ -42,6 +42,8 @@ void keep_impulses(Laws& laws, const Rows& rows, ContactBook& book) {
         const auto& item = pool.item(i);
         book.results[item.result].impulse =
             item.frame.template topRows<R>().transpose() * lambda[i].template cast<double>();
+        if constexpr (requires { pool.law.is_sliding(item, lambda[i]); })
+          book.results[item.result].is_sliding = pool.law.is_sliding(item, lambda[i]);
       }
     }
   });

@@ -1,0 +1,94 @@
+/// Records a running loop for the replay page.
+#pragma once
+
+#include <delassus/bodies/invariants.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/io/recording.hpp>
+#include <delassus/listeners/stopwatch.hpp>
+#include <delassus/loop/stage.hpp>
+
+#include <string>
+#include <utility>
+
+namespace delassus {
+
+/// Bodies as they are when the first step ends; frames at most `frames_per_second`; a sample of every series
+/// a step. A Stopwatch listed before it gives the stage times.
+class Recorder {
+ public:
+  using plays = role::Listener;
+  using listens = Listens<stage::Step>;
+
+  Recorder() = default;
+  Recorder(std::string name, std::string caption, double frames_per_second = 30) {
+    recording_.name = std::move(name);
+    recording_.caption = std::move(caption);
+    recording_.frames_per_second = frames_per_second;
+  }
+
+  const Recording& recording() const { return recording_; }
+  Recording& recording() { return recording_; }
+
+  void after(stage::Step, const auto& loop) {
+    if (recording_.bodies.empty()) add_bodies(loop.world());
+    sample(loop);
+    if (recording_.wants_frame(loop.time())) add_frame(loop);
+  }
+
+ private:
+  void add_bodies(const auto& world) {
+    world.each([&](const auto& set, auto) {
+      for (const Index b : set.active()) {
+        if (set.has_collider(b))
+          recording_.bodies.push_back(recorded_body(set.shape(b), !set.moves(b)));
+        else
+          recording_.bodies.push_back(recorded_particle(0.03));
+      }
+    });
+  }
+
+  void add_frame(const auto& loop) {
+    RecordedFrame frame;
+    frame.time = loop.time();
+    loop.world().each([&](const auto& set, auto) {
+      for (const Index b : set.active()) {
+        const Pose pose = set.pose(b);
+        frame.poses.push_back({pose.position, Quat(pose.rotation)});
+      }
+    });
+    if constexpr (requires { loop.contacts(); })
+      for (const ContactResult& c : loop.contacts()) {
+        if (c.impulse.dot(c.record.normal) > 0)
+          frame.contacts.push_back(
+              {c.record.point(), c.impulse, c.is_sliding ? RecordedState::sliding : RecordedState::sticking});
+      }
+    loop.each_joint([&](const Vec3& a, const Vec3& b) { frame.lines.push_back({a, b}); });
+    recording_.frames.push_back(std::move(frame));
+  }
+
+  void sample(const auto& loop) {
+    RecordedSteps& steps = recording_.steps;
+    const auto& report = loop.report();
+    double energy = 0;
+    loop.world().each([&](const auto& set, auto) { energy += kinetic_energy(set) + potential_energy(set); });
+    steps.time.push_back(loop.time());
+    steps.energy.push_back(energy);
+    if constexpr (requires { loop.island_reports(); }) {
+      steps.residual.push_back(report.residual);
+      steps.sweeps.push_back(report.sweeps);
+    }
+    if constexpr (requires { loop.template get<Stopwatch>(); })
+      add_times(loop.template get<Stopwatch>().last());
+  }
+
+  void add_times(const Stopwatch::Times& times) {
+    auto& stages = recording_.steps.stages;
+    if (stages.empty())
+      for (const char* name : Stopwatch::names) stages.push_back({name, {}});
+    for (std::size_t s = 0; s < times.size(); ++s) stages[s].milliseconds.push_back(times[s]);
+  }
+
+  Recording recording_;
+};
+
+}  // namespace delassus
