@@ -89,6 +89,19 @@ TEST_CASE("a series is thinned to its largest, mean or last values") {
   REQUIRE(inner::steps_per_sample(1201) == 2);
 }
 
+TEST_CASE("in a series, zero on a logarithmic axis and what is no number have words of their own") {
+  const auto written = [](std::vector<double> values, bool is_logarithmic) {
+    std::string out;
+    inner::append_series(out, std::move(values), is_logarithmic);
+    return out;
+  };
+  // Words 0, 65533, 65534, 65535, lowest byte first: 00 00 fd ff fe ff ff ff.
+  REQUIRE(written({1e-8, 1, 0, std::nan("")}, true) == "[-8,0,\"AAD9//7///8=\"]");
+  REQUIRE(written({2, 3, std::nan(""), HUGE_VAL}, false) == "[2,3,\"AAD9//////8=\"]");
+  REQUIRE(written({}, true) == "[0,0,\"\"]");
+  REQUIRE(written({0, 0}, true) == "[0,0,\"/v/+/w==\"]");
+}
+
 TEST_CASE("no name, caption or cell can break out of the page") {
   Recording scene = spirals(1, 0.1, 1);
   scene.name = "</script><script>alert(1)</script>";

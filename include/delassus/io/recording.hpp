@@ -77,7 +77,7 @@ struct RecordedStage {
 struct RecordedSteps {
   std::vector<double> time;      ///< s, ascending
   std::vector<double> energy;    ///< J
-  std::vector<double> residual;  ///< relative, drawn on a logarithmic axis
+  std::vector<double> residual;  ///< relative, ≥ 0, drawn on a logarithmic axis
   std::vector<double> sweeps;    ///< iterations of the solver
   std::vector<RecordedStage> stages;
   double tolerance = 0;  ///< drawn as a line across the residual; 0: none

@@ -27,9 +27,10 @@ struct Interval {
   }
   bool is_empty() const { return !(low <= high); }
 
-  std::uint16_t code(double x) const {
+  /// Pre: x is a number. `parts` below 65535 leave the last words for other meanings.
+  std::uint16_t code(double x, int parts = 65535) const {
     if (!(high > low)) return 0;
-    return std::uint16_t(std::lround(std::clamp((x - low) / (high - low), 0.0, 1.0) * 65535));
+    return std::uint16_t(std::lround(std::clamp((x - low) / (high - low), 0.0, 1.0) * parts));
   }
   double value(std::uint16_t code) const { return low + (high - low) * (code / 65535.0); }
 };

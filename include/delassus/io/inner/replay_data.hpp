@@ -166,21 +166,19 @@ class FrameWriter {
   std::string states_;
 };
 
-/// [low, high, words]. A logarithmic series holds log₁₀; what is not positive counts as the smallest that is.
+/// [low, high, words]: the interval in 65533 parts; the last two words mean minus infinity and no number.
+/// A logarithmic series holds log₁₀.
 inline void append_series(std::string& out, std::vector<double> values, bool is_logarithmic = false) {
-  if (is_logarithmic) {
-    Interval positive;
-    for (const double x : values)
-      if (x > 0) positive.include(x);
-    const double least = positive.is_empty() ? 1e-16 : positive.low;
-    for (double& x : values)
-      x = std::log10(std::isfinite(x) ? std::max(x, least) : std::max(least, positive.high));
-  }
+  if (is_logarithmic)
+    for (double& x : values) x = x >= 0 ? std::log10(x) : std::nan("");
   Interval range;
   for (const double x : values) range.include(x);
   if (range.is_empty()) range = {0, 0};
   Words words;
-  for (const double x : values) words.push(range.code(std::isfinite(x) ? x : range.high));
+  for (const double x : values) {
+    const bool is_lowest = is_logarithmic && x < 0 && std::isinf(x);
+    words.push(is_lowest ? 65534 : std::isfinite(x) ? range.code(x, 65533) : 65535);
+  }
   append_number(out += '[', range.low, 12);
   append_number(out += ',', range.high, 12);
   words.append_to(out += ',');

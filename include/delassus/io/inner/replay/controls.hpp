@@ -77,7 +77,8 @@ function writeNote() {
   const {scene} = now, resolution = Math.max(...scene.step) / 2, {width} = scene;
   const most = Math.max(0, ...scene.contactTotal), shown = Math.min(page.contacts, most);
   const fine = resolution >= 1e-4 ? human(resolution * 1e3, 2) + ' mm' : human(resolution * 1e6, 2) + ' µm';
-  $('note').textContent = `At most ${page.rate} frames a second; positions to ${fine} in this scene. ` +
+  $('note').textContent = `At most ${page.rate} frames a second` +
+    (resolution > 0 ? `; positions to ${fine} in this scene. ` : '. ') +
     (shown < most ? `Of up to ${most} contacts at once the ${shown} of largest impulse are kept. ` : '') +
     (width > 1 ? `A plotted point stands for ${width} steps: the largest residual and sweeps, ` +
       'the mean time, the last energy.' : '');
@@ -218,7 +219,7 @@ function start() {
   // The address may name a scene and a time: #3/2.5 opens the third at 2.5 s.
   const [, index, time] = location.hash.match(/^#(\d+)(?:\/([\d.]+))?$/) ?? [];
   if (!scenes.length) {
-    $('replay').hidden = tabs.hidden = true;
+    $('replay').hidden = $('keys').hidden = tabs.hidden = true;
     return;
   }
   openTab(scenes[index - 1] ? index - 1 : 0, time && Number(time));

@@ -16,7 +16,10 @@ const bytes = text => {
   return out;
 };
 const words = text => new Uint16Array(bytes(text).buffer);
-const series = ([low, high, text]) => Float64Array.from(words(text), w => low + (high - low) * w / 65535);
+
+/// The last two words mean minus infinity, the logarithm of zero, and no number.
+const series = ([low, high, text]) => Float64Array.from(words(text), w =>
+  w === 65535 ? NaN : w === 65534 ? -Infinity : low + (high - low) * w / 65533);
 
 /// Everything of one scene, decoded once, when its tab is first opened.
 function openScene(scene) {

@@ -36,7 +36,11 @@ const decades = (low, high, count) => {
 const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n'], [1e-12, 'p']];
 const prefixFor = size =>
   size > 0 ? prefixes.find(([scale]) => size >= scale) ?? prefixes.at(-1) : prefixes[3];
-const extremes = list => list.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+const finite = list => Array.from(list).filter(Number.isFinite);
+const extremes = list => {
+  const range = finite(list).reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+  return range[0] <= range[1] ? range : [0, 0];
+};
 
 class Plot {
   /// `axis`: {low, high, marks(count): [[value, label], …]}; `text(i)`: what the heading says of sample i.
@@ -129,7 +133,12 @@ class Plot {
       c.setLineDash([]);
     }
     c.beginPath();
-    for (let i = 0; i < time.length; ++i) c.lineTo(this.x(time[i]), this.y(values[i]));
+    let isDrawing = false;  // what is no number leaves a gap, minus infinity is the floor
+    for (let i = 0; i < time.length; ++i) {
+      const y = Math.min(this.y(values[i]), margin.top + this.height);
+      if (isDrawing && !Number.isNaN(y)) c.lineTo(this.x(time[i]), y); else c.moveTo(this.x(time[i]), y);
+      isDrawing = !Number.isNaN(y);
+    }
     c.strokeStyle = css('accent');
     c.lineWidth = 1.5;
     c.lineJoin = 'round';
@@ -149,7 +158,7 @@ class Plot {
     c.moveTo(x, margin.top - 3);
     c.lineTo(x, margin.top + this.height);
     c.stroke();
-    if (this.line) {
+    if (this.line && !Number.isNaN(this.line.values[i])) {
       c.beginPath();
       const y = this.y(this.line.values[i]);
       c.arc(x, Math.min(margin.top + this.height, Math.max(margin.top, y)), 3.2, 0, 7);
@@ -185,21 +194,22 @@ function logAxis([low, high], label) {
 /// Energy, or its change where that is small beside it.
 function energyPlot(values) {
   const range = extremes(values), size = Math.max(Math.abs(range[0]), Math.abs(range[1]));
+  const first = finite(values)[0] ?? 0;
   if (range[1] - range[0] >= 1e-3 * size) {
     const [scale, prefix] = prefixFor(size);
     return {title: 'Energy', unit: prefix + 'J', axis: linearAxis(range, scale), line: {values},
             text: i => energyText(values[i])};
   }
-  const change = values.map(v => v - values[0]), [low, high] = extremes(change);
+  const change = values.map(v => v - first), [low, high] = extremes(change);
   const [scale, prefix] = prefixFor(Math.max(-low, high));
-  return {title: 'Energy', unit: `change from ${energyText(values[0])}, in ${prefix}J`,
+  return {title: 'Energy', unit: `change from ${energyText(first)}, in ${prefix}J`,
           axis: linearAxis([low, high], scale), line: {values: change},
           text: i => `${change[i] > 0 ? '+' : ''}${human(change[i] / scale)} ${prefix}J`};
 }
 
 function sweepsPlot(values) {
-  const sorted = [...values].sort((a, b) => a - b), most = sorted.at(-1);
-  const text = i => `${Math.round(values[i])}`;
+  const sorted = finite(values).sort((a, b) => a - b), most = sorted.at(-1) ?? 0;
+  const text = i => Number.isFinite(values[i]) ? `${Math.round(values[i])}` : '–';
   if (most < 100 || most < 30 * quantile(sorted, 0.5))
     return {title: 'Sweeps', unit: 'a step', axis: linearAxis([0, most || 1], 1, true), line: {values}, text};
   const logs = values.map(v => Math.log10(Math.max(v, 1)));
@@ -210,7 +220,7 @@ function sweepsPlot(values) {
 function stagesPlot(stages) {
   const layers = stages.map(({values}, k) => ({values, colour: stageColours[k % stageColours.length]}));
   const total = Array.from(stages[0].values, (_, i) => stages.reduce((sum, s) => sum + s.values[i], 0));
-  const high = quantile([...total].sort((a, b) => a - b), 0.99) || 1e-6, scale = high >= 1 ? 1 : 1e-3;
+  const high = quantile(finite(total).sort((a, b) => a - b), 0.99) || 1e-6, scale = high >= 1 ? 1 : 1e-3;
   return {title: 'Time per step', unit: scale === 1 ? 'ms, by stage' : 'µs, by stage', layers,
           axis: linearAxis([0, high], scale, true), text: i => duration(total[i]),
           legend: stages.map(({name}, k) => ({name, colour: layers[k].colour}))};
@@ -222,7 +232,8 @@ function plotsOf({series, tolerance}) {
   if (energy.length) list.push(energyPlot(energy));
   if (residual.length) {
     const level = tolerance > 0 ? Math.log10(tolerance) : undefined;
-    const range = extremes(level === undefined ? residual : [...residual, level]);
+    const known = finite(residual);
+    const range = extremes(level === undefined ? known : [...known, level]);
     const bound = level === undefined ? '' : `, tolerance ${human(tolerance, 1).replace('1 × ', '')}`;
     list.push({title: 'Residual', unit: 'relative' + bound, axis: logAxis(range, v => '10' + raised(v)),
                line: {values: residual, level}, text: i => human(10 ** residual[i])});

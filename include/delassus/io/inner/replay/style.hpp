@@ -166,6 +166,7 @@ footer span { white-space: nowrap; margin-right: .9em; }
   #toggles { top: auto; bottom: 44px; left: 8px; right: 8px; justify-content: flex-start; }
   #legend { left: 8px; bottom: 8px; gap: .1rem .6rem; }
   #legend label { display: none; }
+  #view { height: calc(100% - 78px); }
   #readout { left: 8px; top: 8px; }
   #transport { gap: 5px; padding: 8px 10px; flex-wrap: wrap; }
   #scrub { order: -1; flex-basis: 100%; }

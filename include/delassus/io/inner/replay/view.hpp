@@ -26,7 +26,7 @@ class View extends Graphics {
       line: this.program(lineVertex, lineFragment),
     };
     this.solids = {box: this.solid(boxSolid()), cylinder: this.solid(coneSolid(-1, 1, 1, 1, 36)),
-                   ball: this.solid(sphereSolid(20)), plainBall: this.solid(sphereSolid(12)),
+                   ball: this.solid(sphereSolid(24)), plainBall: this.solid(sphereSolid(12)),
                    drop: this.solid(sphereSolid(7))};
     this.arrows = this.mesh(arrowSolid(), [3, 3], [3, 3, 4]);
     this.lines = this.mesh([0, -1, 1, -1, 1, 1, 0, -1, 1, 1, 0, 1], [2], [3, 3, 4]);
