@@ -36,7 +36,11 @@ struct GjkEpa {
       return r;
     }
     const inner::EpaResult deep = inner::epa(difference, apart.simplex, guess);
-    if (!(deep.h < std::numeric_limits<double>::infinity())) return {};
+    if (!(std::min(deep.h, -apart.separation) < std::numeric_limits<double>::infinity())) return {};
+    // Both have proven a plane; when the cores touch within rounding, either may be the better one.
+    if (-apart.separation < deep.h)
+      return answer(apart.normal, apart.separation - radius, apart.simplex.mix(&inner::DifferencePoint::a),
+                    apart.simplex.mix(&inner::DifferencePoint::b), core_radius(a), core_radius(b));
     return answer(deep.normal, -deep.h - radius, deep.point_a, deep.point_b, core_radius(a), core_radius(b));
   }
 

@@ -25,16 +25,13 @@ inline SignedPair half_space_patch(const Shape& s, const Pose& pose, const Plane
   const PatchPoint lowest = contact(pose.to_world(support(s, down)), Patch::witness);
   const Face face = face_towards(s, down);
   patch.count = 0;
-  double deepest = std::numeric_limits<double>::infinity();
   for (int k = 0; k < face.count; ++k) {
     const PatchPoint p =
         contact(pose.to_world(face.point[k]), inner::corner_name(!plane_is_a, face.corner[k]));
-    if (p.gap > margin) continue;
-    deepest = std::min(deepest, p.gap);
-    patch.add(p);
+    if (p.gap <= margin) patch.add(p);
   }
-  if (!(deepest <= lowest.gap + 1e-4 * scale)) patch.add(lowest);
   inner::drop_twins(scale, patch);
+  inner::add_witness(lowest, scale, patch);
   return {.status = lowest.gap > margin ? PairStatus::far : PairStatus::near,
           .distance = lowest.gap,
           .normal = plane_is_a ? plane.normal : Vec3(-plane.normal),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace delassus {
 
@@ -38,6 +39,22 @@ inline Face posed(Face face, const Pose& pose) {
 inline void reverse(Face& face) {
   std::reverse(face.point.begin(), face.point.begin() + face.count);
   std::reverse(face.corner.begin(), face.corner.begin() + face.count);
+}
+
+/// Of two round caps, turns the octagon of one so that its corners look where the other's do: the caps have
+/// no corners of their own, and equal caps one on the other shall overlap in an octagon, however they are
+/// turned.
+inline void align_octagons(const Face& cap, Face& other) {
+  Vec3 centre = Vec3::Zero(), other_centre = Vec3::Zero();
+  for (int k = 0; k < 8; ++k) {
+    centre += cap.point[k] / 8;
+    other_centre += other.point[k] / 8;
+  }
+  const double radius = (other.point[0] - other_centre).norm();
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 spoke = cap.point[k] - centre;
+    other.point[k] = other_centre + radius * (spoke - other.normal * other.normal.dot(spoke)).normalized();
+  }
 }
 
 /// The corners of the overlap, lifted along n from the subject to the plane of the polygon `clip`.
@@ -79,31 +96,43 @@ inline void overlap_of_lines(const Face& a, const Face& b, const Vec3& n, double
 }
 
 /// Drops corners that coincide with an earlier one, to 1e-3 of the scale: crossings of edges that nearly
-/// meet. The witness, which comes last and only when it is deeper, takes the place of its twin.
+/// meet.
 inline void drop_twins(double scale, Patch& patch) {
   int kept = 0;
   for (int i = 0; i < patch.count; ++i) {
     int k = 0;
     while (k < kept && (patch.point[k].a - patch.point[i].a).squaredNorm() >= 1e-6 * scale * scale) ++k;
-    if (k == kept)
-      ++kept;
-    else if (patch.point[i].name != Patch::witness)
-      continue;
-    patch.point[k] = patch.point[i];
+    if (k == kept) patch.point[kept++] = patch.point[i];
   }
   patch.count = kept;
+}
+
+/// Adds the witness when the corners miss its depth by more than 5e-5 of the scale; a corner it coincides
+/// with goes.
+inline void add_witness(const PatchPoint& witness, double scale, Patch& patch) {
+  int twin = -1;
+  double deepest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < patch.count; ++i) {
+    deepest = std::min(deepest, patch.point[i].gap);
+    if ((patch.point[i].a - witness.a).squaredNorm() < 1e-6 * scale * scale) twin = i;
+  }
+  if (deepest <= witness.gap + 5e-5 * scale) return;
+  if (twin >= 0)
+    patch.point[twin] = witness;
+  else
+    patch.add(witness);
 }
 
 }  // namespace inner
 
 /// The patch in the frame of A, for the certified answer `r`: all corners with a gap up to `margin`, and the
-/// witness when they miss its depth by more than 1e-4 of the scale (a round rim between two corners, a
+/// witness when they miss its depth by more than 5e-5 of the scale (a round rim between two corners, a
 /// vertex, crossing edges).
 inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, const SignedPair& r,
                           double margin, double scale, Patch& patch) {
   const Vec3& n = r.normal;
   patch.count = 0;
-  const Face face_a = face_towards(a, n);
+  Face face_a = face_towards(a, n);
   Face face_b = inner::posed(face_towards(b, Vec3(-(b_in_a.rotation.transpose() * n))), b_in_a);
   if (face_b.count >= 3) inner::reverse(face_b);
   const double slope_a = face_a.normal.dot(n), slope_b = -face_b.normal.dot(n), steepest = 0.2;
@@ -112,13 +141,14 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
     inner::overlap_of_lines(face_a, face_b, n, margin, scale, patch);
   } else if (face_a.count >= 2 && face_b.count >= 2 && std::max(slope_a, slope_b) > steepest) {
     const bool clip_is_a = slope_a >= slope_b;
+    if (a.kind == ShapeKind::cylinder && b.kind == ShapeKind::cylinder && face_a.count == 8 &&
+        face_b.count == 8)
+      clip_is_a ? inner::align_octagons(face_b, face_a) : inner::align_octagons(face_a, face_b);
     inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
                             slack, patch);
   }
-  double deepest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < patch.count; ++i) deepest = std::min(deepest, patch.point[i].gap);
-  if (!(deepest <= r.distance + 1e-4 * scale)) patch.add({r.point_a, r.point_b, r.distance, Patch::witness});
   inner::drop_twins(scale, patch);
+  inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale, patch);
 }
 
 }  // namespace delassus

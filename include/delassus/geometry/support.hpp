@@ -117,7 +117,7 @@ inline Vec3 middle(const Shape& s) {
 inline Aabb tight_box(const Shape& s, const Pose& pose) {
   const Mat3& R = pose.rotation;
   const Vec3& x = pose.position;
-  Vec3 reach;
+  Vec3 reach = Vec3::Zero();
   switch (s.kind) {
     case ShapeKind::none:
       return Aabb();

@@ -58,7 +58,8 @@ inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, 
 /// + L_b ≥ 2 min(L_a, L_b).)
 inline Aabb alarm_box(const Collider& c, double h, const CollisionSettings& s) {
   Aabb box = tight_box(c.shape, c.pose);
-  if (box.isEmpty() || !is_finite(box.sizes()) || !std::isfinite(top_speed(c))) return Aabb();
+  if (box.isEmpty() || !is_finite(box.sizes()) || !is_finite(c.pose.rotation) || !std::isfinite(top_speed(c)))
+    return Aabb();
   const double scale = length_scale(c.shape);
   const double share =
       s.margin >= 0 ? 0.5 * s.margin

@@ -81,7 +81,7 @@ inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
 }
 
 /// At most `limit` points. Last step's stay while they span three quarters of what a new choice would and
-/// miss the deepest by no more than 1e-4 of the scale; a choice that changes every step makes a stack walk.
+/// miss the deepest by no more than 5e-5 of the scale; a choice that changes every step makes a stack walk.
 inline Choice reduce(const Patch& patch, const Continuation& continues, const Vec3& n, double scale,
                      int limit) {
   Choice kept;
@@ -97,7 +97,7 @@ inline Choice reduce(const Patch& patch, const Continuation& continues, const Ve
   }
   const Choice anew = choose_anew(patch, n, limit);
   const int lowest = deepest(patch);
-  if (!(least <= patch.point[lowest].gap + 1e-4 * scale)) {
+  if (!(least <= patch.point[lowest].gap + 5e-5 * scale)) {
     if (kept.count == limit) return anew;
     kept.add(lowest);
   }

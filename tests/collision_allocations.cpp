@@ -1,0 +1,51 @@
+// A program of its own: it counts every call of operator new.
+#include "catch.hpp"
+#include "collision/samples.hpp"
+#include "collision/scene.hpp"
+
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace {
+long allocations = 0;
+}
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc{};
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+using namespace delassus;
+using namespace scenes;
+
+TEST_CASE("a warm detect() allocates nothing") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const ConvexHull hull = samples::ball_hull(20, 7, 0.5);
+  const std::vector<Shape> shapes{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8},
+                                  hull};
+  Scene scene;
+  scene.add(HalfSpace{}, {0, 0, -1}, Mat3::Identity(), false);
+  for (std::size_t i = 0; i < 60; ++i)
+    scene.add(shapes[i % shapes.size()], 1.5 * Vec3(uniform(random), uniform(random), uniform(random)),
+              samples::any_rotation(random));
+  const auto move = [&](int step) {
+    for (std::size_t i = 1; i < scene.colliders.size(); ++i)
+      scene.colliders[i].pose.position[0] += (i % 2 ? 1e-3 : -1e-3) * (step % 2 ? 1 : -1);
+  };
+  for (int step = 0; step < 20; ++step) {
+    move(step);
+    scene.detect();
+  }
+  REQUIRE(scene.contacts.size() > 100);
+  const long before = allocations;
+  for (int step = 0; step < 20; ++step) {
+    move(step);
+    scene.detect();
+  }
+  CHECK(allocations == before);
+}
