@@ -21,7 +21,6 @@ struct RowState {
 struct RowBias {
   double bias = 0;
   double plain = 0;  ///< the bias without restitution
-  bool is_closed = false;
 };
 
 /// Lower row u⁺ + bias ≥ 0. Open: φ/h. Closing within the step with u⁻ < 0: the stronger of e u⁻ and the push-out
@@ -30,11 +29,11 @@ struct RowBias {
 template <class S>
 RowBias lower_bias(const S& stabilisation, const RowState& row, double h) {
   RowBias out;
-  out.is_closed = row.phi < 0;
-  out.plain = out.is_closed ? stabilisation.penetration(row.phi, h) : row.phi / h;
+  const bool is_closed = row.phi < 0;
+  out.plain = is_closed ? stabilisation.penetration(row.phi, h) : row.phi / h;
   out.bias = out.plain;
   const bool closes = row.phi + h * row.free_velocity < 0 && row.start_velocity < 0;
-  if (row.restitution > 0 && closes) out.bias = std::min(out.is_closed ? out.plain : 0.0, row.restitution * row.start_velocity);
+  if (row.restitution > 0 && closes) out.bias = std::min(is_closed ? out.plain : 0.0, row.restitution * row.start_velocity);
   return out;
 }
 
@@ -101,8 +100,8 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
                                           .restitution = restitution},
                                          h);
           pool.bias[i][k] = T(sign * row.bias);
-          if constexpr (requires { stabilisation.softness(h); })
-            if (row.is_closed) pool.softness[i][k] = T(stabilisation.softness(h));
+          // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
+          if constexpr (requires { stabilisation.softness(h); }) pool.softness[i][k] = T(stabilisation.softness(h));
           if constexpr (requires { bounce.pools; })
             std::get<p>(bounce.pools)[i][k] = T(sign * (row.bias - row.plain));
         }
