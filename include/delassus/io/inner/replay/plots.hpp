@@ -220,9 +220,12 @@ function sweepsPlot(values) {
 function stagesPlot(stages) {
   const layers = stages.map(({values}, k) => ({values, colour: stageColours[k % stageColours.length]}));
   const total = Array.from(stages[0].values, (_, i) => stages.reduce((sum, s) => sum + s.values[i], 0));
-  const high = quantile(finite(total).sort((a, b) => a - b), 0.99) || 1e-6, scale = high >= 1 ? 1 : 1e-3;
-  return {title: 'Time per step', unit: scale === 1 ? 'ms, by stage' : 'µs, by stage', layers,
-          axis: linearAxis([0, high], scale, true), text: i => duration(total[i]),
+  const sorted = finite(total).sort((a, b) => a - b), most = sorted.at(-1) ?? 0;
+  const high = Math.min(quantile(sorted, 0.99), 3 * quantile(sorted, 0.9)) || most || 1e-3;  // rare peaks are cut
+  const scale = high >= 1 ? 1 : 1e-3, axis = linearAxis([0, high], scale, true);
+  const peaks = most > axis.high ? `, peaks to ${duration(most)}` : '';
+  return {title: 'Time per step', unit: (scale === 1 ? 'ms, by stage' : 'µs, by stage') + peaks, layers, axis,
+          text: i => duration(total[i]),
           legend: stages.map(({name}, k) => ({name, colour: layers[k].colour}))};
 }
 
