@@ -5,8 +5,8 @@
 #include <delassus/geometry/inertia.hpp>
 #include <delassus/geometry/shape.hpp>
 
-#include <Eigen/Cholesky>
-
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,20 +37,33 @@ struct RigidBody {
 
 namespace inner {
 
+/// Sylvester's criterion: a symmetric 3×3 matrix is positive definite when its leading minors are positive.
+inline bool is_positive_definite(const Mat3& m) {
+  const double a = m(0, 0), b = m(1, 1), c = m(2, 2), d = m(0, 1), e = m(0, 2), f = m(1, 2);
+  return a > 0 && a * b - d * d > 0 && a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
+}
+
 /// Refuses an inertia that no distribution of mass has: not finite, not symmetric positive, or λ₃ > λ₁ + λ₂.
 inline void check_inertia(const Mat3& inertia, const std::string& who) {
-  DELASSUS_EXPECT(is_finite(inertia), who + ": inertia is not finite; give a 3×3 matrix in kg·m²");
-  const double scale = inertia.diagonal().cwiseAbs().maxCoeff();
-  DELASSUS_EXPECT((inertia - inertia.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * scale,
-                  who + ": inertia is not symmetric; give the matrix about the centre of mass");
-  const Eigen::LLT<Mat3> cholesky(inertia);
-  DELASSUS_EXPECT(scale > 0 && cholesky.info() == Eigen::Success,
+  double scale = 0, skewness = 0, sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    scale = std::max(scale, std::abs(inertia(i, i)));
+    for (int j = 0; j < 3; ++j) {
+      skewness = std::max(skewness, std::abs(inertia(i, j) - inertia(j, i)));
+      sum += 0 * inertia(i, j);
+    }
+  }
+  DELASSUS_EXPECT(sum == 0, who + ": inertia is not finite; give a 3×3 matrix in kg·m²");
+  DELASSUS_EXPECT(skewness <= 1e-9 * scale, who + ": inertia is not symmetric; give the matrix about the centre of mass");
+  DELASSUS_EXPECT(is_positive_definite(inertia),
                   who + ": inertia is not positive definite; every principal moment must be > 0 kg·m²");
-  // The triangle inequality of the principal moments says: ½ tr(I) 1 − I, the second moment of mass, is positive.
-  const Mat3 second_moment = 0.5 * inertia.trace() * Mat3::Identity() - inertia;
-  const Mat3 shifted = second_moment + 1e-9 * scale * Mat3::Identity();
-  const Eigen::LLT<Mat3> triangle(shifted);
-  DELASSUS_EXPECT(triangle.info() == Eigen::Success,
+  // The triangle inequality of the principal moments says: ½ tr(I) 1 − I, the second moment of mass, is positive; it is
+  // zero in one direction for a flat body, so rounding's share is granted.
+  const double half = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) + 1e-9 * scale;
+  Mat3 second_moment;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) second_moment(i, j) = (i == j ? half : 0) - inertia(i, j);
+  DELASSUS_EXPECT(is_positive_definite(second_moment),
                   who + ": inertia with diagonal (" + text(inertia(0, 0)) + ", " + text(inertia(1, 1)) + ", " +
                       text(inertia(2, 2)) + ") violates the triangle inequality I1 + I2 >= I3 of the principal " +
                       "moments; was it given about another point or in other units?");

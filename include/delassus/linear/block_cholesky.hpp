@@ -5,17 +5,17 @@
 #include <delassus/math/linear.hpp>
 
 #include <Eigen/Cholesky>
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace delassus {
 
-/// P A Pᵀ = L Lᵀ with w × w blocks, P by approximate minimum degree. The pattern is analysed once; `factor` and
+/// P A Pᵀ = L Lᵀ with w × w blocks, P by minimum degree. The pattern is analysed once; `factor` and
 /// `solve` do not allocate. Right-looking: when a column is done, its outer product is taken from the columns after.
 template <int w, class T>
 class BlockCholesky {
@@ -34,8 +34,7 @@ class BlockCholesky {
     row_.clear();
     for (Index j = 0; j < blocks; ++j) {
       auto& rows = below[j];
-      std::sort(rows.begin(), rows.end());
-      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      sort_unique(rows);
       // Fill: the rows below the first one of a column appear in that first row's column too.
       if (!rows.empty()) below[rows[0]].insert(below[rows[0]].end(), rows.begin() + 1, rows.end());
       row_.insert(row_.end(), rows.begin(), rows.end());
@@ -93,19 +92,37 @@ class BlockCholesky {
   }
 
  private:
+  /// Minimum degree: the block with the fewest neighbours goes next, and its neighbours become neighbours of each
+  /// other. Ties go to the lowest number. Plain lists; its cost is that of the fill.
   void order(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
-    std::vector<Eigen::Triplet<double, Index>> entries;
-    for (Index i = 0; i < blocks; ++i) entries.emplace_back(i, i, 1.0);
+    std::vector<std::vector<Index>> near(blocks);
     for (auto [i, j] : pairs) {
-      entries.emplace_back(i, j, 1.0);
-      entries.emplace_back(j, i, 1.0);
+      near[i].push_back(j);
+      near[j].push_back(i);
     }
-    Eigen::SparseMatrix<double, Eigen::ColMajor, Index> pattern(blocks, blocks);
-    pattern.setFromTriplets(entries.begin(), entries.end());
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> permutation;
-    Eigen::AMDOrdering<Index>()(pattern, permutation);
+    for (auto& list : near) sort_unique(list);
+    std::set<std::pair<Index, Index>> queue;  // (degree, block)
+    for (Index b = 0; b < blocks; ++b) queue.emplace(Index(near[b].size()), b);
     place_.resize(blocks);
-    for (Index k = 0; k < blocks; ++k) place_[permutation.indices()[k]] = k;
+    std::vector<Index> merged;
+    for (Index k = 0; k < blocks; ++k) {
+      const Index b = queue.begin()->second;
+      queue.erase(queue.begin());
+      place_[b] = k;
+      for (const Index n : near[b]) {
+        queue.erase({Index(near[n].size()), n});
+        merged.clear();
+        std::set_union(near[n].begin(), near[n].end(), near[b].begin(), near[b].end(), std::back_inserter(merged));
+        std::erase_if(merged, [&](Index i) { return i == n || i == b; });
+        near[n] = merged;
+        queue.emplace(Index(near[n].size()), n);
+      }
+    }
+  }
+
+  static void sort_unique(std::vector<Index>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
   Index find(Index row, Index column) const {
