@@ -78,7 +78,6 @@ class AnimationLoop {
   auto problem() const
     requires(has_constraints)
   {
-    using Work = decltype(work_);
     return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
   }
 
@@ -117,7 +116,7 @@ class AnimationLoop {
   /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
   template <class F>
   void each_constraint(F&& f) const;
-  /// f(x_a, x_b) for every constraint with two anchors: where they are now, m.
+  /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
   void each_joint(F&& f) const;
   double time() const { return start_ + double(steps_) * h_; }
@@ -281,7 +280,7 @@ void AnimationLoop<Policies...>::each_joint(F&& f) const {
     const auto& pool = laws().template pool<p>();
     for (Index i = 0; i < pool.count(); ++i) {
       const auto& item = pool.item(i);
-      if constexpr (requires { item.a.owner, item.b.owner; }) f(world().point(item.a), world().point(item.b));
+      if constexpr (requires { item.a.owner, item.b.owner; }) f(item.a, item.b);
     }
   });
 }
