@@ -26,7 +26,7 @@ struct BlockRows {
 };
 
 /// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. `Storage` is the type W is
-/// kept in; sums run in the loop's scalar.
+/// kept in; sums run in double.
 template <class Storage = void>
 struct BasicAssembledCompliance {
   using plays = role::Compliance;
@@ -42,6 +42,7 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
  public:
   using Rows = RowSystem<T, Widths<w...>, R...>;
   using S = std::conditional_t<std::is_void_v<Storage>, T, Storage>;
+  using Sum = double;
   static constexpr int pools = int(sizeof...(R));
 
   template <class World>
@@ -62,18 +63,20 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
     return std::get<p>(diagonal_)[i];
   }
 
+  /// Large terms cancel here: the sum runs in double whatever is stored.
   template <int p>
-  auto residual(const Rows& rows, Index i) const {
+  Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     const auto& pool = rows.template pool<p>();
-    auto r = pool.d[i];
-    r.noalias() += std::get<p>(diagonal_)[i] * pool.lambda[i];
+    constexpr int Ra = Rows::template rows_of<p>;
+    Vec<Ra, Sum> r = pool.d[i].template cast<Sum>();
+    r.noalias() += std::get<p>(diagonal_)[i].template cast<Sum>() * pool.lambda[i].template cast<Sum>();
     for_each_index<pools>([&](auto b) {
       const auto& W = std::get<b>(std::get<p>(blocks_));
       const auto* lambda = rows.template pool<b>().lambda.data();
       for (Index e = W.start[i]; e < W.start[i + 1]; ++e)
-        r.noalias() += W.block[e].template cast<T>() * lambda[W.column[e]];
+        r.noalias() += W.block[e].template cast<Sum>() * lambda[W.column[e]].template cast<Sum>();
     });
-    return r;
+    return Vec<Ra, T>(r.template cast<T>());
   }
 
   template <int p>

@@ -23,6 +23,7 @@ template <class T, int... w, int... R>
 class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
   using Rows = RowSystem<T, Widths<w...>, R...>;
+  using Sum = double;
 
   template <class World>
   void build(const World& world, Rows& rows) {
@@ -50,15 +51,17 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   }
 
   template <int p>
-  auto residual(const Rows& rows, Index i) const {
+  Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     const auto& pool = rows.template pool<p>();
-    auto r = pool.d[i];
+    constexpr int Ra = Rows::template rows_of<p>;
+    Vec<Ra, Sum> r = pool.d[i].template cast<Sum>();
     for_each_index<Rows::set_count>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);
       const auto& y = std::get<s>(y_);
-      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) r.noalias() += set.H[e] * y[set.block[e]];
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) r.noalias() += set.H[e].template cast<Sum>() * y[set.block[e]];
     });
-    return (r + std::get<p>(compliance_)[i].cwiseProduct(pool.lambda[i])).eval();
+    r += std::get<p>(compliance_)[i].cwiseProduct(pool.lambda[i]).template cast<Sum>();
+    return r.template cast<T>();
   }
 
   template <int p>
@@ -67,7 +70,8 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     for_each_index<Rows::set_count>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);
       auto& y = std::get<s>(y_);
-      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) y[set.block[e]].noalias() += set.G[e] * change;
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) 
+        y[set.block[e]].noalias() += set.G[e].template cast<Sum>() * change.template cast<Sum>();
     });
   }
 
@@ -99,7 +103,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     }
   }
 
-  std::tuple<std::vector<Vec<w, T>>...> y_;
+  std::tuple<std::vector<Vec<w, Sum>>...> y_;  ///< in double: it takes thousands of small changes
   std::tuple<std::vector<Mat<R, R, T>>...> diagonal_;
   std::tuple<std::vector<Vec<R, T>>...> compliance_;
 };

@@ -32,7 +32,7 @@ struct MeasureSums {
     return {.residual = share(std::sqrt(residual), velocity),
             .siconos = share(std::sqrt(siconos), mixed),
             .worst = share(std::sqrt(worst), velocity),
-            .floor = velocity > 0 ? 64 * epsilon * reach / velocity : 0};
+            .floor = velocity > 0 ? 8 * epsilon * reach / velocity : 0};
   }
 };
 

@@ -51,8 +51,10 @@ struct Coulomb {
 
   template <class T>
   void prepare(const Mat<3, 3, T>& W, Memory<T>& memory) const {
-    // A block without stiffness in some direction is lifted by rounding's share, so that its inverse exists.
-    const T lift = T(64) * std::numeric_limits<T>::epsilon() * W.trace();
+    // Only a block that is singular to rounding (an end that cannot turn, on a line) is lifted by rounding's share, so that
+    // its inverse exists: any lift shifts the solution by as much.
+    const T mean = W.trace() / T(3), rounding = T(64) * std::numeric_limits<T>::epsilon();
+    const T lift = W.determinant() > rounding * mean * mean * mean ? T(0) : rounding * mean;
     const Mat<3, 3, T> lifted = W + lift * Mat<3, 3, T>::Identity();
     memory.inverse = lifted.inverse();
     memory.normal = lifted(0, 0);
