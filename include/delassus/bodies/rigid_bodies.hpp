@@ -337,7 +337,8 @@ void BasicRigidBodies<T>::advance_with(double h_, T old_share) {
     q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], start, before, momentum, h))).normalized();
     turn(b);
     v_[b].template head<3>() = v_next[b].template head<3>();
-    v_[b].template tail<3>() = inverse_inertia_world_[b] * spatial;
+    // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small ones.
+    v_[b].template tail<3>() = R_[b] * (inverse_inertia_[b] * (R_[b].transpose() * spatial));
   }
 }
 
