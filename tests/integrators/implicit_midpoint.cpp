@@ -1,0 +1,46 @@
+#include <delassus/integrators/implicit_midpoint.hpp>
+
+#include "catch.hpp"
+#include "integrators/free_fall.hpp"
+#include "integrators/oscillator.hpp"
+
+using namespace delassus;
+
+// The parabola is met at the steps; 60 steps round v and x a few times each, 60 · 4 · 2^-53 < 1e-13.
+TEST_CASE("a body falls on the exact parabola with the midpoint rule") {
+  const double h = 1.0 / 60;
+  REQUIRE(free_fall::worst_error(ImplicitMidpoint{}, 60, [&](int n) { return -free_fall::g * h * h * n * n / 2; }) <= 1e-13);
+}
+
+// A step is the Cayley map of (x, v/ω): x_n = cos(n θ), tan(θ/2) = h ω/2; θ/(h ω) is the reference's ratio.
+TEST_CASE("the midpoint rule oscillates too slowly by the factor of its closed form, at full amplitude") {
+  const double h = 0.01, turn = 0.9996712078675766 * oscillator::omega * h;
+  auto [loop, mass] = oscillator::make(ImplicitMidpoint{}, oscillator::omega);
+  auto& set = bodies<Particles>(loop.world());
+  for (int n = 1; n <= 1000; ++n) {
+    loop.step(h);
+    REQUIRE(std::abs(set.position(mass).x() - std::cos(n * turn)) <= 1e-12);
+  }
+}
+
+// Cayley's map is orthogonal; 1000 steps of some ten roundings, without bias: √1000 · 10 · 2^-53 ~ 4e-14.
+TEST_CASE("the midpoint rule keeps the energy of an oscillator to rounding") {
+  auto [loop, mass] = oscillator::make(ImplicitMidpoint{}, oscillator::omega);
+  auto& set = bodies<Particles>(loop.world());
+  const double start = kinetic_energy(set) + potential_energy(set);
+  for (int n = 1; n <= 1000; ++n) {
+    loop.step(0.01);
+    REQUIRE(kinetic_energy(set) + potential_energy(set) == Approx(start).epsilon(1e-13));
+  }
+}
+
+// |x| <= 1 exactly. A = m + k h²/4 is rounded at 2.5e11: x and v/ω are off by 2^-53 a step, times the factor 4 by which
+// x returns through v.
+TEST_CASE("the midpoint rule is bounded at h w = 1e6") {
+  auto [loop, mass] = oscillator::make(ImplicitMidpoint{}, 1e6);
+  auto& set = bodies<Particles>(loop.world());
+  for (int n = 0; n < 10000; ++n) {
+    loop.step(1.0);
+    REQUIRE(std::abs(set.position(mass).x()) <= 1 + 1e-9);
+  }
+}
