@@ -81,12 +81,15 @@ inline double ConvexHull::check_points(std::span<const Vec3> points) {
                   "a convex hull needs at least 4 points, got " + std::to_string(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     DELASSUS_EXPECT(is_finite(points[i]), "convex hull point #" + std::to_string(i) + " is not finite");
-  Vec3 low = points[0], high = points[0];
-  for (const Vec3& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+  double extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    double low = points[0][k], high = low;
+    for (const Vec3& p : points) {
+      low = std::min(low, p[k]);
+      high = std::max(high, p[k]);
+    }
+    extent = std::max(extent, high - low);
   }
-  const double extent = (high - low).maxCoeff();
   DELASSUS_EXPECT(
       std::isfinite(extent) && extent > 0,
       "the points of a convex hull span " + inner::text(extent) + " m; give points that span a volume");
@@ -119,12 +122,15 @@ inline void ConvexHull::find_moments() {
       const double volume = a.dot(b.cross(c)) / 6;
       volume_ += volume;
       first += volume / 4 * s;
-      second += volume / 20 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          second(i, j) += volume / 20 * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
     }
   }
   const Vec3 shift = first / volume_;
   centroid_ = mean + shift;
-  second_moment_ = second - volume_ * shift * shift.transpose();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) second_moment_(i, j) = second(i, j) - volume_ * shift[i] * shift[j];
   for (const Vec3& v : vertices_) outer_radius_ = std::max(outer_radius_, (v - centroid_).norm());
   inner_radius_ = outer_radius_;
   for (Index f = 0; f < face_count(); ++f)

@@ -112,39 +112,51 @@ inline Vec3 middle(const Shape& s) {
   return s.kind == ShapeKind::convex_hull ? s.hull->centroid() : Vec3::Zero();
 }
 
+namespace inner {
+
+/// How far a shape that is symmetric about its origin reaches along the k-th axis of the world, m.
+inline double half_width(const Shape& s, const Mat3& R, int k) {
+  const double along = std::abs(R(k, 2));
+  switch (s.kind) {
+    case ShapeKind::sphere:
+      return s.size[0];
+    case ShapeKind::box:
+      return std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + along * s.size[2];
+    case ShapeKind::capsule:
+      return along * s.size[1] + s.size[0];
+    case ShapeKind::cylinder:
+      return along * s.size[1] + std::hypot(R(k, 0), R(k, 1)) * s.size[0];
+    default:
+      return std::numeric_limits<double>::infinity();
+  }
+}
+
+inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
+  Vec3 low = pose.to_world(hull.vertices()[0]), high = low;
+  for (const Vec3& v : hull.vertices()) {
+    const Vec3 p = pose.to_world(v);
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  }
+  return Aabb(low, high);
+}
+
+}  // namespace inner
+
 /// The smallest box with axes of the world around a posed shape, m. Infinite for a half-space, empty for no
 /// shape.
 inline Aabb tight_box(const Shape& s, const Pose& pose) {
-  const Mat3& R = pose.rotation;
-  const Vec3& x = pose.position;
-  Vec3 reach = Vec3::Zero();
-  switch (s.kind) {
-    case ShapeKind::none:
-      return Aabb();
-    case ShapeKind::half_space: {
-      reach.setConstant(std::numeric_limits<double>::infinity());
-      return Aabb(-reach, reach);
-    }
-    case ShapeKind::convex_hull: {
-      Aabb box;
-      for (const Vec3& v : s.hull->vertices()) box.extend(R * v);
-      return Aabb(box.min() + x, box.max() + x);
-    }
-    case ShapeKind::sphere:
-      reach.setConstant(s.size[0]);
-      break;
-    case ShapeKind::box:
-      reach = R.cwiseAbs() * Vec3(s.size[0], s.size[1], s.size[2]);
-      break;
-    case ShapeKind::capsule:
-      reach = R.col(2).cwiseAbs() * s.size[1] + Vec3::Constant(s.size[0]);
-      break;
-    case ShapeKind::cylinder:
-      reach = R.col(2).cwiseAbs() * s.size[1] +
-              s.size[0] * (1 - R.col(2).array().square()).max(0).sqrt().matrix();
-      break;
+  if (s.kind == ShapeKind::none) return Aabb();
+  if (s.kind == ShapeKind::convex_hull) return inner::hull_box(*s.hull, pose);
+  Vec3 low, high;
+  for (int k = 0; k < 3; ++k) {
+    const double reach = inner::half_width(s, pose.rotation, k);
+    low[k] = pose.position[k] - reach;
+    high[k] = pose.position[k] + reach;
   }
-  return Aabb(x - reach, x + reach);
+  return Aabb(low, high);
 }
 
 }  // namespace delassus
