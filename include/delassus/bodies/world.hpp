@@ -28,6 +28,9 @@ class World {
   using Tuple = std::tuple<Sets...>;
   using Scalar = typename std::tuple_element_t<0, Tuple>::Scalar;
 
+  World()
+    requires(set_count > 0)
+  = default;
   explicit World(Sets... sets) : sets_{std::move(sets)...} {}
 
   template <int s>

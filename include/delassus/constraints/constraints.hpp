@@ -17,8 +17,6 @@ class Constraints {
   using plays = role::Constraints;
   static constexpr int pool_count = int(sizeof...(Laws));
   static constexpr bool has_contacts = (ContactLaw<Laws> || ...);
-  template <template <class, class, int...> class Rows, class T, class Widths>
-  using RowsOf = Rows<T, Widths, Laws::rows...>;
 
   Constraints() = default;
   explicit Constraints(Laws... laws)

@@ -66,8 +66,21 @@ struct Pool {
   Index count() const { return Index(slots.active().size()); }
 };
 
+/// What is not a law has no items; the loop's checks say what it lacks.
+template <class Law>
+  requires(!ConstraintLaw<Law>)
+struct Pool<Law> {
+  Law law{};
+
+  Pool() = default;
+  explicit Pool(Law l) : law(std::move(l)) {}
+
+  Index count() const { return 0; }
+};
+
 /// Contacts are made anew each step; their impulses are remembered by contact id, not here.
-template <ContactLaw Law>
+template <class Law>
+  requires(ConstraintLaw<Law> && ContactLaw<Law>)
 struct Pool<Law> {
   static constexpr int rows = Law::rows;
   using Item = typename Law::Item;

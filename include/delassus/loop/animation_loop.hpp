@@ -183,11 +183,12 @@ void AnimationLoop<Policies...>::check_policies() const {
 
 template <class... Policies>
 StepReport AnimationLoop<Policies...>::step(double h) {
-  if constexpr (sound) {
-    begin(h);
-    part<role::Scheme>().run(*this);
-    tell<stage::Step>();
-  }
+  if constexpr (sound)
+    if constexpr (inner::scheme_runs<typename Parts::Scheme, AnimationLoop>()) {
+      begin(h);
+      part<role::Scheme>().run(*this);
+      tell<stage::Step>();
+    }
   return report_;
 }
 

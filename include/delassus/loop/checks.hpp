@@ -8,6 +8,11 @@
 #include <delassus/integrators/integrator.hpp>
 #include <delassus/loop/policies.hpp>
 #include <delassus/loop/stage.hpp>
+#include <delassus/loop/workspace.hpp>
+#include <delassus/rows/writer.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/solve_report.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <concepts>
@@ -115,6 +120,88 @@ consteval bool laws_are_sound() {
   }(static_cast<const Laws*>(nullptr));
 }
 
+/// linearize is asked with the very types it will be called with; its return type is written out, so no body is compiled.
+template <class Law, class World, class Pool>
+consteval bool law_linearizes() {
+  constexpr bool does = requires(const Law& law, const typename Law::Item& item, const World& world,
+                                 RowWriter<World, Pool> row) {
+    { law.linearize(item, world, row) } -> std::same_as<void>;
+  };
+  static_assert(does,
+                "delassus: a constraint law needs linearize(const Item&, const auto& world, auto row) const; add it, and "
+                "write its return type, void");
+  return does;
+}
+
+template <class World, class Laws>
+consteval bool laws_linearize() {
+  return []<class... L>(const Constraints<L...>*) {
+    return (law_linearizes<L, World, PoolRowsOf<World, L::rows>>() && ...);
+  }(static_cast<const Laws*>(nullptr));
+}
+
+template <class Compliance, class World, class Rows>
+consteval bool compliance_is_sound() {
+  constexpr bool has_operator = requires { typename Compliance::template Operator<Rows>; };
+  static_assert(has_operator,
+                "delassus: this type plays role::Compliance but lacks `template <class Rows> class Operator`; see "
+                "compliance/compliance.hpp for what it must do");
+  if constexpr (has_operator) {
+    constexpr bool builds =
+        requires(typename Compliance::template Operator<Rows>& W, const World& world, Rows& rows) {
+          { W.build(world, rows) } -> std::same_as<void>;
+          { W.reset(rows) } -> std::same_as<void>;
+        };
+    static_assert(builds,
+                  "delassus: the Operator of a compliance needs void build(const World&, Rows&) and void reset(const "
+                  "Rows&); see compliance/compliance.hpp");
+    return builds;
+  } else {
+    return false;
+  }
+}
+
+template <class Solver, class Laws, class Rows, class Operator>
+consteval bool solver_is_sound() {
+  using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
+  constexpr bool solves = requires(const Solver& solver, Problem& problem,
+                                   typename Solver::template Workspace<Rows>& workspace) {
+    { solver.solve(problem, workspace) } -> std::same_as<SolveReport>;
+  };
+  static_assert(solves,
+                "delassus: this type plays role::Solver but lacks `template <class Rows> struct Workspace` or "
+                "solve(problem, workspace), which returns a SolveReport; add it");
+  return solves;
+}
+
+/// The parts that meet in the rows: only a loop with constraints has them.
+template <class Parts>
+consteval bool constraints_are_sound() {
+  using World = typename Parts::World;
+  using Laws = typename Parts::Laws;
+  if constexpr (Laws::pool_count == 0) return true;
+  else if constexpr (!laws_are_sound<Laws>()) return false;
+  else if constexpr (!laws_linearize<World, Laws>()) return false;
+  else {
+    using Rows = typename rows_of<World, Laws>::type;
+    if constexpr (!compliance_is_sound<typename Parts::Compliance, World, Rows>()) return false;
+    else
+      return solver_is_sound<typename Parts::Solver, Laws, Rows,
+                             typename Parts::Compliance::template Operator<Rows>>();
+  }
+}
+
+template <class Scheme, class Loop>
+consteval bool scheme_runs() {
+  constexpr bool runs = requires(const Scheme& scheme, Loop& loop) {
+    { scheme.run(loop) } -> std::same_as<void>;
+  };
+  static_assert(runs,
+                "delassus: this type plays role::Scheme but lacks run(loop), which calls the stages of the loop in its "
+                "order and returns void; add it");
+  return runs;
+}
+
 /// A listener that wants to be told of every sweep of the solver.
 template <class P>
 inline constexpr bool observes_sweeps = requires { requires P::every_sweep; };
@@ -135,7 +222,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!one_of_each<Policies...>()) return false;
   else if constexpr (!(plays_its_role<Policies>() && ...)) return false;
   else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
-  else if constexpr (!laws_are_sound<typename Parts::Laws>()) return false;
+  else if constexpr (!constraints_are_sound<Parts>()) return false;
   else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
 }
 

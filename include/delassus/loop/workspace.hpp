@@ -25,6 +25,16 @@ struct widths_of<World<S...>> {
   using Scratch = std::tuple<std::vector<typename S::Velocity>...>;
 };
 
+template <class W, int R, class Widths = typename widths_of<W>::type>
+struct pool_rows_of;
+template <class W, int R, int... w>
+struct pool_rows_of<W, R, Widths<w...>> {
+  using type = PoolRows<R, typename W::Scalar, w...>;
+};
+/// The rows that a law with R of them has over a world.
+template <class W, int R>
+using PoolRowsOf = typename pool_rows_of<W, R>::type;
+
 template <class L>
 inline constexpr bool law_restitutes = requires(const L& law, const typename L::Item& i) { law.restitution(i); };
 
@@ -66,10 +76,10 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
 };
 
-/// A loop without constraints.
+/// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
 template <class World, class C, class S, class I, class St>
 struct Workspace<World, Constraints<>, C, S, I, St> {
-  explicit Workspace(const Constraints<>&) {}
+  explicit Workspace(const auto&) {}
 };
 
 }  // namespace delassus::inner
