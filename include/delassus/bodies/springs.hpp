@@ -40,11 +40,11 @@ class Springs {
     DELASSUS_EXPECT(is_finite(spring.point), who + ": the spring's point is not finite");
     DELASSUS_EXPECT(spring.a != spring.b, who + ": a spring needs two different ends");
     springs_.push_back(spring);
-    is_analysed_ = false;
+    analysed_blocks_ = -1;
   }
   void remove_of(Index block) {
     std::erase_if(springs_, [&](const Spring& s) { return s.a == block || s.b == block; });
-    is_analysed_ = false;
+    analysed_blocks_ = -1;
   }
 
   bool is_coupled() const { return is_coupled_; }
@@ -148,8 +148,8 @@ class Springs {
   }
 
   void factor_coupled(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& inverse_mass, Index n) {
-    if (!is_analysed_) cholesky_.analyse(n, pairs_);
-    is_analysed_ = true;
+    if (analysed_blocks_ != n) cholesky_.analyse(n, pairs_);
+    analysed_blocks_ = n;
     cholesky_.set_zero();
     for (Index b = 0; b < n; ++b)
       cholesky_.add_diagonal(b, inverse_mass[b] > 0 ? inverse_[b] : Block(Block::Identity()));
@@ -165,7 +165,8 @@ class Springs {
   BlockCholesky<3, T> cholesky_;
   const T* inverse_mass_ = nullptr;
   T inverse_scale_ = 1;
-  bool is_coupled_ = false, is_analysed_ = false;
+  bool is_coupled_ = false;
+  Index analysed_blocks_ = -1;  ///< how many blocks the pattern was analysed for; −1 after an edit
 };
 
 }  // namespace delassus
