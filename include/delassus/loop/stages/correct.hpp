@@ -34,6 +34,21 @@ void add_impulses(const Set& set, const Rows& rows, std::vector<typename Set::Ve
     }
 }
 
+namespace inner {
+
+/// What is left of v_free + A⁻¹ Hᵀ λ below the rounding of its terms is no velocity: a body whose impulses cancel its
+/// motion stands still to the last bit, wherever it is. Component by component, each against |v_free|.
+template <class V>
+void drop_rounding(V& v_next, const V& v_free) {
+  using T = typename V::Scalar;
+  constexpr T rounding = T(16) * std::numeric_limits<T>::epsilon();
+  const T least = rounding * rounding * v_free.template head<3>().squaredNorm();
+  for (int k = 0; k < 3; ++k)
+    if (v_next[k] * v_next[k] <= least) v_next[k] = T(0);
+}
+
+}  // namespace inner
+
 /// v_next = v_free + A⁻¹ Hᵀ λ. The velocities of an island with one that is not finite are all made so: `advance` leaves
 /// such bodies where they were, and no other island notices.
 template <class World, class Rows, class Scratch, int pools>
@@ -45,11 +60,14 @@ void correct(World& world, const Rows& rows, Scratch& scratch, const Islands<poo
   world.each([&](auto& set, auto s) {
     set.v_next = set.v_free;
     add_impulses<s>(set, rows, set.v_next, std::get<s>(scratch));
-    for (const Index b : set.active())
-      if (!is_finite(set.v_next[b]) && islands.island_of(first + b) >= 0) {
-        is_sick[islands.island_of(first + b)] = 1;
-        any = true;
-      }
+    for (const Index b : set.active()) {
+      const Index island = islands.island_of(first + b);
+      if (island < 0) continue;
+      inner::drop_rounding(set.v_next[b], set.v_free[b]);
+      if (is_finite(set.v_next[b])) continue;
+      is_sick[island] = 1;
+      any = true;
+    }
     first += set.blocks();
   });
   if (!any) return;
