@@ -41,7 +41,7 @@ namespace inner {
 template <class V>
 void drop_rounding(V& v_next, const V& v_free) {
   using T = typename V::Scalar;
-  constexpr T rounding = T(16) * std::numeric_limits<T>::epsilon();
+  constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
   const T least = rounding * rounding * v_free.template head<3>().squaredNorm();
   for (int k = 0; k < 3; ++k)
     if (v_next[k] * v_next[k] <= least) v_next[k] = T(0);
