@@ -4,6 +4,7 @@
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace delassus {
@@ -40,6 +41,29 @@ double impulse_energy(const Rows& rows, const Operator& W, const Islands<pools>&
   return sum;
 }
 
+/// A solution without restitution gives at most −Σ λ·bias, the work of the push-out. Where the sweeps ran out before that
+/// holds, λ ← s λ, s the largest number in [0, 1] for which it does; a cone holds s λ too.
+template <class Rows, class Operator, int pools>
+void shed_energy(Rows& rows, Operator& W, const Islands<pools>& islands, Index island) {
+  double push = 0, free = 0, curvature = 0;  // E(s) = free s + ½ curvature s²
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    const auto& pool = rows.template pool<p>();
+    const auto u = (W.template residual<p>(rows, i) - pool.d[i]).eval();
+    push -= double(pool.lambda[i].dot(pool.bias[i]));
+    free += double(pool.lambda[i].dot(pool.d[i] - pool.bias[i]));
+    curvature += double(pool.lambda[i].dot(u));
+  });
+  const double allowed = std::max(0.0, push);
+  if (!(free + 0.5 * curvature > allowed) || !(curvature > 0)) return;
+  const double s = std::clamp((std::sqrt(free * free + 2 * curvature * allowed) - free) / curvature, 0.0, 1.0);
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    auto& pool = rows.template pool<p>();
+    const auto change = (typename Rows::Scalar(s - 1) * pool.lambda[i]).eval();
+    pool.lambda[i] += change;
+    W.template commit<p>(rows, i, change);
+  });
+}
+
 /// Newton's restitution on several contacts with friction can add energy. Where it did, λ becomes λ_c + s (λ_N − λ_c):
 /// λ_N the solution with restitution, λ_c the one without, s the largest number in [0, 1] for which the impulses add no
 /// more energy than those of λ_c do. Both lie in the cone, which is convex, so λ does.
@@ -60,6 +84,7 @@ void guard_energy(Rows& rows, Operator& W, const Islands<pools>& islands, Index 
     pool.d[i] -= std::get<p>(bounce.pools)[i];
   });
   solve_again();
+  shed_energy(rows, W, islands, island);
   // E(s) = E_c + b s + a s² with δ = λ_N − λ_c, a = ½ δ·Wδ, b = δ·u_c, u_c the velocity after λ_c.
   double a = 0, b = 0;
   const double plain = impulse_energy(rows, W, islands, island);
