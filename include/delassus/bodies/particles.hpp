@@ -133,6 +133,46 @@ class BasicParticles {
   /// x₊ = x + h (v + v_next)/2.
   void advance_midpoint(double h) { advance_with(h, T(0.5)); }
 
+  /// One particle at a time, springs aside. The addresses are fetched once, so that no store makes a loop fetch them anew.
+  struct Blocks {
+    Velocity *x, *v, *load;
+    const T *mass, *inverse_mass;
+    Velocity gravity;
+    T inverse_scale;
+    Index* held;
+
+    bool moves(Index b) const { return inverse_mass[b] > T(0); }
+    const Velocity& velocity(Index b) const { return v[b]; }
+    void add_force(Index b, Velocity& p) const { p += load[b] + mass[b] * gravity; }
+    void add_mass_times_velocity(Index b, Velocity& p, double s) const { p += T(s) * mass[b] * v[b]; }
+    Velocity solve(Index b, const Velocity& p) const { return (inverse_scale * inverse_mass[b]) * p; }
+    /// x and v from v_next; `old_share` of the old velocity in the mean that moves x.
+    void advance(Index b, const Velocity& next, double h, T old_share) const {
+      const bool is_moving = moves(b);
+      load[b].setZero();
+      if (!is_moving) return;
+      if (!is_finite(next)) {
+        ++*held;
+        return;
+      }
+      x[b] += T(h) * inner::mean(v[b], next, old_share);
+      v[b] = next;
+    }
+  };
+  Blocks by_block(SystemScale scale = {}) {
+    held_ = 0;
+    return {.x = x_.data(),
+            .v = v_.data(),
+            .load = load_.data(),
+            .mass = mass_.data(),
+            .inverse_mass = inverse_mass_.data(),
+            .gravity = gravity.template cast<T>(),
+            .inverse_scale = T(1 / scale.mass),
+            .held = &held_};
+  }
+  /// True when no spring joins anything: every particle moves by itself.
+  bool is_separable() const { return springs_.is_empty(); }
+
   /// How many particles the last advance left where they were.
   Index held() const { return held_; }
   /// Moves particle b by a small displacement (m) without touching its velocity.
@@ -168,17 +208,8 @@ class BasicParticles {
     return particle.index;
   }
   void advance_with(double h, T old_share) {
-    held_ = 0;
-    for (const Index b : slots_.active()) {
-      load_[b].setZero();
-      if (!moves(b)) continue;
-      if (!is_finite(v_next[b])) {
-        ++held_;
-        continue;
-      }
-      x_[b] += T(h) * (old_share * v_[b] + (T(1) - old_share) * v_next[b]);
-      v_[b] = v_next[b];
-    }
+    const Blocks blocks = by_block();
+    for (const Index b : slots_.active()) blocks.advance(b, v_next[b], h, old_share);
   }
 
   Slots slots_;

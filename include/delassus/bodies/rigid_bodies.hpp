@@ -73,6 +73,7 @@ class BasicRigidBodies {
     DELASSUS_EXPECT(motion_[b] == Motion::kinematic, who(b) + ": only a kinematic body can be moved along a path");
     DELASSUS_EXPECT(is_finite(position) && orientation.coeffs().norm() > 1e-12, who(b) + ": pose is not finite");
     target_[b] = Target{position, orientation.normalized(), true};
+    has_targets_ = true;
   }
 
   /// Puts a body somewhere else at once, its velocity unchanged.
@@ -110,21 +111,22 @@ class BasicRigidBodies {
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }
 
   void add_forces(std::vector<Velocity>& p) const {
-    const Vec<3, T> g = gravity.template cast<T>();
-    for (const Index b : slots_.active()) {
-      p[b] += load_[b];
-      p[b].template head<3>() += mass_[b] * g;
-    }
+    for (const Index b : slots_.active()) add_force(b, p[b]);
+  }
+  void add_force(Index b, Velocity& p) const {
+    p += load_[b];
+    p.template head<3>() += mass_[b] * gravity.template cast<T>();
   }
 
   /// p += s M v.
   void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
-    for (const Index b : slots_.active()) {
-      if (!moves(b)) continue;
-      const Mat<3, 3, T>& R = R_[b];
-      p[b].template head<3>() += T(s) * mass_[b] * v_[b].template head<3>();
-      p[b].template tail<3>() += T(s) * (R * (inertia_[b] * (R.transpose() * v_[b].template tail<3>())));
-    }
+    for (const Index b : slots_.active()) add_mass_times_velocity(b, p[b], s);
+  }
+  void add_mass_times_velocity(Index b, Velocity& p, double s) const {
+    if (!moves(b)) return;
+    const Mat<3, 3, T>& R = R_[b];
+    p.template head<3>() += T(s) * mass_[b] * v_[b].template head<3>();
+    p.template tail<3>() += T(s) * (R * (inertia_[b] * (R.transpose() * v_[b].template tail<3>())));
   }
 
   /// A_b⁻¹ x for each column of x: diag(1/m, R I⁻¹ Rᵀ) / mass scale.
@@ -159,6 +161,25 @@ class BasicRigidBodies {
   void advance(double h) { advance_with(h, T(0)); }
   /// The midpoint rule: x₊ = x + h (v + v_next)/2, and rotation with the angular impulse I (ω_next − ω).
   void advance_midpoint(double h) { advance_with(h, T(0.5)); }
+
+  /// One body at a time.
+  struct Blocks {
+    BasicRigidBodies& set;
+
+    bool moves(Index b) const { return set.moves(b); }
+    const Velocity& velocity(Index b) const { return set.v_[b]; }
+    void add_force(Index b, Velocity& p) const { set.add_force(b, p); }
+    void add_mass_times_velocity(Index b, Velocity& p, double s) const { set.add_mass_times_velocity(b, p, s); }
+    Velocity solve(Index b, const Velocity& p) const { return set.template solve_block<1>(b, p); }
+    void advance(Index b, const Velocity& next, double h, T old_share) const { set.advance_block(b, next, h, old_share); }
+  };
+  Blocks by_block(SystemScale scale) {
+    factor(scale);
+    held_ = 0;
+    return {*this};
+  }
+  /// No force acts between bodies: every one moves by itself.
+  bool is_separable() const { return true; }
 
   /// How many bodies the last advance left where they were.
   Index held() const { return held_; }
@@ -210,12 +231,16 @@ class BasicRigidBodies {
   void set_mass(Index b);
   void turn(Index b);
   void advance_with(double h, T old_share);
-  void follow(Index b, T h);
+  /// q and v of body b from its v_next; `old_share` of the old velocity in the mean that moves it: 0 for kick and drift,
+  /// ½ for the midpoint rule.
+  void advance_block(Index b, const Velocity& next, double h, T old_share);
+  void follow(Index b, const Velocity& next, T h);
 
   Slots slots_;
   std::uint32_t owner_ = inner::next_owner();
   T inverse_scale_ = 1;
   Index held_ = 0;
+  bool has_targets_ = false;  ///< move_to was called and the step that goes there is not over
   std::vector<Vec<3, T>> x_, shifted_x_;
   std::vector<Eigen::Quaternion<T>> q_, shifted_q_;
   std::vector<Mat<3, 3, T>> R_, inertia_, inverse_inertia_, inverse_inertia_world_;
@@ -303,50 +328,52 @@ void BasicRigidBodies<T>::turn(Index b) {
 
 template <class T>
 void BasicRigidBodies<T>::begin_step(double h) {
+  if (!has_targets_) return;
+  has_targets_ = false;
   for (const Index b : slots_.active()) {
     if (motion_[b] != Motion::kinematic || !target_[b].is_set) continue;
+    has_targets_ = true;
     const Quat now = q_[b].template cast<double>();
     v_[b] << ((target_[b].position - x_[b].template cast<double>()) / h).template cast<T>(),
         (logarithm<double>(target_[b].orientation * now.conjugate()) / h).template cast<T>();
   }
 }
 
-/// `old_share` of the old velocity in the mean that moves a body: 0 for kick and drift, ½ for the midpoint rule.
 template <class T>
-void BasicRigidBodies<T>::advance_with(double h_, T old_share) {
-  const T h = T(h_);
+void BasicRigidBodies<T>::advance_with(double h, T old_share) {
   held_ = 0;
-  for (const Index b : slots_.active()) {
-    if (motion_[b] == Motion::fixed) continue;
-    load_[b].setZero();
-    if (!is_finite(v_next[b])) {
-      ++held_;
-      continue;
-    }
-    if (motion_[b] == Motion::kinematic) {
-      follow(b, h);
-      continue;
-    }
-    x_[b] += h * (old_share * v_[b] + (T(1) - old_share) * v_next[b]).template head<3>();
-    // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
-    const Vec<3, T> kicked = R_[b].transpose() * v_next[b].template tail<3>();
-    const Vec<3, T> start = old_share > T(0) ? Vec<3, T>(R_[b].transpose() * v_[b].template tail<3>()) : kicked;
-    const Vec<3, T> momentum = inertia_[b] * kicked;
-    const Vec<3, T> before = old_share > T(0) ? Vec<3, T>(inertia_[b] * start) : momentum;
-    const Vec<3, T> spatial = R_[b] * momentum;
-    q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], start, before, momentum, h))).normalized();
-    turn(b);
-    v_[b].template head<3>() = v_next[b].template head<3>();
-    // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small ones.
-    v_[b].template tail<3>() = R_[b] * (inverse_inertia_[b] * (R_[b].transpose() * spatial));
+  for (const Index b : slots_.active()) advance_block(b, v_next[b], h, old_share);
+}
+
+template <class T>
+void BasicRigidBodies<T>::advance_block(Index b, const Velocity& next, double h_, T old_share) {
+  if (motion_[b] == Motion::fixed) return;
+  const T h = T(h_);
+  load_[b].setZero();
+  if (!is_finite(next)) {
+    ++held_;
+    return;
   }
+  if (motion_[b] == Motion::kinematic) return follow(b, next, h);
+  x_[b] += h * inner::mean<Vec<3, T>>(v_[b].template head<3>(), next.template head<3>(), old_share);
+  // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
+  const Vec<3, T> kicked = R_[b].transpose() * next.template tail<3>();
+  const Vec<3, T> start = old_share > T(0) ? Vec<3, T>(R_[b].transpose() * v_[b].template tail<3>()) : kicked;
+  const Vec<3, T> momentum = inertia_[b] * kicked;
+  const Vec<3, T> before = old_share > T(0) ? Vec<3, T>(inertia_[b] * start) : momentum;
+  const Vec<3, T> spatial = R_[b] * momentum;
+  q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], start, before, momentum, h))).normalized();
+  turn(b);
+  v_[b].template head<3>() = next.template head<3>();
+  // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small ones.
+  v_[b].template tail<3>() = R_[b] * (inverse_inertia_[b] * (R_[b].transpose() * spatial));
 }
 
 /// A kinematic body goes where it was told, exactly.
 template <class T>
-void BasicRigidBodies<T>::follow(Index b, T h) {
-  x_[b] += h * v_next[b].template head<3>();
-  q_[b] = (exponential<T>(h * v_next[b].template tail<3>()) * q_[b]).normalized();
+void BasicRigidBodies<T>::follow(Index b, const Velocity& next, T h) {
+  x_[b] += h * next.template head<3>();
+  q_[b] = (exponential<T>(h * next.template tail<3>()) * q_[b]).normalized();
   if (target_[b].is_set) {
     x_[b] = target_[b].position.template cast<T>();
     q_[b] = target_[b].orientation.template cast<T>();

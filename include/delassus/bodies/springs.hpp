@@ -47,6 +47,7 @@ class Springs {
     analysed_blocks_ = -1;
   }
 
+  bool is_empty() const { return springs_.empty(); }
   bool is_coupled() const { return is_coupled_; }
 
   double energy(const std::vector<Velocity>& x) const {

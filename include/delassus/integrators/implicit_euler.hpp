@@ -9,6 +9,7 @@ namespace delassus {
 /// f and K are taken at the start of the step; exact for linear forces.
 struct ImplicitEuler {
   using plays = role::Integrator;
+  using each_block_alone = ImplicitEuler;
   double rayleigh_mass = 0;       ///< α, 1/s
   double rayleigh_stiffness = 0;  ///< β, s
 

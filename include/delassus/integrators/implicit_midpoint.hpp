@@ -10,6 +10,7 @@ namespace delassus {
 /// linear forces. Bilateral rows hold for the mean velocity, H taken at q ⊕ h v/2.
 struct ImplicitMidpoint {
   using plays = role::Integrator;
+  using each_block_alone = ImplicitMidpoint;
   static constexpr double theta = 0.5;
   static constexpr bool linearises_at_midpoint = true;
 

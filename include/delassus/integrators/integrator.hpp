@@ -5,6 +5,7 @@
 #include <delassus/rows/body_set.hpp>
 
 #include <concepts>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -33,9 +34,8 @@ concept Integrator = Plays<I, role::Integrator> &&
     };
 
 /// p ← h p: forces become impulses.
-template <class V>
-void times(std::vector<V>& p, double h) {
-  for (V& x : p) x *= typename V::Scalar(h);
+void times(auto& p, double h) {
+  for (auto& x : p) x *= typename std::remove_cvref_t<decltype(x)>::Scalar(h);
 }
 
 /// The share θ of the new velocity in the mean that moves q; bilateral rows hold for that mean.

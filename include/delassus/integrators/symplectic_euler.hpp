@@ -8,6 +8,7 @@ namespace delassus {
 /// v⁺ = v + h M⁻¹ f,  q⁺ = q ⊕ h v⁺,  A = M. First order, symplectic; stable for h ω < 2.
 struct SymplecticEuler {
   using plays = role::Integrator;
+  using each_block_alone = SymplecticEuler;
 
   SystemScale scale(double) const { return {.mass = 1}; }
   void impulse(const auto& set, auto& p, double h) const {

@@ -202,6 +202,13 @@ consteval bool scheme_runs() {
   return runs;
 }
 
+/// A listener that hears a stage between Begin and Step.
+template <class P>
+inline constexpr bool hears_within = false;
+template <class P>
+  requires requires { typename P::listens; }
+inline constexpr bool hears_within<P> = P::listens::within;
+
 /// A listener that wants to be told of every sweep of the solver.
 template <class P>
 inline constexpr bool observes_sweeps = requires { requires P::every_sweep; };

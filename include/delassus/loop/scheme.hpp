@@ -3,6 +3,8 @@
 
 #include <delassus/core/roles.hpp>
 
+#include <type_traits>
+
 namespace delassus {
 
 /// Detect, linearise, move freely, and solve: the plain order. A scheme calls the stages of a loop in its own order.
@@ -10,15 +12,19 @@ struct PlainOrder {
   using plays = role::Scheme;
 
   void run(auto& loop) const {
-    loop.detect();
-    loop.linearize();
-    loop.free_motion();
-    loop.find_islands();
-    loop.make_bias();
-    loop.build();
-    loop.solve();
-    loop.correct();
-    loop.advance();
+    if constexpr (std::remove_reference_t<decltype(loop)>::moves_freely) {
+      loop.move_freely();
+    } else {
+      loop.detect();
+      loop.linearize();
+      loop.free_motion();
+      loop.find_islands();
+      loop.make_bias();
+      loop.build();
+      loop.solve();
+      loop.correct();
+      loop.advance();
+    }
   }
 };
 

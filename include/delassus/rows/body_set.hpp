@@ -46,4 +46,14 @@ concept FramedSet = BodySet<S> && requires(const S set, const Anchor anchor, Vec
   { set.about(anchor, 0, axis) } -> std::same_as<Vec<S::width, typename S::Scalar>>;
 };
 
+namespace inner {
+
+/// The velocity that moves q: `old_share` of the one before the step, the rest of the one after.
+template <class V>
+V mean(const V& before, const V& after, typename V::Scalar old_share) {
+  using T = typename V::Scalar;
+  return old_share == T(0) ? after : V(old_share * before + (T(1) - old_share) * after);
+}
+
+}  // namespace inner
 }  // namespace delassus

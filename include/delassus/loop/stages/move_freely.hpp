@@ -1,0 +1,65 @@
+/// FreeMotion and Advance of a loop without constraints in one pass: each body alone, from start to end.
+#pragma once
+
+#include <delassus/integrators/integrator.hpp>
+
+#include <array>
+#include <concepts>
+
+namespace delassus {
+
+/// One block of a set, shown to an integrator as if it were the whole set.
+template <class Blocks, class Velocity>
+struct OneBlock {
+  Blocks& blocks;
+  Index b;
+  Velocity v_next;
+
+  void add_forces(std::array<Velocity, 1>& p) const { blocks.add_force(b, p[0]); }
+  void add_mass_times_velocity(std::array<Velocity, 1>& p, double s) const {
+    blocks.add_mass_times_velocity(b, p[0], s);
+  }
+  void advance(double h) { blocks.advance(b, v_next, h, 0); }
+  void advance_midpoint(double h) { blocks.advance(b, v_next, h, 0.5); }
+};
+
+/// An integrator that treats every block by itself says so by its own name, so that one derived from it has to say it anew:
+/// `using each_block_alone = SymplecticEuler;`.
+template <class I>
+concept EachBlockAlone = std::same_as<typename I::each_block_alone, I>;
+
+/// A set that can do a step block by block; is_separable(): no force couples its blocks now.
+template <class S>
+concept StepsByBlock = requires(S set, const S fixed, SystemScale scale) {
+  { fixed.is_separable() } -> std::same_as<bool>;
+  { set.by_block(scale) } -> std::same_as<typename S::Blocks>;
+};
+
+namespace inner {
+
+template <class World>
+inline constexpr bool steps_by_block = false;
+template <template <class...> class World, StepsByBlock... Sets>
+inline constexpr bool steps_by_block<World<Sets...>> = true;
+
+}  // namespace inner
+
+/// v_next = v + A⁻¹ p and q, v from it, without arrays in between: bit for bit what `free_motion` and `advance` do.
+template <class Set, class I>
+void move_freely(Set& set, const I& integrator, double h) {
+  using Velocity = typename Set::Velocity;
+  set.begin_step(h);
+  auto blocks = set.by_block(integrator.scale(h));
+  for (const Index b : set.active()) {
+    OneBlock<decltype(blocks), Velocity> block{blocks, b, blocks.velocity(b)};
+    if (blocks.moves(b)) {
+      std::array<Velocity, 1> p;
+      p[0].setZero();
+      integrator.impulse(block, p, h);
+      block.v_next += blocks.solve(b, p[0]);
+    }
+    integrator.advance(block, h);
+  }
+}
+
+}  // namespace delassus
