@@ -6,15 +6,18 @@
 
 namespace delassus {
 
-/// φ = x_a − x_b (m, world axes), u = v_a − v_b. Both impulses act at the middle of the two anchors.
+/// φ = x_a − x_b (m, world axes), u = v_a − v_b. Both impulses act at one point, so that they have no moment: where the
+/// end without a frame is, a particle that can only be pushed at its centre, else at the middle of the two anchors. Two
+/// particles apart have no such point; their moment is φ × λ.
 struct BallJoint : Bilateral<3> {
   struct Item {
     Anchor a, b;
   };
 
   void linearize(const Item& item, const auto& world, auto row) const {
-    const Vec3 xa = world.point(item.a), xb = world.point(item.b), middle = 0.5 * (xa + xb);
-    auto a = row.end(item.a, middle), b = row.end(item.b, middle);
+    const Vec3 xa = world.point(item.a), xb = world.point(item.b);
+    const Vec3 point = !item.a.has_frame ? xa : !item.b.has_frame ? xb : Vec3(0.5 * (xa + xb));
+    auto a = row.end(item.a, point), b = row.end(item.b, point);
     for (int k = 0; k < 3; ++k) {
       a.along(k, Vec3::Unit(k));
       b.along(k, -Vec3::Unit(k));
