@@ -13,7 +13,8 @@
 namespace delassus {
 
 /// Bodies as they are when the first step ends; frames at most `frames_per_second`; a sample of every series
-/// a step. A Stopwatch listed before it gives the stage times.
+/// a step. A Stopwatch listed before it gives the stage times. A joint is drawn from the centre of one body
+/// through its anchors to the centre of the other.
 class Recorder {
  public:
   using plays = role::Listener;
@@ -30,21 +31,30 @@ class Recorder {
   Recording& recording() { return recording_; }
 
   void after(stage::Step, const auto& loop) {
-    if (recording_.bodies.empty()) add_bodies(loop.world());
+    if (recording_.bodies.empty()) begin(loop);
     sample(loop);
     if (recording_.wants_frame(loop.time())) add_frame(loop);
   }
 
  private:
-  void add_bodies(const auto& world) {
-    world.each([&](const auto& set, auto) {
+  void begin(const auto& loop) {
+    if constexpr (requires { loop.island_reports(); })  // else there is no solver to ask
+      if constexpr (requires { loop.template part<role::Solver>().tolerance; })
+        recording_.steps.tolerance = loop.template part<role::Solver>().tolerance;
+    loop.world().each([&](const auto& set, auto) {
       for (const Index b : set.active()) {
         if (set.has_collider(b))
-          recording_.bodies.push_back(recorded_body(set.shape(b), !set.moves(b)));
+          recording_.bodies.push_back(recorded_body(set.shape(b), is_fixed(set, b)));
         else
           recording_.bodies.push_back(recorded_particle(0.03));
       }
     });
+  }
+
+  /// A kinematic body has no mass that answers, and moves.
+  static bool is_fixed(const auto& set, Index b) {
+    if constexpr (requires { set.motion(b); }) return set.motion(b) == Motion::fixed;
+    else return !set.moves(b);
   }
 
   void add_frame(const auto& loop) {
@@ -62,8 +72,22 @@ class Recorder {
           frame.contacts.push_back(
               {c.record.point(), c.impulse, c.is_sliding ? RecordedState::sliding : RecordedState::sticking});
       }
-    loop.each_joint([&](const Vec3& a, const Vec3& b) { frame.lines.push_back({a, b}); });
+    loop.each_joint([&](const Anchor& a, const Anchor& b) { add_joint(frame, loop.world(), a, b); });
     recording_.frames.push_back(std::move(frame));
+  }
+
+  static void add_joint(RecordedFrame& frame, const auto& world, const Anchor& a, const Anchor& b) {
+    const Vec3 xa = world.point(a), xb = world.point(b);
+    frame.lines.push_back({xa, xb});
+    add_arm(frame, world, a, xa);
+    add_arm(frame, world, b, xb);
+  }
+  /// From the centre of the anchor's body to the anchor; the world has no centre.
+  static void add_arm(RecordedFrame& frame, const auto& world, const Anchor& anchor, const Vec3& end) {
+    world.visit(anchor.set, [&](const auto& set, auto) {
+      const Vec3 centre = set.pose(anchor.block).position;
+      if (centre != end) frame.lines.push_back({centre, end});
+    });
   }
 
   void sample(const auto& loop) {
