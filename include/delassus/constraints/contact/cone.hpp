@@ -6,13 +6,23 @@
 #include <cmath>
 
 namespace delassus {
+namespace inner {
+
+/// |(a, b)|. The squares of impulses and velocities neither overflow nor vanish where it matters, and std::hypot, which
+/// guards against that, is a library call in the middle of a sweep.
+template <class T>
+T length(T a, T b) {
+  return std::sqrt(a * a + b * b);
+}
+
+}  // namespace inner
 
 /// Euclidean projection on K(μ) = { (x_n, x_t) : |x_t| ≤ μ x_n }, rows ordered (n, t₁, t₂).
 ///
 ///   x inside: x;   μ |x_t| ≤ −x_n: 0;   else n = (x_n + μ |x_t|)/(1 + μ²), (n, μ n x_t/|x_t|).
 template <class T>
 Vec<3, T> project_on_cone(const Vec<3, T>& x, T friction) {
-  const T tangential = std::hypot(x[1], x[2]);
+  const T tangential = inner::length(x[1], x[2]);
   if (tangential <= friction * x[0]) return x;
   if (friction * tangential <= -x[0]) return Vec<3, T>::Zero();
   const T normal = (x[0] + friction * tangential) / (T(1) + friction * friction);
@@ -26,7 +36,7 @@ template <class T>
 Vec<3, T> coulomb_natural_map(const Vec<3, T>& lambda, const Vec<3, T>& u, T friction, T scale) {
   const Vec<3, T> x = scale * lambda;
   Vec<3, T> y = x - u;
-  y[0] -= friction * std::hypot(u[1], u[2]);
+  y[0] -= friction * inner::length(u[1], u[2]);
   return x - project_on_cone(y, friction);
 }
 

@@ -92,7 +92,7 @@ struct Coulomb {
   template <class T>
   bool is_sliding(const Parameters& p, const Vec<3, T>& lambda) const {
     constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
-    return lambda[0] > 0 && std::hypot(lambda[1], lambda[2]) >= T(p.friction) * lambda[0] * (T(1) - rounding);
+    return lambda[0] > 0 && inner::length(lambda[1], lambda[2]) >= T(p.friction) * lambda[0] * (T(1) - rounding);
   }
 
  private:
