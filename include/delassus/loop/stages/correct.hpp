@@ -4,6 +4,7 @@
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/rows/islands.hpp>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -37,14 +38,14 @@ void add_impulses(const Set& set, const Rows& rows, std::vector<typename Set::Ve
 namespace inner {
 
 /// What is left of v_free + A⁻¹ Hᵀ λ below the rounding of its terms is no velocity: a body whose impulses cancel its
-/// motion stands still to the last bit, wherever it is. Component by component, each against |v_free|.
+/// motion stands still to the last bit, wherever it is. Component by component, each against the largest of v_free.
 template <class V>
 void drop_rounding(V& v_next, const V& v_free) {
   using T = typename V::Scalar;
   constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
-  const T least = rounding * rounding * v_free.template head<3>().squaredNorm();
+  const T least = rounding * v_free.template head<3>().cwiseAbs().maxCoeff();
   for (int k = 0; k < 3; ++k)
-    if (v_next[k] * v_next[k] <= least) v_next[k] = T(0);
+    if (std::abs(v_next[k]) <= least) v_next[k] = T(0);
 }
 
 }  // namespace inner
@@ -63,8 +64,10 @@ void correct(World& world, const Rows& rows, Scratch& scratch, const Islands<poo
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);
       if (island < 0) continue;
-      inner::drop_rounding(set.v_next[b], set.v_free[b]);
-      if (is_finite(set.v_next[b])) continue;
+      if (is_finite(set.v_next[b])) {
+        inner::drop_rounding(set.v_next[b], set.v_free[b]);
+        continue;
+      }
       is_sick[island] = 1;
       any = true;
     }
