@@ -1,0 +1,134 @@
+#include "scenes.hpp"
+
+#include "catch.hpp"
+
+using namespace scenes;
+
+namespace {
+
+constexpr double h = 1.0 / 60;
+
+struct Slippery {
+  /// Whatever touches material 2.
+  static bool takes(Index a, Index b) { return a == 2 || b == 2; }
+};
+
+template <class Set>
+RigidBodies::Handle add_ground(Set& set, Index material) {
+  return set.add({.shape = HalfSpace{}, .motion = Motion::fixed, .material = material});
+}
+
+/// |λ_t|/λ_n of all contacts together while the block slides.
+template <class Loop>
+double friction_seen(Loop& loop, Index ground, Index block) {
+  auto& set = rigid_bodies(loop);
+  add_ground(set, ground);
+  const auto body = set.add({.position = {0, 0, 0.1}, .velocity = {5, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 0.2},
+                             .material = block});
+  for (int n = 0; n < 5; ++n) loop.step(h);
+  Vec3 sum = Vec3::Zero();
+  for (const ContactResult& c : loop.contacts()) sum += c.impulse;
+  REQUIRE(set.velocity(body).x() > 0);
+  return std::abs(sum.x() / sum.z());
+}
+
+using Loop = decltype(AnimationLoop{World{RigidBodies{}},
+                                    Constraints{Contact{Restitution{Coulomb{.friction = 0.1}, 0.25}}}});
+Loop make_loop() {
+  return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.1}, 0.25}}}};
+}
+
+/// Upward speed of a ball of material `ball` that arrives with 2 m/s, over 2 m/s.
+double restitution_seen(Loop& loop, Index ground, Index ball) {
+  auto& set = rigid_bodies(loop);
+  set.gravity.setZero();
+  add_ground(set, ground);
+  const auto body = set.add({.position = {0, 0, 0.11}, .velocity = {0, 0, -2}, .mass = 1.0, .shape = Sphere{0.1},
+                             .material = ball});
+  for (int n = 0; n < 3; ++n) loop.step(h);
+  return set.velocity(body).z() / 2;
+}
+
+}  // namespace
+
+TEST_CASE("without materials the law's own friction and restitution hold") {
+  auto a = make_loop(), b = make_loop();
+  REQUIRE(friction_seen(a, 0, 0) == Approx(0.1).epsilon(1e-5));
+  REQUIRE(restitution_seen(b, 0, 0) == Approx(0.25).epsilon(1e-6));
+}
+
+TEST_CASE("two materials combine to the root of their frictions and the larger restitution") {
+  const auto with = [](Loop& loop) {
+    REQUIRE(loop.materials().add({.friction = 0.2, .restitution = 0.5}) == 1);
+    REQUIRE(loop.materials().add({.friction = 0.8, .restitution = 0.75}) == 2);
+  };
+  auto a = make_loop(), b = make_loop();
+  with(a);
+  with(b);
+  REQUIRE(friction_seen(a, 1, 2) == Approx(0.4).epsilon(1e-5));
+  REQUIRE(restitution_seen(b, 1, 2) == Approx(0.75).epsilon(1e-6));
+}
+
+TEST_CASE("a pair of materials comes before their combination, in either order") {
+  for (const bool swapped : {false, true}) {
+    const auto with = [](Loop& loop) {
+      loop.materials().add({.friction = 0.2, .restitution = 0.5});
+      loop.materials().add({.friction = 0.8, .restitution = 0.75});
+      loop.materials().set_pair(2, 1, {.friction = 0.3, .restitution = 0.9});
+    };
+    auto a = make_loop(), b = make_loop();
+    with(a);
+    with(b);
+    REQUIRE(friction_seen(a, swapped ? 2 : 1, swapped ? 1 : 2) == Approx(0.3).epsilon(1e-5));
+    REQUIRE(restitution_seen(b, swapped ? 2 : 1, swapped ? 1 : 2) == Approx(0.9).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a body without material keeps the law's own parameters against every material") {
+  auto loop = make_loop();
+  loop.materials().add({.friction = 0.9, .restitution = 0});
+  REQUIRE(friction_seen(loop, 1, 0) == Approx(0.1).epsilon(1e-5));
+}
+
+TEST_CASE("a friction or restitution that cannot be is refused by its value") {
+  auto loop = make_loop();
+  REQUIRE_THROWS_WITH(loop.materials().add({.friction = -1}), Catch::Contains("friction -1 must be finite and >= 0"));
+  REQUIRE_THROWS_WITH(loop.materials().add({.restitution = 1.5}), Catch::Contains("restitution 1.5 must be in [0, 1]"));
+  REQUIRE_THROWS_WITH(loop.materials().set_pair(1, 2, {}), Catch::Contains("no material has this number"));
+}
+
+TEST_CASE("two contact laws share the contacts by their materials") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{ContactFor<Frictionless, Slippery>{}, Contact{Coulomb{.friction = 0.5}}}};
+  auto& set = rigid_bodies(loop);
+  add_ground(set, 1);
+  loop.materials().add({.friction = 0.5});
+  loop.materials().add({.friction = 0.5});
+  const auto rough = set.add({.position = {0, 0, 0.1}, .velocity = {3, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 0.2}, .material = 1});
+  const auto smooth = set.add({.position = {0, 5, 0.1}, .velocity = {3, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 0.2}, .material = 2});
+  for (int n = 0; n < 60; ++n) REQUIRE(loop.step(h).status == Status::converged);
+  REQUIRE(loop.problem().rows.pool<0>().items() == 4);
+  REQUIRE(loop.problem().rows.pool<1>().items() == 4);
+  REQUIRE(set.velocity(rough).norm() < 1e-9);
+  REQUIRE(set.velocity(smooth).x() == Approx(3).epsilon(1e-9));
+}
+
+TEST_CASE("a contact that no law takes is a status, and does not act") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{ContactFor<Frictionless, Slippery>{}}};
+  auto& set = rigid_bodies(loop);
+  add_ground(set, 0);
+  const auto box = set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  REQUIRE(loop.step(h).status == Status::unclaimed_contact);
+  REQUIRE(set.velocity(box).z() == Approx(-g * h).epsilon(1e-15));
+}
+
+TEST_CASE("bodies meet when each one's group is in the other's mask") {
+  for (const auto& [group, mask, meets] : {std::tuple{1u, ~0u, true}, {2u, ~0u, true}, {1u, 2u, false}, {4u, 1u, true}, {8u, 6u, false}}) {
+    auto loop = make_loop();
+    auto& set = rigid_bodies(loop);
+    add_ground(set, 0);
+    const auto box = set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}, .group = group, .collides_with = mask});
+    for (int n = 0; n < 30; ++n) loop.step(h);
+    CAPTURE(group, mask);
+    REQUIRE((set.position(box).z() > 0.49) == meets);
+  }
+}
