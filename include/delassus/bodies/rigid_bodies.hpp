@@ -71,7 +71,7 @@ class BasicRigidBodies {
   void move_to(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
     const Index b = checked(body);
     DELASSUS_EXPECT(motion_[b] == Motion::kinematic, who(b) + ": only a kinematic body can be moved along a path");
-    DELASSUS_EXPECT(is_finite(position) && orientation.coeffs().norm() > 1e-12, who(b) + ": pose is not finite");
+    DELASSUS_EXPECT(is_pose(position, orientation), who(b) + ": pose is not finite");
     target_[b] = Target{position, orientation.normalized(), true};
     has_targets_ = true;
   }
@@ -79,7 +79,7 @@ class BasicRigidBodies {
   /// Puts a body somewhere else at once, its velocity unchanged.
   void place(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
     const Index b = checked(body);
-    DELASSUS_EXPECT(is_finite(position) && orientation.coeffs().norm() > 1e-12, who(b) + ": pose is not finite");
+    DELASSUS_EXPECT(is_pose(position, orientation), who(b) + ": pose is not finite");
     x_[b] = position.template cast<T>();
     q_[b] = orientation.normalized().template cast<T>();
     turn(b);
@@ -227,6 +227,10 @@ class BasicRigidBodies {
     DELASSUS_EXPECT(body.owner == owner_, "this rigid body handle belongs to another world");
     DELASSUS_EXPECT(slots_.is_current(body.index, body.generation), who(body.index) + " was removed; its handle is stale");
     return body.index;
+  }
+  static bool is_pose(const Vec3& position, const Quat& orientation) {
+    const double norm = orientation.coeffs().norm();
+    return is_finite(position) && std::isfinite(norm) && norm > 1e-12;
   }
   void set_mass(Index b);
   void turn(Index b);

@@ -87,6 +87,8 @@ class World {
   /// Finds the set an anchor speaks of; refuses one of another world or of a removed body.
   void resolve(Anchor& a, const char* what) const {
     if (a.owner == 0) {
+      DELASSUS_EXPECT(is_finite(a.local) && is_finite(a.frame.coeffs()),
+                      std::string(what) + ": the world anchor's point or frame is not finite");
       a.set = -1;
       return;
     }

@@ -1,7 +1,10 @@
 /// Implicit Euler, one Newton step.
 #pragma once
 
+#include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+
+#include <cmath>
 
 namespace delassus {
 
@@ -13,6 +16,12 @@ struct ImplicitEuler {
   double rayleigh_mass = 0;       ///< α, 1/s
   double rayleigh_stiffness = 0;  ///< β, s
 
+  void check() const {
+    DELASSUS_EXPECT(std::isfinite(rayleigh_mass) && rayleigh_mass >= 0,
+                    "ImplicitEuler: rayleigh_mass " + inner::text(rayleigh_mass) + " must be finite and >= 0 1/s");
+    DELASSUS_EXPECT(std::isfinite(rayleigh_stiffness) && rayleigh_stiffness >= 0,
+                    "ImplicitEuler: rayleigh_stiffness " + inner::text(rayleigh_stiffness) + " must be finite and >= 0 s");
+  }
   SystemScale scale(double h) const {
     return {.mass = 1 + h * rayleigh_mass, .damping = h, .stiffness = h * (h + rayleigh_stiffness)};
   }
