@@ -3,6 +3,8 @@
 
 #include <delassus/loop/checks.hpp>
 #include <delassus/loop/defaults.hpp>
+#include <delassus/loop/edit.hpp>
+#include <delassus/loop/listening.hpp>
 #include <delassus/loop/problem.hpp>
 #include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/stages/correct.hpp>
@@ -53,7 +55,9 @@ class AnimationLoop {
   }
   /// Takes a body out, with every constraint that holds it.
   template <class Set>
-  void remove(Handle<Set> body);
+  void remove(Handle<Set> body) {
+    inner::remove_body(world(), laws(), body);
+  }
 
   /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
   template <class Law>
@@ -116,10 +120,14 @@ class AnimationLoop {
   }
   /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
   template <class F>
-  void each_constraint(F&& f) const;
+  void each_constraint(F&& f) const {
+    if constexpr (has_constraints) inner::each_constraint(work_, h_, f);
+  }
   /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
-  void each_joint(F&& f) const;
+  void each_joint(F&& f) const {
+    inner::each_joint(laws(), f);
+  }
   double time() const { return start_ + double(steps_) * h_; }
 
   // --- the stages, in the plain order; a host that interleaves its own work calls begin(h), then these ----------------
@@ -157,12 +165,11 @@ class AnimationLoop {
   }
   Laws& laws() { return part<role::Constraints>(); }
   const Laws& laws() const { return part<role::Constraints>(); }
-  void find_displacements();
   void end_advance();
   template <class Stage>
-  void tell();
-  template <class F>
-  void with_observer(F&& f);
+  void tell() {
+    inner::tell<Stage>(policies_, std::as_const(*this));
+  }
   void check_policies() const;
 
   std::tuple<Policies...> policies_;
@@ -215,84 +222,6 @@ auto AnimationLoop<Policies...>::add(Item item) {
     }
     return laws().template of<Law>().add(item);
   }
-}
-
-template <class... Policies>
-template <class Set>
-void AnimationLoop<Policies...>::remove(Handle<Set> body) {
-  bool is_found = false;
-  world().each([&](auto& set, auto) {
-    if constexpr (std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
-      if (set.owner() == body.owner) {
-        is_found = true;
-        set.remove(body);
-        for_each_index<Laws::pool_count>([&](auto p) {
-          auto& pool = laws().template pool<p>();
-          if constexpr (requires { pool.remove_on(body.owner, body.index); }) pool.remove_on(body.owner, body.index);
-        });
-      }
-  });
-  DELASSUS_EXPECT(is_found, "remove: this handle belongs to another world");
-}
-
-/// Every listener that hears this stage, in the order of the list.
-template <class... Policies>
-template <class Stage>
-void AnimationLoop<Policies...>::tell() {
-  const auto one = [&](auto& part) {
-    using P = std::remove_reference_t<decltype(part)>;
-    if constexpr (Plays<P, role::Listener>) {
-      if constexpr (P::listens::template to<Stage>)
-        if constexpr (inner::hears<P, AnimationLoop, Stage>()) part.after(Stage{}, std::as_const(*this));
-    }
-  };
-  std::apply([&](auto&... part) { (one(part), ...); }, policies_);
-}
-
-/// f(observer): the first listener that wants every sweep, or one that wants nothing.
-template <class... Policies>
-template <class F>
-void AnimationLoop<Policies...>::with_observer(F&& f) {
-  constexpr bool any = (inner::observes_sweeps<Policies> || ...);
-  if constexpr (any) {
-    bool is_done = false;
-    const auto one = [&](auto& part) {
-      if constexpr (inner::observes_sweeps<std::remove_reference_t<decltype(part)>>)
-        if (!std::exchange(is_done, true)) f(part);
-    };
-    std::apply([&](auto&... part) { (one(part), ...); }, policies_);
-  } else {
-    NoObserver nobody;
-    f(nobody);
-  }
-}
-
-template <class... Policies>
-template <class F>
-void AnimationLoop<Policies...>::each_constraint(F&& f) const {
-  if constexpr (has_constraints) {
-    auto book = work_.book;
-    for_each_index<Laws::pool_count>([&](auto p) {
-      const auto& pool = work_.rows.template pool<p>();
-      constexpr int R = Work::Rows::template rows_of<p>;
-      for (Index i = 0; i < pool.items(); ++i) {
-        const Local<R, Scalar> c{work_.W.template diagonal<p>(i), work_.W.template residual<p>(work_.rows, i), pool.lambda[i]};
-        f(int(p), i, pool.lambda[i], double(book.template natural_map<p>(i, c, c.W.trace() / Scalar(R)).norm()), h_);
-      }
-    });
-  }
-}
-
-template <class... Policies>
-template <class F>
-void AnimationLoop<Policies...>::each_joint(F&& f) const {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    const auto& pool = laws().template pool<p>();
-    for (Index i = 0; i < pool.count(); ++i) {
-      const auto& item = pool.item(i);
-      if constexpr (requires { item.a.owner, item.b.owner; }) f(item.a, item.b);
-    }
-  });
 }
 
 template <class... Policies>
@@ -391,31 +320,16 @@ void AnimationLoop<Policies...>::build() {
 template <class... Policies>
 void AnimationLoop<Policies...>::solve() {
   if constexpr (has_constraints) {
-    auto& w = work_;
-    const auto& solver = part<role::Solver>();
-    w.W.reset(w.rows);
-    if constexpr (requires { w.solver.reset(w.rows); }) w.solver.reset(w.rows);
-    if constexpr (Work::restitutes)
-      for (auto& aside : w.aside) aside.resize_like(w.rows);
-    w.reports.resize(w.islands.count());
-    with_observer([&](auto& observer) {
-      for (Index k = 0; k < w.islands.count(); ++k) {
-        observer.begin_island(k);
-        const auto run = [&] {
-          return solve_island(w.book, w.rows, w.W, w.islands, k, solver, w.solver, h_, observer);
-        };
-        w.reports[k] = run();
-        if constexpr (Work::restitutes)
-          guard_energy(w.rows, w.W, w.islands, k, w.bounce, w.aside[0], w.aside[1], run);
-      }
+    inner::with_observer(policies_, [&](auto& observer) {
+      solve_islands(work_, part<role::Solver>(), h_, observer);
     });
-    for (const SolveReport& r : w.reports) {
+    for (const SolveReport& r : work_.reports) {
       report_.status = worse(report_.status, r.status);
       report_.sweeps = std::max(report_.sweeps, r.sweeps);
       report_.residual = std::max(report_.residual, r.measure.residual);
       report_.siconos_error = std::max(report_.siconos_error, r.measure.siconos);
     }
-    keep_impulses(laws(), w.rows, w.contacts);
+    keep_impulses(laws(), work_.rows, work_.contacts);
   }
   tell<stage::Solve>();
 }
@@ -444,48 +358,18 @@ void AnimationLoop<Policies...>::move_freely() {
   end_advance();
 }
 
-/// w = A⁻¹ Hᵀ μ of the position problem, into the scratch of each set. λ and d of the step are put back.
-template <class... Policies>
-void AnimationLoop<Policies...>::find_displacements() {
-  auto& w = work_;
-  for (auto& aside : w.aside) aside.resize_like(w.rows);
-  for_each_index<Laws::pool_count>([&](auto p) {
-    std::get<p>(w.aside[0].pools) = w.rows.template pool<p>().lambda;
-    std::get<p>(w.aside[1].pools) = w.rows.template pool<p>().d;
-  });
-  make_position_bias(std::as_const(*this).world(), laws(), w.rows, part<role::Stabilisation>(), h_);
-  w.W.reset(w.rows);
-  PositionBook<Laws, Scalar> book;
-  NoObserver nobody;
-  for (Index k = 0; k < w.islands.count(); ++k)
-    if (!w.is_sick[k])
-      solve_island(book, w.rows, w.W, w.islands, k, part<role::Solver>(), w.solver, h_, nobody);
-  world().each([&](auto& set, auto s) {
-    auto& to = std::get<s>(w.displacement);
-    to.resize(set.blocks());
-    for (auto& x : to) x.setZero();
-    add_impulses<s>(set, w.rows, to, std::get<s>(scratch_));
-  });
-  for_each_index<Laws::pool_count>([&](auto p) {
-    std::swap(std::get<p>(w.aside[0].pools), w.rows.template pool<p>().lambda);
-    std::swap(std::get<p>(w.aside[1].pools), w.rows.template pool<p>().d);
-  });
-}
-
 template <class... Policies>
 void AnimationLoop<Policies...>::advance() {
   if constexpr (has_constraints)
-    if constexpr (Work::projects_position) find_displacements();
+    if constexpr (Work::projects_position)
+      find_displacements(std::as_const(*this).world(), laws(), work_, part<role::Stabilisation>(), part<role::Solver>(),
+                         scratch_, h_);
   world().each([&](auto& set, auto) {
     part<role::Integrator>().advance(set, h_);
     report_.quarantined += set.held();
   });
   if constexpr (has_constraints)
-    if constexpr (Work::projects_position)
-      world().each([&](auto& set, auto s) {
-        for (const Index b : set.active())
-          if (set.moves(b)) set.displace(b, Scalar(h_) * std::get<s>(work_.displacement)[b]);
-      });
+    if constexpr (Work::projects_position) displace(world(), work_.displacement, h_);
   end_advance();
   tell<stage::Advance>();
 }

@@ -72,4 +72,40 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
   });
 }
 
+/// w = A⁻¹ Hᵀ μ of the position problem, into `work.displacement`. λ and d of the step are put back.
+template <class World, class Laws, class Work, class S, class Solver, class Scratch>
+void find_displacements(const World& world, const Laws& laws, Work& work, const S& stabilisation, const Solver& solver,
+                        Scratch& scratch, double h) {
+  for (auto& aside : work.aside) aside.resize_like(work.rows);
+  for_each_index<Laws::pool_count>([&](auto p) {
+    std::get<p>(work.aside[0].pools) = work.rows.template pool<p>().lambda;
+    std::get<p>(work.aside[1].pools) = work.rows.template pool<p>().d;
+  });
+  make_position_bias(world, laws, work.rows, stabilisation, h);
+  work.W.reset(work.rows);
+  PositionBook<Laws, typename World::Scalar> book;
+  NoObserver nobody;
+  for (Index k = 0; k < work.islands.count(); ++k)
+    if (!work.is_sick[k]) solve_island(book, work.rows, work.W, work.islands, k, solver, work.solver, h, nobody);
+  world.each([&](const auto& set, auto s) {
+    auto& to = std::get<s>(work.displacement);
+    to.resize(set.blocks());
+    for (auto& x : to) x.setZero();
+    add_impulses<s>(set, work.rows, to, std::get<s>(scratch));
+  });
+  for_each_index<Laws::pool_count>([&](auto p) {
+    std::swap(std::get<p>(work.aside[0].pools), work.rows.template pool<p>().lambda);
+    std::swap(std::get<p>(work.aside[1].pools), work.rows.template pool<p>().d);
+  });
+}
+
+/// q ← q ⊕ h w.
+template <class World, class Displacement>
+void displace(World& world, const Displacement& displacement, double h) {
+  world.each([&](auto& set, auto s) {
+    for (const Index b : set.active())
+      if (set.moves(b)) set.displace(b, typename World::Scalar(h) * std::get<s>(displacement)[b]);
+  });
+}
+
 }  // namespace delassus

@@ -110,4 +110,23 @@ void guard_energy(Rows& rows, Operator& W, const Islands<pools>& islands, Index 
   });
 }
 
+/// Every island, one after the other; where a law restitutes, the impulses are checked to add no energy.
+template <class Work, class Solver, class Observer>
+void solve_islands(Work& work, const Solver& solver, double h, Observer& observer) {
+  work.W.reset(work.rows);
+  if constexpr (requires { work.solver.reset(work.rows); }) work.solver.reset(work.rows);
+  if constexpr (Work::restitutes)
+    for (auto& aside : work.aside) aside.resize_like(work.rows);
+  work.reports.resize(work.islands.count());
+  for (Index k = 0; k < work.islands.count(); ++k) {
+    observer.begin_island(k);
+    const auto run = [&] {
+      return solve_island(work.book, work.rows, work.W, work.islands, k, solver, work.solver, h, observer);
+    };
+    work.reports[k] = run();
+    if constexpr (Work::restitutes)
+      guard_energy(work.rows, work.W, work.islands, k, work.bounce, work.aside[0], work.aside[1], run);
+  }
+}
+
 }  // namespace delassus

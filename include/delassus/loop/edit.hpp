@@ -1,0 +1,31 @@
+/// Edits that touch bodies and constraints together.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/handle.hpp>
+#include <delassus/rows/row_system.hpp>
+
+#include <type_traits>
+
+namespace delassus::inner {
+
+/// Takes a body out, with every constraint that holds it.
+template <class World, class Laws, class Set>
+void remove_body(World& world, Laws& laws, Handle<Set> body) {
+  bool is_found = false;
+  world.each([&](auto& set, auto) {
+    if constexpr (std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
+      if (set.owner() == body.owner) {
+        is_found = true;
+        set.remove(body);
+        for_each_index<Laws::pool_count>([&](auto p) {
+          auto& pool = laws.template pool<p>();
+          if constexpr (requires { pool.remove_on(body.owner, body.index); }) pool.remove_on(body.owner, body.index);
+        });
+      }
+  });
+  DELASSUS_EXPECT(is_found, "remove: this handle belongs to another world");
+}
+
+}  // namespace delassus::inner
