@@ -64,7 +64,8 @@ class CoupledColumns<RowSystem<T, Widths<w...>, R...>> {
 
   template <int s, class Set>
   void prepare(const Set& set, const Rows& rows) {
-    std::vector<typename Set::Velocity> x(set.blocks());
+    auto& x = std::get<s>(scratch_);
+    x.resize(set.blocks());
     for_each_index<Rows::pool_count>([&](auto p) {
       constexpr int r = Rows::template rows_of<p>;
       const auto& mine = std::get<s>(rows.template pool<p>().sets);
@@ -98,6 +99,7 @@ class CoupledColumns<RowSystem<T, Widths<w...>, R...>> {
   template <int width>
   using PerPool = std::tuple<ColumnsOf<T, width, R>...>;
   std::tuple<PerPool<w>...> columns_;
+  std::tuple<std::vector<Vec<w, T>>...> scratch_;
 };
 
 }  // namespace delassus::inner

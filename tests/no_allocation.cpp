@@ -1,0 +1,34 @@
+// A program of its own: it counts every call of operator new, and has Eigen stop at an allocation in a warm step.
+#define EIGEN_RUNTIME_NO_MALLOC
+#include "allocation_scenes.hpp"
+
+TEST_CASE("a warm step of ten jointed boxes with contacts allocates nothing") {
+  REQUIRE(allocations_of_jointed_stack(NativeCollision{}) == 0);
+}
+
+TEST_CASE("a warm step of a chain of joints allocates nothing") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, DistanceJoint{}}};
+  auto& set = rigid_bodies(loop);
+  RigidBodies::Handle last;
+  for (int i = 0; i < 10; ++i) {
+    const auto link = set.add({.position = {i + 0.5, 0, 0}, .mass = 1.0, .shape = Capsule{0.1, 0.6}});
+    if (i == 0) loop.add(BallJoint::Item{anchor(set, link, {-0.5, 0, 0}), world_anchor({0, 0, 0})});
+    else loop.add(BallJoint::Item{anchor(set, link, {-0.5, 0, 0}), anchor(set, last, {0.5, 0, 0})});
+    last = link;
+  }
+  loop.add(DistanceJoint::Item{anchor(set, last), world_anchor({5, 0, -5}), 6.0, 100.0, 1.0});
+  REQUIRE(allocations_of(loop, 100, 1000) == 0);
+}
+
+TEST_CASE("a warm step of particles coupled by springs allocates nothing under implicit Euler") {
+  AnimationLoop loop{World{Particles{}}, Constraints{DistanceJoint{}}, ImplicitEuler{}};
+  auto& set = rigid_bodies(loop);
+  std::vector<Particles::Handle> beads;
+  for (int i = 0; i < 10; ++i) {
+    beads.push_back(set.add({.position = {0.1 * i, 0, 0}, .mass = 0.1}));
+    if (i > 0) set.add_spring(beads[i], beads[i - 1], 500);
+  }
+  loop.add(DistanceJoint::Item{anchor(set, beads[0]), world_anchor({0, 0, 1}), 1.0});
+  loop.add(DistanceJoint::Item{anchor(set, beads[9]), world_anchor({1, 0, 1}), 1.0});
+  REQUIRE(allocations_of(loop, 100, 1000) == 0);
+}
