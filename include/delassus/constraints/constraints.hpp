@@ -55,7 +55,7 @@ class Constraints {
   };
 
  private:
-  std::tuple<Pool<Laws>...> pools_;
+  [[no_unique_address]] std::tuple<Pool<Laws>...> pools_;
 };
 
 template <class... Laws>

@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""What programs are compiled to: no code of rooms they do not use, and no call inside a sweep.
+
+  compiled_to.py <root> --compiler g++ [--system <include dir>...]
+
+Every instruction of a program has a line in its debug information (-g1), inlined ones too: the rooms those lines come from
+are the rooms whose code is in the program. A list of names would rot; this needs none.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ABSENT = ("collision", "constraints", "compliance", "solvers", "stabilisation")
+
+
+def run(*words):
+    done = subprocess.run([str(w) for w in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          env={"LC_ALL": "C", "PATH": "/usr/local/bin:/usr/bin:/bin"})
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(str(w) for w in words)}\nfailed:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def build(arguments, source, program):
+    include = [word for directory in arguments.system for word in ("-isystem", directory)]
+    run(arguments.compiler, "-std=c++20", "-O2", "-g1", "-DNDEBUG", "-I", arguments.root / "include", *include, source,
+        "-o", program)
+
+
+def rooms_in(program):
+    """Room -> headers of it that put an instruction into the program."""
+    found = {}
+    for room, header in re.findall(r"include/delassus/(\w+)/([\w/]+\.hpp)",
+                                   run("objdump", "--dwarf=decodedline", program)):
+        found.setdefault(room, set()).add(header)
+    return found
+
+
+def calls_from(program, start):
+    """Names of library functions that `start` can reach by calls, through any function of ours."""
+    body, name = {}, None
+    for line in run("objdump", "-d", "-C", "--no-show-raw-insn", program).splitlines():
+        head = re.match(r"^[0-9a-f]+ <(.+)>:$", line)
+        if head:
+            name = head.group(1)
+            body[name] = set()
+        target = re.search(r"\t(?:call|jmp|j[a-z]+)\s+(?:[0-9a-f]+ )?<(.+?)(?:\+0x[0-9a-f]+)?>$", line)
+        if target and name:
+            body[name].add(target.group(1))
+        elif name and re.search(r"\tcall\s+\*", line):
+            body[name].add("a function pointer")
+    if start not in body:
+        sys.exit(f"{start} is not in the program")
+    seen, todo, outside = set(), [start], set()
+    while todo:
+        name = todo.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        if name not in body or name.endswith("@plt"):
+            outside.add(name)
+        else:
+            todo.extend(body[name])
+    return outside
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("root", type=pathlib.Path)
+    parser.add_argument("--compiler", default="g++")
+    parser.add_argument("--system", nargs="*", default=[])
+    arguments = parser.parse_args()
+    here = arguments.root / "tests" / "zero_cost"
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        program = pathlib.Path(folder) / "program"
+
+        build(arguments, here / "falling_box.cpp", program)
+        found = rooms_in(program)
+        for room in ABSENT:
+            if room in found:
+                wrong.append(f"a falling box holds code of {room}: {', '.join(sorted(found[room]))}")
+        print("a falling box is made of", ", ".join(sorted(found)))
+        run(program)
+
+        build(arguments, here / "sweep.cpp", program)
+        found = rooms_in(program)
+        for room in ABSENT:  # else the look into the falling box would prove nothing
+            if room not in found:
+                wrong.append(f"no code of {room} is seen in a program that uses it")
+        # sqrt of a negative number sets errno in the C library; the instruction does all others.
+        calls = calls_from(program, "one_sweep") - {"sqrt@plt", "sqrtf@plt"}
+        print("a sweep calls", ", ".join(sorted(calls)) or "nothing")
+        if calls:
+            wrong.append(f"a sweep of Coulomb contacts calls {', '.join(sorted(calls))}")
+        run(program)
+    for sentence in wrong:
+        print(sentence)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
