@@ -1,9 +1,8 @@
 /// The local solve all joints share: the rows are equalities.
 #pragma once
 
+#include <delassus/math/positive.hpp>
 #include <delassus/rows/local.hpp>
-
-#include <Eigen/Cholesky>
 
 #include <limits>
 
@@ -24,7 +23,7 @@ struct Bilateral {
   void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
     const T lift = T(64) * std::numeric_limits<T>::epsilon() * W.trace();
     const Mat<rows, rows, T> lifted = W + lift * Mat<rows, rows, T>::Identity();
-    memory.inverse = lifted.llt().solve(Mat<rows, rows, T>::Identity());
+    memory.inverse = inverse_of_positive(lifted);
   }
   template <class Item, class T>
   void project(const Item&, Local<rows, T>& c, Memory<T>& memory) const {

@@ -1,0 +1,52 @@
+#include "catch.hpp"
+
+#include <delassus/math/positive.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <random>
+
+using namespace delassus;
+
+namespace {
+
+/// Q diag(1 … 10^decades) Qᵀ with a random rotation Q.
+template <int R>
+Mat<R, R> of_condition(double decades, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Mat<R, R> any;
+  for (int i = 0; i < R * R; ++i) any.data()[i] = normal(random);
+  const Mat<R, R> Q = Eigen::SelfAdjointEigenSolver<Mat<R, R>>(any + any.transpose()).eigenvectors();
+  Vec<R> values;
+  for (int i = 0; i < R; ++i) values[i] = std::pow(10.0, R > 1 ? decades * i / (R - 1) : 0);
+  return Q * values.asDiagonal() * Q.transpose();
+}
+
+/// |S S⁻¹ − 1| ≤ c ε cond(S), c a small multiple of R².
+template <int R>
+void check(double decades) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Mat<R, R> S = of_condition<R>(decades, seed);
+    const Mat<R, R> error = S * inverse_of_positive(S) - Mat<R, R>::Identity();
+    REQUIRE(error.norm() <= 4 * R * R * 2.2e-16 * std::pow(10.0, decades));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the inverse of a positive matrix is one to the rounding its condition allows") {
+  for (const double decades : {0.0, 3.0, 9.0}) {
+    CAPTURE(decades);
+    check<1>(decades);
+    check<2>(decades);
+    check<3>(decades);
+    check<5>(decades);
+    check<6>(decades);
+  }
+}
+
+TEST_CASE("the inverse of a positive matrix is symmetric to the bit, so that impulses stay pairs") {
+  const Mat<3, 3> inverse = inverse_of_positive(of_condition<3>(6, 3));
+  REQUIRE(inverse == Mat<3, 3>(inverse.transpose()));
+}
