@@ -69,6 +69,16 @@ const point = (scene, list, i, out = [0, 0, 0]) => {
   return out;
 };
 
+/// An end of line `i` at time `t`: on the way to where the next frame has it, if that has the same lines.
+function linePoint(scene, frame, i, end, t) {
+  const {times, lineStart} = scene, count = lineStart[frame + 1] - lineStart[frame];
+  const at = point(scene, scene.lines, 6 * i + end);
+  if (frame + 1 >= times.length || lineStart[frame + 2] - lineStart[frame + 1] !== count) return at;
+  const share = Math.min(1, Math.max(0, (t - times[frame]) / (times[frame + 1] - times[frame])));
+  const next = point(scene, scene.lines, 6 * (i + count) + end);
+  return at.map((x, k) => x + share * (next[k] - x));
+}
+
 /// Three words: two bits say which component was the largest and left out, the others hold 15 bits each.
 function rotation(list, i, out) {
   const largest = (list[i] & 1) << 1 | (list[i + 1] & 1);

@@ -137,14 +137,14 @@ function sceneBall(scene) {
   let azimuth = longer > 0.5 ? Math.atan2(2 * xy, xx - yy) / 2 - Math.PI / 2 + 0.3 : -1.05;
   if (Math.sin(azimuth) > 0) azimuth += Math.PI;
 
-  // What is high up for a short while, before it falls, counts half.
+  // Of many bodies, what is high up for a short while before it falls counts half.
   let centre = [0, 0, 0];
   const largest = quantile(radii, 0.95) || 1, half = [0, 0, 0];
   axes.forEach((axis, k) => {
     lows[k].sort((a, b) => a - b);
     highs[k].sort((a, b) => a - b);
     const low = quantile(lows[k], 0.05), high = quantile(highs[k], 0.95);
-    const top = k === 2 ? (quantile(highs[k], 0.6) + high) / 2 : high;
+    const top = k === 2 && seen.length > 20 ? (quantile(highs[k], 0.6) + high) / 2 : high;
     centre = add(centre, axis, (low + top) / 2);
     half[k] = (top - low) / 2;
   });

@@ -105,7 +105,7 @@ class View extends Graphics {
   }
 
   /// Arrows and dots of the contacts, lines of the joints; returns how many contacts are in which state.
-  listMarks(frame) {
+  listMarks(frame, t) {
     const {scene, arrows, lines, ball} = this, count = {open: 0, sliding: 0, sticking: 0};
     const pixel = this.canvas.width / (this.canvas.clientWidth || 1);
     arrows.list.length = lines.list.length = 0;
@@ -122,7 +122,7 @@ class View extends Graphics {
     }
     if (this.show.joints)
       for (let i = scene.lineStart[frame]; i < scene.lineStart[frame + 1]; ++i) {
-        const a = point(scene, scene.lines, 6 * i), b = point(scene, scene.lines, 6 * i + 3);
+        const a = linePoint(scene, frame, i, 0, t), b = linePoint(scene, frame, i, 3, t);
         const isDot = norm(add(a, b, -1)) < 0.01 * ball.body;
         lines.list.push(...a, ...b, ...this.colours.joint, (isDot ? 3.6 : 1.7) * pixel);
       }
@@ -141,7 +141,7 @@ class View extends Graphics {
 
     const frame = poseAt(this.scene, t);
     this.listBodies();
-    const count = this.listMarks(frame);
+    const count = this.listMarks(frame, t);
     for (const mesh of [...this.allSolids(), this.arrows, this.lines]) this.upload(mesh);
 
     this.drawShadows();
