@@ -21,8 +21,9 @@ double quantile_of(std::vector<double> values, double share) {
 
 void Scene::expect_below(double value, double bound, const std::string& what, const std::string& unit) {
   if (value < bound) return;  // and not a number is not below
-  broken.push_back(recording.name + ": " + what + " is " + Cell(value).text + " " + unit + ", and must stay below " +
-                   Cell(bound).text + " " + unit);
+  const char* space = unit.empty() ? "" : " ";
+  broken.push_back(recording.name + ": " + what + " is " + Cell(value).text + space + unit + ", and must stay below " +
+                   Cell(bound).text + space + unit);
 }
 
 double Scene::energy_lost() const {

@@ -16,6 +16,7 @@ Scene stack(bool is_quick, const Watch& watch) {
   const Vec3 start = rigid.position(top);
   Scene scene = measure(loop, "native", h, seconds, watch);
 
+  scene.expect_below(std::abs(scene.mean_contacts - 40), 0.5, "the difference from four contacts a box", "");
   scene.expect_below(1e3 * (rigid.position(top) - start).norm(), 2, "the drift of the top box", "mm");
   scene.expect_below(1e3 * scene.max_penetration, 10, "the largest penetration", "mm");
   scene.expect_below(scene.energy_rise(), 1e-2, "the largest rise of the energy", "J");
