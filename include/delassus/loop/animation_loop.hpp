@@ -234,6 +234,8 @@ void AnimationLoop<Policies...>::begin(double h) {
   last_h_ = h_ > 0 ? h_ : h;
   h_ = h;
   report_ = {};
+  // Before all else: Detect and Linearize ask how fast kinematic bodies go.
+  world().each([&](auto& set, auto) { set.begin_step(h); });
   if constexpr (has_constraints) work_.book.attach(laws());
   tell<stage::Begin>();
 }

@@ -11,7 +11,6 @@ namespace delassus {
 /// v_free = v + A⁻¹ p, p the integrator's impulse. Blocks that do not move keep v.
 template <class Set, class I>
 void free_motion(Set& set, const I& integrator, std::vector<typename Set::Velocity>& p, double h) {
-  set.begin_step(h);
   set.factor(integrator.scale(h));
   p.resize(set.blocks());
   for (auto& x : p) x.setZero();

@@ -48,7 +48,6 @@ inline constexpr bool steps_by_block<World<Sets...>> = true;
 template <class Set, class I>
 void move_freely(Set& set, const I& integrator, double h) {
   using Velocity = typename Set::Velocity;
-  set.begin_step(h);
   auto blocks = set.by_block(integrator.scale(h));
   for (const Index b : set.active()) {
     OneBlock<decltype(blocks), Velocity> block{blocks, b, blocks.velocity(b)};
