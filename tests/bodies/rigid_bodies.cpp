@@ -37,18 +37,22 @@ TEST_CASE("a kinematic body reaches the pose it is told, to the bit") {
 TEST_CASE("a kinematic body with a velocity and no target moves with it") {
   AnimationLoop loop{World{RigidBodies{}}};
   auto& set = rigid_bodies(loop);
-  const auto body = set.add({.velocity = {1, 0, 0}, .angular_velocity = {0, 0, 2}, .motion = Motion::kinematic});
+  const auto body =
+      set.add({.velocity = {1, 0, 0}, .angular_velocity = {0, 0, 2}, .motion = Motion::kinematic});
   for (int n = 0; n < 100; ++n) loop.step(1e-2);
   // 100 roundings of numbers up to 2.
   CHECK((set.position(body) - Vec3(1, 0, 0)).norm() <= 1e-13);
   CHECK(set.orientation(body).angularDistance(Quat(Eigen::AngleAxisd(2, Vec3::UnitZ()))) <= 1e-7);
 }
 
-// The box meets the platform's velocity within the step: the contact rows ask for zero relative velocity, friction 1.
+// The box meets the platform's velocity within the step: the contact rows ask for zero relative velocity,
+// friction 1.
 TEST_CASE("a moving platform carries the box that stands on it") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 1}}}, AcceleratedGaussSeidel{.tolerance = 1e-10}};
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 1}}},
+                     AcceleratedGaussSeidel{.tolerance = 1e-10}};
   auto& set = rigid_bodies(loop);
-  const auto platform = set.add({.position = {0, 0, -0.5}, .shape = Box{4, 4, 1}, .motion = Motion::kinematic});
+  const auto platform =
+      set.add({.position = {0, 0, -0.5}, .shape = Box{4, 4, 1}, .motion = Motion::kinematic});
   const auto box = set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
   const double h = 1e-2;
   for (int n = 1; n <= 200; ++n) {
@@ -57,7 +61,8 @@ TEST_CASE("a moving platform carries the box that stands on it") {
     set.move_to(platform, {1 - std::cos(1.4 * t), 0, -0.5 + 0.5 * std::sin(1.4 * t) * std::sin(1.4 * t)});
     loop.step(h);
   }
-  // It stands where it stood on the platform; it may have sunk by what the contact takes back in each step, ≤ g h².
+  // It stands where it stood on the platform; it may have sunk by what the contact takes back in each step, ≤
+  // g h².
   const Vec3 off = set.position(box) - set.position(platform) - Vec3(0, 0, 1);
   CHECK(off.head<2>().norm() <= 1e-3);
   CHECK(std::abs(off.z()) <= 9.81 * h * h);
@@ -117,16 +122,24 @@ namespace {
 
 /// Two pendulums far apart and a link between a third and a fourth body; the third can be taken out.
 struct Pair {
-  AnimationLoop<World<RigidBodies>, Constraints<BallJoint>> loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  AnimationLoop<World<RigidBodies>, Constraints<BallJoint>> loop{World{RigidBodies{}},
+                                                                 Constraints{BallJoint{}}};
   std::vector<RigidBodies::Handle> body;
   std::vector<ConstraintHandle<BallJoint>> pin;
 
   explicit Pair(bool with_third) {
     auto& set = rigid_bodies(loop);
     for (int i = 0; i < (with_third ? 4 : 2); ++i)
-      body.push_back(set.add({.position = {10.0 * i, 0, 0}, .angular_velocity = {1, 2, 3}, .mass = 1.0 + i, .shape = Box{1, 2, 3}}));
-    for (int i = 0; i < 2; ++i) pin.push_back(loop.add(BallJoint::Item{anchor(set, body[i], {0, 0.5, 0.5}), world_anchor({10.0 * i, 0.5, 0.5})}));
-    if (with_third) pin.push_back(loop.add(BallJoint::Item{anchor(set, body[2], {5, 0, 0}), anchor(set, body[3], {-5, 0, 0})}));
+      body.push_back(set.add({.position = {10.0 * i, 0, 0},
+                              .angular_velocity = {1, 2, 3},
+                              .mass = 1.0 + i,
+                              .shape = Box{1, 2, 3}}));
+    for (int i = 0; i < 2; ++i)
+      pin.push_back(
+          loop.add(BallJoint::Item{anchor(set, body[i], {0, 0.5, 0.5}), world_anchor({10.0 * i, 0.5, 0.5})}));
+    if (with_third)
+      pin.push_back(
+          loop.add(BallJoint::Item{anchor(set, body[2], {5, 0, 0}), anchor(set, body[3], {-5, 0, 0})}));
   }
 };
 
@@ -143,14 +156,17 @@ TEST_CASE("a body taken out takes its joints with it, and changes no bit of the 
     with.loop.step(1e-2);
     without.loop.step(1e-2);
     for (int i = 0; i < 2; ++i) {
-      REQUIRE(rigid_bodies(with.loop).position(with.body[i]) == rigid_bodies(without.loop).position(without.body[i]));
+      REQUIRE(rigid_bodies(with.loop).position(with.body[i]) ==
+              rigid_bodies(without.loop).position(without.body[i]));
       REQUIRE(rigid_bodies(with.loop).angular_velocity(with.body[i]) ==
               rigid_bodies(without.loop).angular_velocity(without.body[i]));
     }
   }
   CHECK(with.loop.report().rows == 6);
-  CHECK_THROWS_WITH(with.loop.impulse(with.pin[2]), "delassus: impulse: this constraint was removed; its handle is stale");
-  CHECK_THROWS_WITH(rigid_bodies(with.loop).position(with.body[2]), "delassus: rigid body #2 was removed; its handle is stale");
+  CHECK_THROWS_WITH(with.loop.impulse(with.pin[2]),
+                    "delassus: impulse: this constraint was removed; its handle is stale");
+  CHECK_THROWS_WITH(rigid_bodies(with.loop).position(with.body[2]),
+                    "delassus: rigid body #2 was removed; its handle is stale");
   // The one that lost its partner falls freely: nothing holds its momentum in x.
   CHECK(std::abs(rigid_bodies(with.loop).velocity(with.body[3]).z()) >= 9.81 * 2 * 0.99);
 }
@@ -166,7 +182,8 @@ TEST_CASE("a place used again belongs to the new body alone") {
   CHECK_FALSE(set.contains(old));
   loop.step(0.5);
   CHECK(set.velocity(fresh).z() == Approx(-9.81 * 0.5).epsilon(1e-15));  // no joint holds it
-  CHECK_THROWS_WITH(set.apply_force(old, {1, 0, 0}), "delassus: rigid body #0 was removed; its handle is stale");
+  CHECK_THROWS_WITH(set.apply_force(old, {1, 0, 0}),
+                    "delassus: rigid body #0 was removed; its handle is stale");
 }
 
 TEST_CASE("a joint taken out lets go, and its handle is refused from then on") {
@@ -177,10 +194,12 @@ TEST_CASE("a joint taken out lets go, and its handle is refused from then on") {
   scene.loop.remove(scene.pin[1]);
   scene.loop.step(1e-2);
   CHECK(set.velocity(scene.body[1]).z() == Approx(before - 9.81 * 1e-2).epsilon(1e-14));
-  CHECK_THROWS_WITH(scene.loop.remove(scene.pin[1]), "delassus: remove: this constraint was removed before; its handle is stale");
+  CHECK_THROWS_WITH(scene.loop.remove(scene.pin[1]),
+                    "delassus: remove: this constraint was removed before; its handle is stale");
 }
 
-// A fall of 1 s and a swing of 1 s in single precision: 1000 steps of at most eight roundings of 2^-24 of 5 m or rad/s.
+// A fall of 1 s and a swing of 1 s in single precision: 1000 steps of at most eight roundings of 2^-24 of 5 m
+// or rad/s.
 TEST_CASE("in single precision bodies fall and swing as in double, to single precision") {
   const auto run = [](auto set) {
     using Set = decltype(set);
@@ -191,7 +210,8 @@ TEST_CASE("in single precision bodies fall and swing as in double, to single pre
     const auto swings = all.add({.position = {5, 0, 0}, .mass = 1.0, .shape = Box{1, 0.2, 0.2}});
     loop.add(BallJoint::Item{anchor(all, swings, {-0.5, 0, 0}), world_anchor({4.5, 0, 0})});
     for (int n = 0; n < 1000; ++n) loop.step(1e-3);
-    STATIC_REQUIRE(std::is_same_v<scalar_t<std::remove_cvref_t<decltype(loop.world())>>, typename Set::Scalar>);
+    STATIC_REQUIRE(
+        std::is_same_v<scalar_t<std::remove_cvref_t<decltype(loop.world())>>, typename Set::Scalar>);
     return std::vector<Vec3>{all.position(falls), all.position(swings), all.angular_velocity(falls)};
   };
   const auto exact = run(RigidBodies{}), single = run(RigidBodiesF{});

@@ -15,7 +15,8 @@ using namespace delassus;
 
 namespace {
 
-/// Some particles, one of them fixed, with springs to each other and to the world, and the same by hand, dense.
+/// Some particles, one of them fixed, with springs to each other and to the world, and the same by hand,
+/// dense.
 struct Net {
   struct Edge {
     int a, b;  // b < 0: the point
@@ -39,7 +40,8 @@ struct Net {
     // Some stretched, some pressed: rest lengths from 0 to twice the length.
     for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {2, 0}, {3, 4}, {2, 3}, {5, -1}, {1, -1}}) {
       const Vec3 point = 3 * vector(), end = b < 0 ? point : x[b];
-      edges.push_back({a, b, point, 100 * (1.1 + draw(random)), damping, (1 + draw(random)) * (x[a] - end).norm()});
+      edges.push_back(
+          {a, b, point, 100 * (1.1 + draw(random)), damping, (1 + draw(random)) * (x[a] - end).norm()});
     }
   }
 
@@ -49,12 +51,16 @@ struct Net {
     set.gravity = gravity;
     std::vector<Particles::Handle> handles;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (mass[i] > 0) handles.push_back(set.add({.position = x[i], .velocity = v[i], .mass = mass[i]}));
-      else handles.push_back(set.add({.position = x[i], .is_fixed = true}));
+      if (mass[i] > 0)
+        handles.push_back(set.add({.position = x[i], .velocity = v[i], .mass = mass[i]}));
+      else
+        handles.push_back(set.add({.position = x[i], .is_fixed = true}));
     }
     for (const Edge& e : edges) {
-      if (e.b < 0) set.add_spring(handles[e.a], e.point, e.stiffness, e.damping, e.rest);
-      else set.add_spring(handles[e.a], handles[e.b], e.stiffness, e.damping, e.rest);
+      if (e.b < 0)
+        set.add_spring(handles[e.a], e.point, e.stiffness, e.damping, e.rest);
+      else
+        set.add_spring(handles[e.a], handles[e.b], e.stiffness, e.damping, e.rest);
     }
     return handles;
   }
@@ -105,15 +111,17 @@ double worst_difference(Integrator integrator, double h, double s_D, double s_K,
     loop.step(h);
     const Eigen::VectorXd expected = net.next_velocity(h, s_D, s_K, t);
     for (std::size_t i = 0; i < handles.size(); ++i)
-      worst = std::max(worst, (bodies<Particles>(loop.world()).velocity(handles[i]) - expected.segment<3>(3 * i)).norm() /
-                                  expected.norm());
+      worst = std::max(
+          worst, (bodies<Particles>(loop.world()).velocity(handles[i]) - expected.segment<3>(3 * i)).norm() /
+                     expected.norm());
   }
   return worst;
 }
 
 }  // namespace
 
-// A has condition below 1 + h²k/m · 10 ~ 1e3 at these numbers: 1e3 · 2^-53 · rows ~ 3e-12 at worst, 1e-12 in 20 samples.
+// A has condition below 1 + h²k/m · 10 ~ 1e3 at these numbers: 1e3 · 2^-53 · rows ~ 3e-12 at worst, 1e-12 in
+// 20 samples.
 TEST_CASE("one step of symplectic Euler on a net of springs is the dense one") {
   CHECK(worst_difference(SymplecticEuler{}, 0.1, 0, 0, 0) <= 1e-12);
 }
@@ -126,15 +134,17 @@ TEST_CASE("one step of the midpoint rule on a net of springs is the dense one") 
   CHECK(worst_difference(ImplicitMidpoint{}, h, h / 2, h * h / 4, h / 2) <= 1e-12);
 }
 
-// A spring pushes both ends alike, and the columns of K and D of two blocks sum to zero: A (v⁺ − v) keeps Σ m v to the
-// rounding of the solve, condition · 2^-53 ~ 1e-13 of Σ m |v| a step at h²k/m = 4.
-TEMPLATE_TEST_CASE("a free net of springs keeps its momentum", "", SymplecticEuler, ImplicitEuler, ImplicitMidpoint) {
+// A spring pushes both ends alike, and the columns of K and D of two blocks sum to zero: A (v⁺ − v) keeps Σ m
+// v to the rounding of the solve, condition · 2^-53 ~ 1e-13 of Σ m |v| a step at h²k/m = 4.
+TEMPLATE_TEST_CASE("a free net of springs keeps its momentum", "", SymplecticEuler, ImplicitEuler,
+                   ImplicitMidpoint) {
   AnimationLoop loop{World{Particles{}}, TestType{}};
   auto& set = bodies<Particles>(loop.world());
   set.gravity.setZero();
   std::vector<Particles::Handle> at;
   for (int i = 0; i < 5; ++i)
-    at.push_back(set.add({.position = {1.0 * i, 0.3 * i * i, 0}, .velocity = {0, 1.0 - i, 0.2 * i}, .mass = 1.0 + i}));
+    at.push_back(
+        set.add({.position = {1.0 * i, 0.3 * i * i, 0}, .velocity = {0, 1.0 - i, 0.2 * i}, .mass = 1.0 + i}));
   for (int i = 0; i < 5; ++i) set.add_spring(at[i], at[(i + 1) % 5], 50.0, 0.5, 1.0);
   const Vec3 start = momentum(set);
   double worst = 0, scale = 0;
@@ -214,12 +224,14 @@ template <class Integrator>
 std::vector<double> orders(double rest) {
   const Vec3 fine = swung<ImplicitMidpoint>(rest, 1 << 17);
   std::vector<double> errors;
-  for (const int steps : {200, 400, 800, 1600}) errors.push_back((swung<Integrator>(rest, steps) - fine).norm());
+  for (const int steps : {200, 400, 800, 1600})
+    errors.push_back((swung<Integrator>(rest, steps) - fine).norm());
   return {std::log2(errors[1] / errors[2]), std::log2(errors[2] / errors[3])};
 }
 
 bool are_near(const std::vector<double>& measured, double p) {
-  return std::all_of(measured.begin(), measured.end(), [&](double order) { return order >= p - 0.15 && order <= p + 0.5; });
+  return std::all_of(measured.begin(), measured.end(),
+                     [&](double order) { return order >= p - 0.15 && order <= p + 0.5; });
 }
 
 }  // namespace
@@ -230,7 +242,8 @@ TEST_CASE("a mass swung on a stretched spring is met with order 1, 1 and 2") {
   CHECK(are_near(orders<ImplicitMidpoint>(1.0), 2));
 }
 
-// K is cut where it would be negative, so the midpoint rule loses an order on a spring that is pressed in between.
+// K is cut where it would be negative, so the midpoint rule loses an order on a spring that is pressed in
+// between.
 TEST_CASE("a mass swung through a pressed spring is met with order 1") {
   CHECK(are_near(orders<SymplecticEuler>(0.3), 1));
   CHECK(are_near(orders<ImplicitEuler>(0.3), 1));

@@ -28,11 +28,13 @@ TEST_CASE("a rigid body and a particle joined to each other fall as one") {
     REQUIRE(report.status == Status::converged);
     REQUIRE(report.islands == 1);
     REQUIRE(report.rows == 4);
-    // Bounded by the turn within a step, (h |ω|)² · length with |ω| below 10 rad/s, of which 0.2 goes back each step.
+    // Bounded by the turn within a step, (h |ω|)² · length with |ω| below 10 rad/s, of which 0.2 goes back
+    // each step.
     REQUIRE(report.max_joint_violation <= 1e-4 * 2 * 5);
   }
   const Vec3 weight(0, 0, -9.81 * 3.5 * 0.5);
-  CHECK((momentum(rigid) + momentum(points) - start - weight).norm() <= 1e-11);  // 500 steps of 1e-14 of 17 N·s
+  CHECK((momentum(rigid) + momentum(points) - start - weight).norm() <=
+        1e-11);  // 500 steps of 1e-14 of 17 N·s
 }
 
 TEST_CASE("a particle and a rigid body without rotation swing alike on a rod") {
@@ -82,7 +84,8 @@ TEST_CASE("what belongs to another world is refused") {
   CHECK_THROWS_WITH(ours.velocity(foreign), "delassus: this rigid body handle belongs to another world");
   CHECK_THROWS_WITH(bodies<Particles>(here.world()).velocity(particle),
                     "delassus: this particle handle belongs to another world");
-  CHECK_THROWS_WITH(anchor(ours, foreign), "delassus: anchor: the handle of rigid body #0 is stale or of another world");
+  CHECK_THROWS_WITH(anchor(ours, foreign),
+                    "delassus: anchor: the handle of rigid body #0 is stale or of another world");
   CHECK_THROWS_WITH(here.remove(foreign), "delassus: remove: this handle belongs to another world");
   CHECK_THROWS_WITH(here.add(BallJoint::Item{anchor(ours, mine), anchor(theirs, foreign)}),
                     "delassus: constraint, second end: the anchor belongs to a body of another world");
@@ -96,7 +99,8 @@ TEST_CASE("an anchor on a body that is gone is refused") {
   const auto body = set.add({.mass = 1.0, .shape = Sphere{1}});
   const Anchor end = anchor(set, body);
   loop.remove(body);
-  CHECK_THROWS_WITH(anchor(set, body), "delassus: anchor: the handle of rigid body #0 is stale or of another world");
+  CHECK_THROWS_WITH(anchor(set, body),
+                    "delassus: anchor: the handle of rigid body #0 is stale or of another world");
   CHECK_THROWS_WITH(loop.add(BallJoint::Item{end, world_anchor({})}),
                     "delassus: constraint, first end: rigid body #0 was removed; its anchor is stale");
   set.add({.mass = 1.0, .shape = Sphere{1}});  // takes the place, not the name

@@ -25,9 +25,11 @@ struct Rod {
       : loop(World{RigidBodies{}}, Constraints{BallJoint{}}, Integrator{}, stabilisation,
              AcceleratedGaussSeidel{.tolerance = tolerance}) {
     // Thin: I = m L²/12 across; along the rod any small moment, it never turns about itself.
-    body = set().add({.position = {0.5, 0, 0}, .mass = 1.0, .inertia = Mat3(Vec3(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal())});
+    body = set().add(
+        {.position = {0.5, 0, 0}, .mass = 1.0, .inertia = Mat3(Vec3(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal())});
     for (int i = 0; i < copies; ++i)
-      pivots.push_back(loop.add(BallJoint::Item{anchor(set(), body, {-0.5, 0, 0}), world_anchor(Vec3::Zero())}));
+      pivots.push_back(
+          loop.add(BallJoint::Item{anchor(set(), body, {-0.5, 0, 0}), world_anchor(Vec3::Zero())}));
   }
   RigidBodies& set() { return bodies<RigidBodies>(loop.world()); }
   /// What the pivot does to the rod, N, mean over the last step.
@@ -40,7 +42,8 @@ struct Rod {
 
 }  // namespace
 
-// T by the complete elliptic integral; the phase error of the midpoint rule is (h ω)²/12 with ω = 3.8 at h = 1e-3.
+// T by the complete elliptic integral; the phase error of the midpoint rule is (h ω)²/12 with ω = 3.8 at h =
+// 1e-3.
 TEST_CASE("a rod swung by 90 degrees on a ball joint has the period of the closed form") {
   Rod<ImplicitMidpoint, WholeViolation> rod({});
   const double h = 1e-3;
@@ -69,8 +72,8 @@ TEST_CASE("the pivot of a rod carries 1/4 of its weight at release and 5/2 at th
   CHECK(bottom == Approx(2.5 * weight).epsilon(1e-6));
 }
 
-// Copies change W's spectrum and the lift of a singular block, not what solves the rows: tolerance 1e-12 of the
-// velocity, 2000 steps.
+// Copies change W's spectrum and the lift of a singular block, not what solves the rows: tolerance 1e-12 of
+// the velocity, 2000 steps.
 TEST_CASE("a ball joint added 2, 5 or 50 times moves a rod as one does") {
   const auto end = [](int copies) {
     Rod<SymplecticEuler, Baumgarte> rod({}, copies);
@@ -95,8 +98,9 @@ TEST_CASE("copies of a joint share its load") {
   CHECK(sum.norm() <= 2.6 * 9.81);
 }
 
-// The two pins cannot both hold. What the rod of a pendulum can gain afterwards is at most its swing about the pin that
-// stays, from rest where the other left it: the violation decays by 0.8 a step, 0.8^100 < 1e-9 of 0.1 m.
+// The two pins cannot both hold. What the rod of a pendulum can gain afterwards is at most its swing about
+// the pin that stays, from rest where the other left it: the violation decays by 0.8 a step, 0.8^100 < 1e-9
+// of 0.1 m.
 TEST_CASE("two pins that contradict each other are reported, and the body recovers when one goes") {
   for (const double gap : {1e-3, 1e-2, 1e-1}) {
     AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
@@ -116,7 +120,8 @@ TEST_CASE("two pins that contradict each other are reported, and the body recove
     for (int n = 0; n < 300; ++n) report = loop.step(0.01);
     CAPTURE(gap);
     CHECK(report.status == Status::converged);
-    // Symplectic Euler leaves (h ω)² L/2 of drift a step at ω <= 8 rad/s, of which 0.2 is taken back each step: 1e-2 m.
+    // Symplectic Euler leaves (h ω)² L/2 of drift a step at ω <= 8 rad/s, of which 0.2 is taken back each
+    // step: 1e-2 m.
     CHECK(report.max_joint_violation <= 1e-2);
   }
 }
@@ -124,16 +129,19 @@ TEST_CASE("two pins that contradict each other are reported, and the body recove
 TEST_CASE("a chain of rigid links keeps its joints closed to the square of the step") {
   std::vector<double> worst;
   for (const double h : {4e-3, 2e-3, 1e-3}) {
-    AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, AcceleratedGaussSeidel{.tolerance = 1e-9}};
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}},
+                       AcceleratedGaussSeidel{.tolerance = 1e-9}};
     auto& set = bodies<RigidBodies>(loop.world());
     Anchor last = world_anchor(Vec3::Zero());
     for (int i = 0; i < 5; ++i) {
-      const auto link = set.add({.position = {0.2 * i + 0.1, 0, 0}, .mass = 0.2, .shape = Box{0.2, 0.02, 0.02}});
+      const auto link =
+          set.add({.position = {0.2 * i + 0.1, 0, 0}, .mass = 0.2, .shape = Box{0.2, 0.02, 0.02}});
       loop.add(BallJoint::Item{last, anchor(set, link, {-0.1, 0, 0})});
       last = anchor(set, link, {0.1, 0, 0});
     }
     worst.push_back(0);
-    for (int n = 0; n < int(0.3 / h); ++n) worst.back() = std::max(worst.back(), loop.step(h).max_joint_violation);
+    for (int n = 0; n < int(0.3 / h); ++n)
+      worst.back() = std::max(worst.back(), loop.step(h).max_joint_violation);
   }
   CAPTURE(worst[0], worst[1], worst[2]);
   CHECK(std::log2(worst[0] / worst[1]) >= 1.85);

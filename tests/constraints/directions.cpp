@@ -22,7 +22,8 @@ struct Scene {
 
   explicit Scene(unsigned seed) : random(seed) {
     for (int i = 0; i < 2; ++i) {
-      rigid.push_back(set<RigidBodies>().add({.position = vector(), .orientation = turn(), .mass = 1.0, .shape = Box{1, 2, 3}}));
+      rigid.push_back(set<RigidBodies>().add(
+          {.position = vector(), .orientation = turn(), .mass = 1.0, .shape = Box{1, 2, 3}}));
       points.push_back(set<Particles>().add({.position = vector(), .mass = 1.0}));
     }
   }
@@ -45,16 +46,21 @@ struct Scene {
   /// An end of that kind that is at `point` now.
   Anchor end_at(int kind, const Vec3& point) {
     Anchor a = end(kind);
-    if (kind < 2) a.local = set<RigidBodies>().pose(a.block).to_local(point);
-    else if (kind < 4) set<Particles>().place(points[kind - 2], point);
-    else a.local = point;
+    if (kind < 2)
+      a.local = set<RigidBodies>().pose(a.block).to_local(point);
+    else if (kind < 4)
+      set<Particles>().place(points[kind - 2], point);
+    else
+      a.local = point;
     return a;
   }
 
   /// Moves coordinate c: 0–5, 6–11 of the rigid bodies, 12–14, 15–17 of the particles; m or rad.
   void move(int c, double by) {
-    if (c < 12) set<RigidBodies>().displace(c / 6, Vec<6>::Unit(c % 6) * by);
-    else set<Particles>().displace((c - 12) / 3, Vec3::Unit(c % 3) * by);
+    if (c < 12)
+      set<RigidBodies>().displace(c / 6, Vec<6>::Unit(c % 6) * by);
+    else
+      set<Particles>().displace((c - 12) / 3, Vec3::Unit(c % 3) * by);
   }
 };
 constexpr int coordinates = 18;
@@ -72,13 +78,15 @@ struct Written {
     phi = rows.phi[0];
     const auto& rigid = std::get<0>(rows.sets);
     const auto& points = std::get<1>(rows.sets);
-    for (std::size_t e = 0; e < rigid.block.size(); ++e) H.template middleCols<6>(6 * rigid.block[e]) += rigid.H[e];
-    for (std::size_t e = 0; e < points.block.size(); ++e) H.template middleCols<3>(12 + 3 * points.block[e]) += points.H[e];
+    for (std::size_t e = 0; e < rigid.block.size(); ++e)
+      H.template middleCols<6>(6 * rigid.block[e]) += rigid.H[e];
+    for (std::size_t e = 0; e < points.block.size(); ++e)
+      H.template middleCols<3>(12 + 3 * points.block[e]) += points.H[e];
   }
 };
 
-/// Largest |H − Δ value/2ε|; value(): rows as a function of the configuration. ε = 1e-6: the third derivative of
-/// coordinates below 4 m adds ε² · 4, rounding 4 · 2^-53/ε ~ 4e-10.
+/// Largest |H − Δ value/2ε|; value(): rows as a function of the configuration. ε = 1e-6: the third derivative
+/// of coordinates below 4 m adds ε² · 4, rounding 4 · 2^-53/ε ~ 4e-10.
 template <int R, class Value>
 double difference(Scene& scene, const Mat<R, coordinates>& H, const Value& value) {
   const double step = 1e-6;
@@ -94,8 +102,8 @@ double difference(Scene& scene, const Mat<R, coordinates>& H, const Value& value
   return worst;
 }
 
-/// f(first kind, second kind, scene) for rigid–rigid, rigid–particle, rigid–world, particle–particle, particle–world, and the
-/// other way round, ten poses each.
+/// f(first kind, second kind, scene) for rigid–rigid, rigid–particle, rigid–world, particle–particle,
+/// particle–world, and the other way round, ten poses each.
 template <class F>
 void each_pair(F&& f) {
   for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 4}, {2, 3}, {2, 4}, {2, 0}, {4, 0}, {4, 2}})
@@ -114,12 +122,13 @@ TEST_CASE("H of a closed ball joint is the derivative of its violation") {
     const BallJoint::Item item{scene.end_at(a, point), scene.end_at(b, point)};
     const Written<BallJoint> rows({}, item, scene.world);
     CHECK(rows.phi.norm() <= 1e-15 * 8);
-    CHECK(difference<3>(scene, rows.H, [&] { return Written<BallJoint>({}, item, scene.world).phi; }) <= 1e-8);
+    CHECK(difference<3>(scene, rows.H, [&] { return Written<BallJoint>({}, item, scene.world).phi; }) <=
+          1e-8);
   });
 }
 
-// Open, its row is the relative velocity of the material points at one place, where both impulses act: the particle's,
-// or the middle of the anchors.
+// Open, its row is the relative velocity of the material points at one place, where both impulses act: the
+// particle's, or the middle of the anchors.
 TEST_CASE("H of an open ball joint is the relative velocity at the one point where its impulses act") {
   each_pair([](int a, int b, Scene& scene) {
     const BallJoint::Item item{scene.end(a), scene.end(b)};
@@ -131,7 +140,8 @@ TEST_CASE("H of an open ball joint is the relative velocity at the one point whe
     };
     const Anchor first = at_point(item.a), second = at_point(item.b);
     const Written<BallJoint> rows({}, item, scene.world);
-    CHECK(difference<3>(scene, rows.H, [&] { return Vec3(scene.world.point(first) - scene.world.point(second)); }) <= 1e-8);
+    CHECK(difference<3>(scene, rows.H,
+                        [&] { return Vec3(scene.world.point(first) - scene.world.point(second)); }) <= 1e-8);
   });
 }
 
@@ -141,7 +151,8 @@ TEST_CASE("H of a distance joint is the derivative of its violation, closed or o
     const Written<DistanceJoint> rows({}, item, scene.world);
     CHECK(rows.phi[0] == Approx((scene.world.point(item.a) - scene.world.point(item.b)).norm() - 0.7));
     // Second derivatives grow like 1/length; the shortest of these is 0.2 m, which adds (1e-6)²/0.2² · 4.
-    CHECK(difference<1>(scene, rows.H, [&] { return Written<DistanceJoint>({}, item, scene.world).phi; }) <= 1e-8);
+    CHECK(difference<1>(scene, rows.H, [&] { return Written<DistanceJoint>({}, item, scene.world).phi; }) <=
+          1e-8);
   });
 }
 

@@ -22,7 +22,8 @@ struct Pendulum {
   double energy = 0;
 
   explicit Pendulum(S stabilisation)
-      : loop(World{Particles{}}, Constraints{DistanceJoint{}}, Integrator{}, stabilisation, GaussSeidel{.tolerance = 1e-14}) {
+      : loop(World{Particles{}}, Constraints{DistanceJoint{}}, Integrator{}, stabilisation,
+             GaussSeidel{.tolerance = 1e-14}) {
     bob = set().add({.position = {1, 0, 0}, .mass = 1.0});
     loop.add(DistanceJoint::Item{anchor(set(), bob), world_anchor(Vec3::Zero()), 1.0});
   }
@@ -73,8 +74,8 @@ TEST_CASE("the pendulum is met with order 1 by symplectic Euler, order 2 by the 
   }
 }
 
-// T/T0 by the complete elliptic integral; the crossing of the vertical is found between two steps. The midpoint rule's
-// phase error is of order (h ω)², here (1e-3 · 3.13)² ~ 1e-5.
+// T/T0 by the complete elliptic integral; the crossing of the vertical is found between two steps. The
+// midpoint rule's phase error is of order (h ω)², here (1e-3 · 3.13)² ~ 1e-5.
 TEST_CASE("a swing of 90 degrees takes 1.18034 small swings") {
   Pendulum<ImplicitMidpoint, WholeViolation> pendulum({});
   const double h = 1e-3, expected = 1.1803405990161 * 2 * std::numbers::pi * std::sqrt(1 / 9.81);
@@ -89,7 +90,8 @@ TEST_CASE("a swing of 90 degrees takes 1.18034 small swings") {
   CHECK(crossings[2] - crossings[0] == Approx(expected).epsilon(1e-5));
 }
 
-// At the lowest point the rod carries 3 m g. λ is the mean over the step; first order in h on a smooth function.
+// At the lowest point the rod carries 3 m g. λ is the mean over the step; first order in h on a smooth
+// function.
 TEST_CASE("the rod of a pendulum carries three times the weight at the lowest point") {
   AnimationLoop loop{World{Particles{}}, Constraints{DistanceJoint{}}, ImplicitMidpoint{}, WholeViolation{}};
   auto& set = bodies<Particles>(loop.world());
@@ -104,7 +106,8 @@ TEST_CASE("the rod of a pendulum carries three times the weight at the lowest po
   CHECK(largest == Approx(3 * 2 * 9.81).epsilon(1e-4));
 }
 
-// m (v⁺ − v) = −h (k (φ + h v⁺) + c v⁺) along the line; one row, solved exactly at one visit. 500 roundings of 1.4.
+// m (v⁺ − v) = −h (k (φ + h v⁺) + c v⁺) along the line; one row, solved exactly at one visit. 500 roundings
+// of 1.4.
 TEST_CASE("a soft distance joint is implicit Euler's spring and damper in closed form") {
   const double h = 0.02, k = 150, c = 3, m = 2;
   AnimationLoop loop{World{Particles{}}, Constraints{DistanceJoint{}}};
@@ -145,7 +148,8 @@ TEST_CASE("a soft distance joint and a spring of the particles move two particle
   }
 }
 
-// The rows hold along the direction guessed for the middle of the step: what is left is of the order the rule has, at least.
+// The rows hold along the direction guessed for the middle of the step: what is left is of the order the rule
+// has, at least.
 TEST_CASE("a chain of particles keeps its lengths to the square of the step") {
   std::vector<double> worst;
   for (const double h : {1e-2, 5e-3, 2.5e-3}) {
@@ -160,7 +164,8 @@ TEST_CASE("a chain of particles keeps its lengths to the square of the step") {
     }
     worst.push_back(0);
     // Until the chain hangs; later the whip of its end is not smooth on this grid.
-    for (int n = 0; n < int(0.4 / h); ++n) worst.back() = std::max(worst.back(), loop.step(h).max_joint_violation);
+    for (int n = 0; n < int(0.4 / h); ++n)
+      worst.back() = std::max(worst.back(), loop.step(h).max_joint_violation);
   }
   CAPTURE(worst[0], worst[1], worst[2]);
   CHECK(std::log2(worst[0] / worst[1]) >= 1.85);

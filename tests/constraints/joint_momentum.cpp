@@ -43,7 +43,8 @@ Momenta momenta(const World& world, const Member& member) {
 /// Rigid bodies and particles at random, joined in a ring and across it, some joints far from closed.
 template <class Solver, class Integrator>
 auto ring(unsigned seed, Solver solver, Integrator integrator) {
-  AnimationLoop loop{World{RigidBodies{}, Particles{}}, Constraints{BallJoint{}, DistanceJoint{}}, solver, integrator};
+  AnimationLoop loop{World{RigidBodies{}, Particles{}}, Constraints{BallJoint{}, DistanceJoint{}}, solver,
+                     integrator};
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> draw(-1, 1);
   const auto vector = [&] { return Vec3(draw(random), draw(random), draw(random)); };
@@ -54,10 +55,15 @@ auto ring(unsigned seed, Solver solver, Integrator integrator) {
   std::vector<Anchor> ends;
   for (int i = 0; i < 6; ++i) {
     const Quat turn = Quat(draw(random), draw(random), draw(random), draw(random)).normalized();
-    const auto body = rigid.add({.position = 3 * vector(), .orientation = turn, .velocity = vector(),
-                                 .angular_velocity = 3 * vector(), .mass = 1.5 + draw(random), .shape = Box{1, 0.5, 2}});
+    const auto body = rigid.add({.position = 3 * vector(),
+                                 .orientation = turn,
+                                 .velocity = vector(),
+                                 .angular_velocity = 3 * vector(),
+                                 .mass = 1.5 + draw(random),
+                                 .shape = Box{1, 0.5, 2}});
     ends.push_back(anchor(rigid, body, vector()));
-    const auto point = points.add({.position = 3 * vector(), .velocity = vector(), .mass = 1.5 + draw(random)});
+    const auto point =
+        points.add({.position = 3 * vector(), .velocity = vector(), .mass = 1.5 + draw(random)});
     ends.push_back(anchor(points, point));
   }
   // Ball joints between rigid bodies and to particles; distance joints between all.
@@ -89,8 +95,10 @@ void check_momentum(Solver solver, Integrator integrator) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     auto loop = ring(seed, solver, integrator);
     correct_once(loop, 0.01);
-    const auto before = momenta(loop.world(), [](const auto& set) -> const auto& { return set.v_free; });
-    const auto after = momenta(loop.world(), [](const auto& set) -> const auto& { return set.v_next; });
+    const auto before = momenta(
+        loop.world(), [](const auto& set) -> const auto& { return set.v_free; });
+    const auto after = momenta(
+        loop.world(), [](const auto& set) -> const auto& { return set.v_next; });
     CAPTURE(seed, loop.report().sweeps);
     CHECK((after.linear - before.linear).norm() <= 1e-13 * after.linear_scale);
     CHECK((after.angular - before.angular).norm() <= 1e-13 * after.angular_scale);
@@ -115,7 +123,10 @@ namespace {
 /// The largest drifts over a second of steps, relative to the largest sums of magnitudes.
 std::pair<double, double> drift(int sweeps) {
   auto loop = ring(3, GaussSeidel{.tolerance = 0, .max_iterations = sweeps}, SymplecticEuler{});
-  const auto now = [&] { return momenta(loop.world(), [](const auto& set) -> const auto& { return set.velocity(); }); };
+  const auto now = [&] {
+    return momenta(
+        loop.world(), [](const auto& set) -> const auto& { return set.velocity(); });
+  };
   const Momenta start = now();
   double linear = 0, angular = 0, linear_scale = 0, angular_scale = 0;
   for (int n = 0; n < 100; ++n) {

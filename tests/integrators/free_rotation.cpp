@@ -1,4 +1,5 @@
-// A rigid body that turns freely: every integrator drifts by the midpoint rule, so one set of claims serves all.
+// A rigid body that turns freely: every integrator drifts by the midpoint rule, so one set of claims serves
+// all.
 #include <delassus/delassus.hpp>
 
 #include <algorithm>
@@ -39,14 +40,16 @@ struct EulerTop {
   double angle, rate, energy, momentum;
 };
 
-/// I = (1, 2, 3), ω₀ = (1, 1, 1), after 10 s of `steps` steps: errors against Jacobi's closed form, and relative drifts.
+/// I = (1, 2, 3), ω₀ = (1, 1, 1), after 10 s of `steps` steps: errors against Jacobi's closed form, and
+/// relative drifts.
 template <class Integrator>
 EulerTop euler_top(int steps) {
   Top<Integrator> top(Vec3(1, 2, 3), Vec3(1, 1, 1));
   const double energy = kinetic_energy(top.set());
   const Vec3 momentum = angular_momentum(top.set());
   for (int n = 0; n < steps; ++n) top.loop.step(10.0 / steps);
-  const Quat turn(0.46254544055464281993, -0.31433514514460551582, 0.049429631279299836969, 0.8275275484844136788);
+  const Quat turn(0.46254544055464281993, -0.31433514514460551582, 0.049429631279299836969,
+                  0.8275275484844136788);
   const Vec3 rate(-0.60347042309251812895, -1.2789931385478724147, 0.88772678821573304257);
   return {angle_between(top.set().orientation(top.body), turn), (top.rate() - rate).norm(),
           std::abs(kinetic_energy(top.set()) / energy - 1),
@@ -55,12 +58,12 @@ EulerTop euler_top(int steps) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("the Euler top meets Jacobi's closed form with second order", "", SymplecticEuler, ImplicitEuler,
-                   ImplicitMidpoint) {
+TEMPLATE_TEST_CASE("the Euler top meets Jacobi's closed form with second order", "", SymplecticEuler,
+                   ImplicitEuler, ImplicitMidpoint) {
   std::vector<EulerTop> runs;
   for (const int steps : {400, 800, 1600, 3200}) runs.push_back(euler_top<TestType>(steps));
-  // The midpoint rule on unit quaternions errs by 5.86e-5 rad at h = 1/160. Its turn is short by (h ω)³/48 a step; Cayley's
-  // turn on rotations, which is what keeps L exactly, by (h ω)³/12, four times as much.
+  // The midpoint rule on unit quaternions errs by 5.86e-5 rad at h = 1/160. Its turn is short by (h ω)³/48 a
+  // step; Cayley's turn on rotations, which is what keeps L exactly, by (h ω)³/12, four times as much.
   CHECK(runs[2].angle <= 4 * 5.86e-5);
   for (int pair : {1, 2}) {
     const double order = std::log2(runs[pair].angle / runs[pair + 1].angle);
@@ -71,8 +74,9 @@ TEMPLATE_TEST_CASE("the Euler top meets Jacobi's closed form with second order",
   }
 }
 
-// Both are invariants of the scheme. A rounded unit quaternion makes a matrix whose columns are too long by about
-// 2^-53, always in one sense, and L passes through it four times a step: 8 · 2^-53 a step bounds energy and momentum.
+// Both are invariants of the scheme. A rounded unit quaternion makes a matrix whose columns are too long by
+// about 2^-53, always in one sense, and L passes through it four times a step: 8 · 2^-53 a step bounds energy
+// and momentum.
 TEMPLATE_TEST_CASE("the Euler top keeps its energy and angular momentum to rounding", "", SymplecticEuler,
                    ImplicitEuler, ImplicitMidpoint) {
   const EulerTop run = euler_top<TestType>(3200);
@@ -93,7 +97,8 @@ TEST_CASE("a body spun about its middle axis flips at the times of the closed fo
     if (now * last < 0) flips.push_back(h * (n - now / (now - last)));
     last = now;
     worst_energy = std::max(worst_energy, std::abs(kinetic_energy(top.set()) / energy - 1));
-    worst_momentum = std::max(worst_momentum, (angular_momentum(top.set()) - momentum).norm() / momentum.norm());
+    worst_momentum =
+        std::max(worst_momentum, (angular_momentum(top.set()) - momentum).norm() / momentum.norm());
   }
   const std::array expected{10.9169134942, 30.4697805929, 50.0226476915, 69.5755147901, 89.1283818888};
   REQUIRE(flips.size() == expected.size());
@@ -117,7 +122,8 @@ Drift spin(const Vec3& moments, const Vec3& rate) {
   for (int n = 0; n < 6000; ++n) {
     top.loop.step(1.0 / 60);
     drift.energy = std::max(drift.energy, std::abs(kinetic_energy(top.set()) / energy - 1));
-    drift.momentum = std::max(drift.momentum, (angular_momentum(top.set()) - momentum).norm() / momentum.norm());
+    drift.momentum =
+        std::max(drift.momentum, (angular_momentum(top.set()) - momentum).norm() / momentum.norm());
   }
   return drift;
 }
@@ -135,9 +141,10 @@ TEST_CASE("a tumbling needle or plate keeps energy and angular momentum at 10 to
     }
 }
 
-// The state holds ω in the world's axes: its rounding, 2^-53 |ω| in every direction, weighs up to 1 kg m² across the
-// needle, while L is 1e-6 kg m² · |ω| along it. The energy, a square, does not notice.
-TEST_CASE("a needle that spins about its own axis keeps its energy, and its momentum to the rounding of its rate") {
+// The state holds ω in the world's axes: its rounding, 2^-53 |ω| in every direction, weighs up to 1 kg m²
+// across the needle, while L is 1e-6 kg m² · |ω| along it. The energy, a square, does not notice.
+TEST_CASE(
+    "a needle that spins about its own axis keeps its energy, and its momentum to the rounding of its rate") {
   for (const double speed : {10.0, 1e4})
     for (const double tilt : {0.0, 1e-6, 1e-3}) {
       const Vec3 moments(1, 1, 1e-6), rate = speed * Vec3(tilt, 0, 1).normalized();

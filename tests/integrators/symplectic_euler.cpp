@@ -9,11 +9,12 @@ using namespace delassus;
 // Each of 60 steps rounds v and x once: 60 · 2^-53 < 1e-14; ten times that for the first, short falls.
 TEST_CASE("a body falls by g h^2 n(n+1)/2 in n steps of symplectic Euler") {
   const double h = 1.0 / 60;
-  REQUIRE(free_fall::worst_error(SymplecticEuler{}, 60, [&](int n) { return -free_fall::g * h * h * n * (n + 1) / 2; }) <= 1e-13);
+  REQUIRE(free_fall::worst_error(SymplecticEuler{}, 60,
+                                 [&](int n) { return -free_fall::g * h * h * n * (n + 1) / 2; }) <= 1e-13);
 }
 
-// x_n = cos((n + 1/2) θ)/cos(θ/2) with sin(θ/2) = h ω/2; θ/(h ω) is the reference's ratio of frequencies. 1000 steps
-// round x and v by 2^-53 each, and a rounding stays a rounding: 1000 · 2 · 2^-53 ~ 2e-13.
+// x_n = cos((n + 1/2) θ)/cos(θ/2) with sin(θ/2) = h ω/2; θ/(h ω) is the reference's ratio of frequencies.
+// 1000 steps round x and v by 2^-53 each, and a rounding stays a rounding: 1000 · 2 · 2^-53 ~ 2e-13.
 TEST_CASE("symplectic Euler oscillates too fast by the factor of its closed form, at full amplitude") {
   const double h = 0.01, turn = 1.0001645665064487 * oscillator::omega * h;
   auto [loop, mass] = oscillator::make(SymplecticEuler{}, oscillator::omega);
@@ -24,8 +25,8 @@ TEST_CASE("symplectic Euler oscillates too fast by the factor of its closed form
   }
 }
 
-// The quadratic form is invariant under the linear map of a step; 1000 steps round it by 2^-53 of its terms each,
-// without bias: √1000 · 2^-53 · 4 terms ~ 1.4e-14 of its value.
+// The quadratic form is invariant under the linear map of a step; 1000 steps round it by 2^-53 of its terms
+// each, without bias: √1000 · 2^-53 · 4 terms ~ 1.4e-14 of its value.
 TEST_CASE("symplectic Euler keeps v^2 + w^2 x^2 - h w^2 x v") {
   const double h = 0.01, w2 = oscillator::omega * oscillator::omega;
   auto [loop, mass] = oscillator::make(SymplecticEuler{}, oscillator::omega);
@@ -48,7 +49,9 @@ TEST_CASE("symplectic Euler is bounded at h w = 1.99 and grows at 2.01") {
       largest = std::max(largest, std::abs(set.position(mass).x()));
     }
     CAPTURE(edge);
-    if (edge < 2) REQUIRE(largest <= 10.0126);
-    else REQUIRE(largest >= 1e6);
+    if (edge < 2)
+      REQUIRE(largest <= 10.0126);
+    else
+      REQUIRE(largest >= 1e6);
   }
 }

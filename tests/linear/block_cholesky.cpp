@@ -18,7 +18,8 @@ struct RandomBlocks {
   Eigen::MatrixXd dense;
   BlockCholesky<3, T> sparse;
 
-  RandomBlocks(int blocks, int pairs, unsigned seed, double shift) : dense(Eigen::MatrixXd::Zero(3 * blocks, 3 * blocks)) {
+  RandomBlocks(int blocks, int pairs, unsigned seed, double shift)
+      : dense(Eigen::MatrixXd::Zero(3 * blocks, 3 * blocks)) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> draw(-1, 1);
     std::uniform_int_distribution<int> pick(0, blocks - 1);
@@ -66,8 +67,8 @@ struct RandomBlocks {
 
 }  // namespace
 
-// Diagonal dominance by 10 % bounds the condition by about 2e2 · rows' spread; each of the two solves errs by condition ·
-// 2^-53 · a few rows' length, 1e-12 with room.
+// Diagonal dominance by 10 % bounds the condition by about 2e2 · rows' spread; each of the two solves errs by
+// condition · 2^-53 · a few rows' length, 1e-12 with room.
 TEST_CASE("the block Cholesky solves what a dense factorization solves") {
   unsigned seed = 0;
   for (const int blocks : {1, 2, 5, 20, 60})

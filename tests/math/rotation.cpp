@@ -105,8 +105,10 @@ TEST_CASE("an impulse enters the spatial angular momentum of the midpoint rule e
   const Vec3 rate(0.4, -2, 0.3), impulse(0.7, 0.2, -1.1), before = inertia * rate, after = before + impulse;
   for (const double h : {1e-3, 0.1, 1.0}) {
     const Vec3 mid = midpoint_rate<double>(inertia, rate, before, after, h);
-    // cay(h mid) I (2 mid - rate) = after: Newton stops within an ulp of |after| or when no step improves on it.
+    // cay(h mid) I (2 mid - rate) = after: Newton stops within an ulp of |after| or when no step improves on
+    // it.
     CAPTURE(h);
-    REQUIRE((cayley<double>(h * mid) * Vec3(inertia * (2 * mid - rate)) - after).norm() <= 1e-14 * after.norm());
+    REQUIRE((cayley<double>(h * mid) * Vec3(inertia * (2 * mid - rate)) - after).norm() <=
+            1e-14 * after.norm());
   }
 }

@@ -37,7 +37,8 @@ TEST_CASE("position projection moves an overlap apart no faster than its cap") {
   }
 }
 
-// Without a violation there is nothing to project: the trajectories agree to the rounding of a displacement of zero.
+// Without a violation there is nothing to project: the trajectories agree to the rounding of a displacement
+// of zero.
 TEST_CASE("position projection changes nothing where nothing is violated") {
   violated::Joint projected(PositionProjection{}, 0.0);
   violated::Joint plain(Baumgarte{}, 0.0);

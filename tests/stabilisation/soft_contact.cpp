@@ -5,8 +5,8 @@
 
 using namespace delassus;
 
-// At rest λ = m g h = −φ k h with k = m ω²: φ = −g/ω². The transient decays like e^(−ζ ω t) or faster, ω >= 31/s: after
-// 2 s nothing is left of it at double precision but rounding of 0.5 m against the sag.
+// At rest λ = m g h = −φ k h with k = m ω²: φ = −g/ω². The transient decays like e^(−ζ ω t) or faster, ω >=
+// 31/s: after 2 s nothing is left of it at double precision but rounding of 0.5 m against the sag.
 TEST_CASE("a body on soft contact sags by g/w^2, whatever its mass, damping and step") {
   for (const double frequency : {5.0, 10.0, 30.0})
     for (const double damping_ratio : {0.5, 1.0, 2.0})

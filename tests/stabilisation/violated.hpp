@@ -7,7 +7,8 @@ namespace violated {
 
 using namespace delassus;
 
-/// A free particle `gap` m away from the world point it is joined to, moving across at `speed` m/s, no weight.
+/// A free particle `gap` m away from the world point it is joined to, moving across at `speed` m/s, no
+/// weight.
 template <class S>
 struct Joint {
   AnimationLoop<World<Particles>, Constraints<BallJoint>, S, GaussSeidel> loop;
@@ -29,7 +30,8 @@ struct Sunk {
   RigidBodies::Handle ball{};
 
   explicit Sunk(S policy, double depth)
-      : loop(World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, policy, GaussSeidel{.tolerance = 1e-14}) {
+      : loop(World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, policy,
+             GaussSeidel{.tolerance = 1e-14}) {
     set().add_fixed(HalfSpace{});
     ball = set().add({.position = {0, 0, 0.5 - depth}, .mass = 1.0, .shape = Sphere{0.5}});
   }

@@ -12,8 +12,8 @@ TEST_CASE("the whole violation of a joint is closed within one step") {
   CHECK(scene.set().position(scene.bob).norm() <= 1e-16);
 }
 
-// A rod of length 1 m stretched by ε: what is left after a step is of second order in the turn, none here, and the row
-// is exact along the rod; a rod that also turns by θ = 0.01 keeps θ²/2.
+// A rod of length 1 m stretched by ε: what is left after a step is of second order in the turn, none here,
+// and the row is exact along the rod; a rod that also turns by θ = 0.01 keeps θ²/2.
 TEST_CASE("the whole violation of a rod is closed to first order while it turns") {
   AnimationLoop loop{World{Particles{}}, Constraints{DistanceJoint{}}, WholeViolation{}};
   auto& set = bodies<Particles>(loop.world());
