@@ -51,6 +51,16 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     --check --compiler ${CMAKE_CXX_COMPILER} --system ${include_dirs} --absent ${absent})
 endif()
 
+# --- what is absent costs nothing; what a step costs against one written by hand --------------------------------------
+set(zero_cost ${CMAKE_CURRENT_SOURCE_DIR}/zero_cost)
+delassus_tree_test(zero_cost/compiled_to ${Python3_EXECUTABLE} ${zero_cost}/compiled_to.py ${PROJECT_SOURCE_DIR}
+  --compiler ${CMAKE_CXX_COMPILER} --system ${include_dirs})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # the limits are its counts
+  delassus_tree_test(zero_cost/step_cost ${Python3_EXECUTABLE} ${zero_cost}/step_cost.py ${PROJECT_SOURCE_DIR}
+    --compiler ${CMAKE_CXX_COMPILER} --system ${include_dirs})
+  set_tests_properties(zero_cost/step_cost PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 # --- wrong programs and the sentence each must print ----------------------------------------------------------------
 function(delassus_compile_fail name source)
   foreach(compiler compiler_name IN ZIP_LISTS compilers compiler_names)

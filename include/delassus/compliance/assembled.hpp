@@ -18,8 +18,9 @@ struct BlockRows {
   std::vector<Index> start, column;
   std::vector<Mat<Ra, Rb, S>> block;
 
-  void reset() {
-    start.assign(1, 0);
+  /// No block yet in any of `rows` rows.
+  void reset(Index rows) {
+    start.assign(rows + 1, 0);
     column.clear();
     block.clear();
   }
@@ -96,7 +97,7 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
     auto& diagonal = std::get<a>(diagonal_);
     diagonal.resize(pool.items());
     for_each_index<pools>([&](auto b) {
-      std::get<b>(std::get<a>(blocks_)).reset();
+      std::get<b>(std::get<a>(blocks_)).reset(pool.items());
       place_[b].assign(rows.template pool<b>().items(), -1);
     });
     for (Index i = 0; i < pool.items(); ++i) {
@@ -108,9 +109,10 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
       });
       inner::add_compliance(diagonal[i], pool.compliance[i], pool.softness[i]);
       for_each_index<pools>([&](auto b) {
+        if (place_[b].empty()) return;  // a pool without items costs one look
         auto& W = std::get<b>(std::get<a>(blocks_));
-        for (Index e = W.start.back(); e < Index(W.column.size()); ++e) place_[b][W.column[e]] = -1;
-        W.start.push_back(Index(W.column.size()));
+        for (Index e = W.start[i]; e < Index(W.column.size()); ++e) place_[b][W.column[e]] = -1;
+        W.start[i + 1] = Index(W.column.size());
       });
     }
   }
@@ -121,6 +123,7 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
     for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
       for_each_index<pools>([&](auto b) {
         const auto& theirs = std::get<s>(rows.template pool<b>().sets);
+        if (theirs.block.empty()) return;
         for (const auto& [j, f] : incidence_.template at<s, b>(mine.block[e]))
           add<a, b>(i, j, mine.H[e] * theirs.G[f]);
       });
