@@ -21,7 +21,7 @@ Table table_of_accuracy(bool is_quick, const Watch& watch) {
   const double tolerances[] = {1e-3, 1e-5, 1e-7, 1e-9};
   for (int k = 0; k < 4; ++k) {
     AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}},
-                       AcceleratedGaussSeidel{.tolerance = tolerances[k]}, ThreadTime{}};
+                       AcceleratedGaussSeidel{.tolerance = tolerances[k]}, SolveTime{}};
     auto& rigid = bodies<RigidBodies>(loop.world());
     const auto top = add_stack_of_boxes(rigid);
     const Vec3 start = rigid.position(top);
@@ -37,7 +37,7 @@ Table table_of_accuracy(bool is_quick, const Watch& watch) {
     }
     table.add({Cell(tolerances[k], 1), Cell(mean_of(sweeps)), Cell(quantile_of(sweeps, 0.95)), Cell(residual, 2),
                Cell(1e3 * (rigid.position(top) - start).norm()), Cell(kinetic_energy(rigid), 2),
-               Cell(quantile_of(loop.get<ThreadTime>().solves(), 0.5)), not_converged});
+               Cell(quantile_of(loop.get<SolveTime>().milliseconds(), 0.5)), not_converged});
   }
   return table;
 }

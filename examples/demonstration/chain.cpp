@@ -6,7 +6,7 @@ namespace demonstration {
 Scene chain(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 2400, seconds = is_quick ? 0.25 : 8;
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, ImplicitMidpoint{},
-                     PositionProjection{.rate = 1}, AcceleratedGaussSeidel{.tolerance = 1e-8}, ThreadTime{},
+                     PositionProjection{.rate = 1}, AcceleratedGaussSeidel{.tolerance = 1e-8}, StepTime{},
                      Stopwatch{},
                      Recorder{"Hanging chain", "Twenty links on ball joints, released horizontally. Ideal joints do no "
                                                "work: by the midpoint rule, with gaps closed by position "

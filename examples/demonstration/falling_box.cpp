@@ -5,7 +5,7 @@ namespace demonstration {
 
 Scene falling_box(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 240, seconds = is_quick ? 0.25 : 1.6;
-  AnimationLoop loop{World{RigidBodies{}}, ImplicitMidpoint{}, ThreadTime{}, Stopwatch{},
+  AnimationLoop loop{World{RigidBodies{}}, ImplicitMidpoint{}, StepTime{}, Stopwatch{},
                      Recorder{"Falling box", "Thrown up and left alone: a loop without constraints compiles none of "
                                              "their stages. The middle axis is unstable, so the box flips; the "
                                              "midpoint rule keeps its energy."}};

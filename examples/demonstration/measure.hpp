@@ -15,7 +15,7 @@
 
 namespace demonstration {
 
-/// Steps `loop` for `seconds` by h. It must list ThreadTime, Stopwatch and Recorder, in this order.
+/// Steps `loop` for `seconds` by h. It must list StepTime, Stopwatch and Recorder, in this order.
 template <class Loop>
 Scene measure(Loop& loop, const std::string& backend, double h, double seconds, const Watch& watch) {
   const int steps = int(std::lround(seconds / h));
@@ -32,7 +32,7 @@ Scene measure(Loop& loop, const std::string& backend, double h, double seconds, 
     for (const Index b : set.active()) scene.bodies += set.moves(b);
     scene.kinetic_energy += kinetic_energy(set);
   });
-  scene.milliseconds = mean_of(loop.template get<ThreadTime>().steps());
+  scene.milliseconds = mean_of(loop.template get<StepTime>().milliseconds());
   scene.recording = std::move(loop.template get<Recorder>().recording());
   return scene;
 }

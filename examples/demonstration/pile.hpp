@@ -50,7 +50,7 @@ template <class Collision>
 Scene drop_pile(Collision collision, const std::string& backend, bool is_quick, const Watch& watch) {
   const double h = 1.0 / 240, seconds = is_quick ? 0.25 : 6;
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}, std::move(collision),
-                     AcceleratedGaussSeidel{.tolerance = 1e-4}, ThreadTime{}, Stopwatch{},
+                     AcceleratedGaussSeidel{.tolerance = 1e-4}, StepTime{}, Stopwatch{},
                      Recorder{"Pile of 200", "Spheres, boxes, capsules, cylinders and convex hulls, dropped into a box "
                                              "of half-spaces; collision detection: " + backend + "."}};
   auto& rigid = bodies<RigidBodies>(loop.world());

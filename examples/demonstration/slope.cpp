@@ -21,7 +21,7 @@ double slide(double friction, double t, double h) {
 Scene slope(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 240, seconds = is_quick ? 0.25 : 6, before_floor = 1.5;
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, AcceleratedGaussSeidel{.tolerance = 1e-6},
-                     ThreadTime{}, Stopwatch{},
+                     StepTime{}, Stopwatch{},
                      Recorder{"Slope", "Friction 0.1 to 0.5 on a slope of 20°, whose tangent is 0.364: three blocks "
                                        "slip, two stay. Orange impulses slide, blue ones stick."}};
   auto& rigid = bodies<RigidBodies>(loop.world());

@@ -8,7 +8,7 @@ namespace demonstration {
 Scene stack(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 120, seconds = is_quick ? 0.5 : 6;
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}},
-                     AcceleratedGaussSeidel{.tolerance = 1e-6}, ThreadTime{}, Stopwatch{},
+                     AcceleratedGaussSeidel{.tolerance = 1e-6}, StepTime{}, Stopwatch{},
                      Recorder{"Stack of ten", "Ten boxes of one metre, set down a little off centre, stand still: at "
                                               "the bottom each contact carries a quarter of all ten."}};
   auto& rigid = bodies<RigidBodies>(loop.world());

@@ -7,7 +7,7 @@ Scene wall(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 240, seconds = is_quick ? 0.15 : 5;
   // The margin is as long as the way of the ball in a step: boxes that it throws meet their neighbours in that step.
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, NativeCollision{.margin = 0.03},
-                     AcceleratedGaussSeidel{.tolerance = 1e-4}, ThreadTime{}, Stopwatch{},
+                     AcceleratedGaussSeidel{.tolerance = 1e-4}, StepTime{}, Stopwatch{},
                      Recorder{"Wall", "A hundred boxes in running bond, hit by a ball of 1.4 t at 8 m/s."}};
   auto& rigid = bodies<RigidBodies>(loop.world());
   rigid.add_fixed(HalfSpace{});
