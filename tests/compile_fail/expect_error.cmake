@@ -13,7 +13,7 @@ file(STRINGS ${SOURCE} first_line LIMIT_COUNT 1)
 if(NOT first_line MATCHES "^// expect: (.+)$")
   complain("its first line is not `// expect: <sentence>`")
 endif()
-set(sentence "${CMAKE_MATCH_1}")
+string(REPLACE "\\;" ";" sentence "${CMAKE_MATCH_1}")  # file(STRINGS) makes a list, and escapes for it
 
 list(TRANSFORM SYSTEM PREPEND "-isystem")
 set(ENV{LC_ALL} C)

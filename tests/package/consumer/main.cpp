@@ -1,10 +1,19 @@
-#include <delassus/math/linear.hpp>
+// A user's program: everything the package installs must be there for it to compile.
+#include <delassus/delassus.hpp>
 
 #ifdef CONSUMER_USES_FCL
-#include <fcl/config.h>
+#include <delassus/adapters/fcl.hpp>
 #endif
 #ifdef CONSUMER_USES_CCD
-#include <ccd/vec3.h>
+#include <delassus/adapters/ccd.hpp>
 #endif
 
-int main() { return delassus::skew(delassus::Vec3(1, 2, 3)).trace() == 0 ? 0 : 1; }
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}};
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  const auto box = rigid.add({.position = {0, 0, 5}, .mass = 2.0, .shape = Box{1, 1, 1}});
+  loop.step(1e-3);
+  return rigid.position(box).z() < 5 ? 0 : 1;
+}
