@@ -20,6 +20,6 @@ int main() {
   }
 
   double gap = 0;
-  for (int i = 0; i < 1000; ++i) gap = std::max(gap, loop.step(2e-3).max_joint_violation);
+  for (int i = 0; i < 4000; ++i) gap = std::max(gap, loop.step(5e-4).max_joint_violation);
   std::printf("tip at z = %.3f m\nwidest joint gap %.4f m\n", rigid.position(link).z(), gap);
 }

@@ -67,7 +67,7 @@ class Recorder {
       }
     });
     if constexpr (requires { loop.contacts(); })
-      for (const ContactResult& c : loop.contacts()) {
+      for (const auto& c : loop.contacts()) {
         if (c.impulse.dot(c.record.normal) > 0)
           frame.contacts.push_back(
               {c.record.point(), c.impulse, c.is_sliding ? RecordedState::sliding : RecordedState::sticking});
