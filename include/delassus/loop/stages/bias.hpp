@@ -2,7 +2,9 @@
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/pool_rows.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/row_system.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
+#include <delassus/rows/row_system.hpp>
 
 #include <algorithm>
 #include <cstdint>

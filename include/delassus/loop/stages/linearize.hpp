@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/row_system.hpp>
 #include <delassus/rows/writer.hpp>
 
 #include <algorithm>
