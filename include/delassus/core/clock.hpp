@@ -1,0 +1,35 @@
+/// Clocks: what waits, limits or paces takes one as a parameter, so that a test can say what time it is.
+#pragma once
+
+#include <chrono>
+#include <concepts>
+
+namespace delassus {
+
+/// `now()` is in seconds and never goes back; where zero is does not matter. Copies tell the same time.
+template <class C>
+concept Clock = std::copyable<C> && requires(const C clock) {
+  { clock.now() } -> std::same_as<double>;
+};
+
+/// The wall clock that no one sets.
+struct SteadyClock {
+  double now() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+};
+
+/// A clock that shows `*time`, and goes on by `tick` at each look: for tests that must be exact, and for replays.
+struct ScriptedClock {
+  double* time = nullptr;  ///< s; must outlive the clock
+  double tick = 0;         ///< s per reading
+  double now() const {
+    const double t = *time;
+    *time += tick;
+    return t;
+  }
+};
+
+static_assert(Clock<SteadyClock> && Clock<ScriptedClock>);
+
+}  // namespace delassus
