@@ -20,8 +20,10 @@
 #include <delassus/listeners/convergence_record.hpp>
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
+#include <delassus/loop/solve_until.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
+#include <delassus/solvers/with_deadline.hpp>
 #include <delassus/stabilisation/baumgarte.hpp>
 #include <delassus/stabilisation/position_projection.hpp>
 #include <delassus/stabilisation/soft_contact.hpp>

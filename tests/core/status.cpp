@@ -16,6 +16,7 @@ TEST_CASE("every status has a name of its own") {
   REQUIRE(name(Status::converged) == std::string("converged"));
   REQUIRE(name(Status::stalled) == std::string("stalled"));
   REQUIRE(name(Status::max_iterations) == std::string("max_iterations"));
+  REQUIRE(name(Status::deadline) == std::string("deadline"));
   REQUIRE(name(Status::unclaimed_contact) == std::string("unclaimed_contact"));
   REQUIRE(name(Status::quarantined) == std::string("quarantined"));
 }

@@ -19,7 +19,8 @@ struct SteadyClock {
   }
 };
 
-/// A clock that shows `*time`, and goes on by `tick` at each look: for tests that must be exact, and for replays.
+/// A clock that shows `*time`, and goes on by `tick` at each look, for tests
+/// that must be exact, and for replays.
 struct ScriptedClock {
   double* time = nullptr;  ///< s; must outlive the clock
   double tick = 0;         ///< s per reading

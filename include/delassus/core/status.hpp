@@ -11,6 +11,7 @@ enum class Status : std::uint8_t {
   converged,          ///< the residual is within the tolerance
   stalled,            ///< the rounding floor was met above the tolerance; the result is the best seen
   max_iterations,     ///< the sweeps ran out; the result is the best seen
+  deadline,           ///< the time ran out; the result is the best seen
   unclaimed_contact,  ///< a contact exists that no contact law takes
   quarantined,        ///< a non-finite number appeared: that island was left where it was
 };
@@ -22,6 +23,7 @@ constexpr const char* name(Status status) {
     case Status::converged: return "converged";
     case Status::stalled: return "stalled";
     case Status::max_iterations: return "max_iterations";
+    case Status::deadline: return "deadline";
     case Status::unclaimed_contact: return "unclaimed_contact";
     case Status::quarantined: return "quarantined";
   }

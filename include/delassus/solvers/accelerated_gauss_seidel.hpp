@@ -59,11 +59,11 @@ struct BasicAcceleratedGaussSeidel {
     Measure best = report.measure;
     double theta = 1, last = std::numeric_limits<double>::infinity();
     int measured = 0;
-    while (report.sweeps < max_iterations) {
+    for (bool is_last = max_iterations == 0; !is_last;) {
       problem.save(work.y);
       const double moved = problem.sweep(relaxation);  // λ is z now
       ++report.sweeps;
-      const bool is_last = report.sweeps == max_iterations;
+      is_last = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       const int batch = Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report.sweeps);
       if (report.sweeps - measured >= batch || is_last) {
         measured = report.sweeps;
@@ -75,7 +75,7 @@ struct BasicAcceleratedGaussSeidel {
           problem.save(work.best);
         }
       }
-      momentum(problem, work, theta, last, moved);
+      if (!is_last) momentum(problem, work, theta, last, moved);
     }
     problem.load(work.best);
     report.measure = best;

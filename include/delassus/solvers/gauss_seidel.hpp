@@ -41,10 +41,15 @@ struct BasicGaussSeidel {
     report.measure = problem.measure();
     problem.tell(0, report.measure);
     if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
-    while (report.sweeps < max_iterations) {
+    bool is_over = max_iterations == 0;
+    while (!is_over) {
       if (report.sweeps >= min_iterations && is_done(report.measure, rows)) break;
       const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
-      for (int k = 0; k < batch && report.sweeps < max_iterations; ++k, ++report.sweeps) problem.sweep(relaxation);
+      for (int k = 0; k < batch && !is_over; ++k) {
+        problem.sweep(relaxation);
+        ++report.sweeps;
+        is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
+      }
       if constexpr (Criterion::needs_measure || Problem::Observes::every_sweep) report.measure = problem.measure();
       else report.measure.last_change = problem.last_change();
       problem.tell(report.sweeps, report.measure);

@@ -70,6 +70,8 @@ class IslandProblem {
   }
 
   double last_change() const { return last_change_; }
+  /// A solver asks after each sweep; only `WithDeadline` ever says yes.
+  static constexpr bool is_out_of_time() { return false; }
   void tell(int sweeps, const Measure& m) { observer_(sweeps, m); }
 
   void save(Impulses<Rows>& to) const {

@@ -1,0 +1,125 @@
+#include "scenes.hpp"
+
+#include "catch.hpp"
+
+using namespace scenes;
+
+namespace {
+
+constexpr double h = 1.0 / 60;
+
+/// Stacks of `count` boxes beside each other, in the first step of their fall.
+auto problem_of(int stacks, int count) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     GaussSeidel{.max_iterations = 0, .min_iterations = 0}};
+  for (int k = 0; k < stacks; ++k) add_stack(rigid_bodies(loop), count, Box{1, 1, 1}, 1e-3, Vec3(3 * k, 0, 0));
+  loop.step(h);
+  return loop.problem();
+}
+
+template <class Problem>
+double residual_of(Problem problem) {
+  return solve(problem, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure.residual;
+}
+
+template <class Problem>
+bool same_bits(const Problem& a, const Problem& b) {
+  return a.rows.template pool<0>().lambda == b.rows.template pool<0>().lambda;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a solve returns at its first look at the clock after the deadline", "", GaussSeidel,
+                   AcceleratedGaussSeidel) {
+  const auto start = problem_of(1, 10);
+  for (const int looks : {1, 2, 9, 16, 40, 77}) {
+    auto p = start;
+    double time = 5;
+    // A second per look, one look per sweep: look k sees 5 + (k − 1) s.
+    const SolveReport r = solve_until(p, TestType{.tolerance = 1e-12, .max_iterations = 100000}, 5.0 + looks - 1,
+                                      ScriptedClock{&time, 1});
+    CAPTURE(looks);
+    REQUIRE(r.status == Status::deadline);
+    REQUIRE(r.sweeps == looks);
+    REQUIRE(time == 5.0 + looks);
+    REQUIRE(r.measure.residual == residual_of(p));
+  }
+}
+
+TEST_CASE("at the deadline the impulses are those of the smallest residual") {
+  const auto start = problem_of(1, 10);
+  double least = residual_of(start);
+  int best = 0;
+  constexpr int sweeps = 15;  // up to here every sweep is measured
+  for (int k = 1; k <= sweeps; ++k) {
+    auto p = start;
+    const double residual =
+        solve(p, GaussSeidel{.tolerance = 1e-12, .max_iterations = k, .relaxation = 1.9}).measure.residual;
+    if (residual < least) least = residual, best = k;
+  }
+  auto p = start;
+  double time = 0;
+  const SolveReport r = solve_until(p, GaussSeidel{.tolerance = 1e-12, .relaxation = 1.9}, sweeps - 1,
+                                    ScriptedClock{&time, 1});
+  REQUIRE(r.sweeps == sweeps);
+  REQUIRE(best < sweeps);  // or the test says nothing
+  REQUIRE(r.measure.residual == least);
+  REQUIRE(residual_of(p) == least);
+}
+
+TEMPLATE_TEST_CASE("a deadline that never comes changes no bit", "", GaussSeidel, AcceleratedGaussSeidel) {
+  const TestType solver{.tolerance = 1e-6, .max_iterations = 3000};
+  auto with = problem_of(2, 3), without = with;
+  const SolveReport a = solve_until(with, solver, 1e300), b = solve(without, solver);
+  REQUIRE(a.status == b.status);
+  REQUIRE(a.sweeps == b.sweeps);
+  REQUIRE(same_bits(with, without));
+}
+
+TEST_CASE("a solve that meets its tolerance before the deadline is converged") {
+  auto p = problem_of(1, 3);
+  double time = 0;
+  const SolveReport r = solve_until(p, AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e6, ScriptedClock{&time, 1});
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(r.measure.residual <= 1e-6);
+}
+
+TEST_CASE("islands after the deadline get the sweeps that are their due, and no more") {
+  auto p = problem_of(3, 4);
+  REQUIRE(p.islands.count() == 3);
+  double time = 0;
+  solve_until(p, GaussSeidel{.tolerance = 1e-12, .min_iterations = 2}, 9.0, ScriptedClock{&time, 1});
+  // Looks after sweeps 2 … 11 of the first island; one look after sweep 2 of each of the others.
+  REQUIRE(time == 12);
+  for (Index k = 0; k < 3; ++k) {
+    double sum = 0;
+    for (const Index i : p.islands.items(0, k)) sum += p.rows.template pool<0>().lambda[i][0];
+    REQUIRE(sum > 0);
+  }
+}
+
+TEST_CASE("a budget counts from the first island of each step, and the report says when it ran out") {
+  double time = 0;
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-10}, 20.0, ScriptedClock{&time, 1}}};
+  add_stack(rigid_bodies(loop), 10, Box{1, 1, 1});
+  for (int n = 0; n < 5; ++n) {
+    const double before = time;
+    const StepReport r = loop.step(h);
+    REQUIRE(r.status == Status::deadline);
+    REQUIRE(r.sweeps == 20);          // the look at 20 s after the first is the twentieth after a sweep
+    REQUIRE(time - before == 21.0);   // and the first one, before any
+  }
+}
+
+TEST_CASE("a budget below zero and a deadline that is no number are refused") {
+  const auto loop_with = [](double budget, double deadline) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                       WithDeadline{GaussSeidel{}, budget, SteadyClock{}, deadline}};
+  };
+  REQUIRE_THROWS_WITH(loop_with(-1, 1), "delassus: WithDeadline: budget -1 s must be >= 0");
+  REQUIRE_THROWS_WITH(loop_with(1, std::nan("")), Catch::Contains("WithDeadline: the deadline must be a number"));
+  REQUIRE_THROWS_WITH(
+      (AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, WithDeadline{GaussSeidel{.relaxation = 3}}}),
+      Catch::Contains("relaxation 3"));
+}
