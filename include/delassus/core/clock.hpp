@@ -29,6 +29,7 @@ struct ScriptedClock {
     *time += tick;
     return t;
   }
+  void sleep_until(double t) const { *time = *time < t ? t : *time; }
 };
 
 static_assert(Clock<SteadyClock> && Clock<ScriptedClock>);

@@ -129,6 +129,8 @@ class AnimationLoop {
     inner::each_joint(laws(), f);
   }
   double time() const { return start_ + double(steps_) * h_; }
+  /// h of the present step, or of the last one, s.
+  double step_size() const { return h_; }
 
   // --- the stages, in the plain order; a host that interleaves its own work calls begin(h), then these ----------------
 
