@@ -7,6 +7,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/compliance/matrix_free.hpp>
+#include <delassus/compliance/uncoupled.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
@@ -20,6 +21,7 @@
 #include <delassus/listeners/convergence_record.hpp>
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
+#include <delassus/loop/predictive_scheme.hpp>
 #include <delassus/loop/solve_until.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>

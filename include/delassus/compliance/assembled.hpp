@@ -26,9 +26,14 @@ struct BlockRows {
   }
 };
 
+/// Where A couples the blocks of a set, W takes A⁻¹ whole.
+struct WholeInverse {
+  static constexpr bool is_whole = true;
+};
+
 /// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. `Storage` is the type W is
-/// kept in; sums run in double.
-template <class Storage = void>
+/// kept in; sums run in double. `Inverse` says what is taken of an A that couples blocks.
+template <class Storage = void, class Inverse = WholeInverse>
 struct BasicAssembledCompliance {
   using plays = role::Compliance;
 
@@ -37,9 +42,9 @@ struct BasicAssembledCompliance {
 };
 using AssembledCompliance = BasicAssembledCompliance<>;
 
-template <class Storage>
+template <class Storage, class Inverse>
 template <class T, int... w, int... R>
-class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R...>> {
+class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
   using Rows = RowSystem<T, Widths<w...>, R...>;
   using S = std::conditional_t<std::is_void_v<Storage>, T, Storage>;
@@ -49,7 +54,7 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
   template <class World>
   void build(const World& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
-      if constexpr (inner::may_couple<std::remove_cvref_t<decltype(set)>>)
+      if constexpr (couples<decltype(set)>)
         if (set.is_coupled()) return columns_.template prepare<s>(set, rows);
       inner::apply_inverse(set, rows, s);
       incidence_.template find<s>(rows, set.blocks());
@@ -90,6 +95,9 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
   }
 
  private:
+  template <class Set>
+  static constexpr bool couples = Inverse::is_whole && inner::may_couple<std::remove_cvref_t<Set>>;
+
   /// Row by row: every entry e of item i meets all entries f on its block, and W_ij += H_e G_f.
   template <int a, class World>
   void build_rows(const World& world, const Rows& rows) {
@@ -103,7 +111,7 @@ class BasicAssembledCompliance<Storage>::Operator<RowSystem<T, Widths<w...>, R..
     for (Index i = 0; i < pool.items(); ++i) {
       diagonal[i].setZero();
       world.each([&](const auto& set, auto s) {
-        if constexpr (inner::may_couple<std::remove_cvref_t<decltype(set)>>)
+        if constexpr (couples<decltype(set)>)
           if (set.is_coupled()) return add_coupled<a, s>(rows, i);
         add_row<a, s>(rows, i);
       });

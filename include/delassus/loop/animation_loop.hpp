@@ -12,6 +12,7 @@
 #include <delassus/loop/stages/free_motion.hpp>
 #include <delassus/loop/stages/linearize.hpp>
 #include <delassus/loop/stages/move_freely.hpp>
+#include <delassus/loop/stages/predict.hpp>
 #include <delassus/loop/stages/project_position.hpp>
 #include <delassus/loop/stages/solve.hpp>
 #include <delassus/loop/stages/warm_start.hpp>
@@ -65,6 +66,11 @@ class AnimationLoop {
     const auto& pool = laws().template of<Law>();
     DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed; its handle is stale");
     return pool.impulse[constraint.index];
+  }
+  /// The force (N, N·m) of a constraint's rows that the next step starts from, and that `PredictiveScheme` applies.
+  template <class Law>
+  auto predicted_force(ConstraintHandle<Law> constraint) const {
+    return (impulse(constraint) / h_).eval();
   }
   /// The contacts of the last step with their impulses, sorted by pair and feature.
   std::span<const ContactResult> contacts() const
@@ -141,6 +147,8 @@ class AnimationLoop {
   void find_islands();
   void make_bias();
   void build();
+  /// For a scheme that predicts: last step's impulses act on v_free, and d is made to match.
+  void predict();
   void solve();
   void correct();
   void advance();
@@ -156,8 +164,8 @@ class AnimationLoop {
   static constexpr bool sound = inner::loop_is_sound<Parts, Policies...>();
   using Work = std::conditional_t<
       sound, inner::Workspace<WorldType, Laws, typename Parts::Compliance, typename Parts::Solver,
-                              typename Parts::Integrator, typename Parts::Stabilisation>,
-      inner::Workspace<WorldType, Constraints<>, void, void, void, void>>;
+                              typename Parts::Integrator, typename Parts::Stabilisation, typename Parts::Scheme>,
+      inner::Workspace<WorldType, Constraints<>, void, void, void, void, void>>;
 
   template <class Role, class Self>
   static auto& part_of(Self& self) {
@@ -322,6 +330,11 @@ void AnimationLoop<Policies...>::build() {
 }
 
 template <class... Policies>
+void AnimationLoop<Policies...>::predict() {
+  if constexpr (has_constraints) delassus::predict(world(), work_.rows, work_.W, scratch_, work_.predicted);
+}
+
+template <class... Policies>
 void AnimationLoop<Policies...>::solve() {
   if constexpr (has_constraints) {
     inner::with_observer(policies_, [&](auto& observer) {
@@ -340,10 +353,13 @@ void AnimationLoop<Policies...>::solve() {
 
 template <class... Policies>
 void AnimationLoop<Policies...>::correct() {
-  if constexpr (has_constraints)
+  if constexpr (has_constraints) {
+    if constexpr (Work::predicts) take_change(work_.rows, work_.predicted);
     delassus::correct(world(), work_.rows, scratch_, work_.islands, work_.is_sick);
-  else
+    if constexpr (Work::predicts) give_back_total(work_.rows, work_.predicted);
+  } else {
     world().each([](auto& set, auto) { set.v_next = set.v_free; });
+  }
   tell<stage::Correct>();
 }
 

@@ -51,12 +51,14 @@ template <int which>
 struct Nothing {};
 
 /// Arrays of a step; `reset` keeps their capacity, so a warm step allocates nothing.
-template <class World, class Laws, class Compliance, class Solver, class Integrator, class Stabilisation>
+template <class World, class Laws, class Compliance, class Solver, class Integrator, class Stabilisation,
+          class Scheme>
 struct Workspace {
   using Rows = typename rows_of<World, Laws>::type;
   using Operator = typename Compliance::template Operator<Rows>;
   static constexpr bool restitutes = rows_of<World, Laws>::restitutes;
   static constexpr bool at_midpoint = requires { requires Integrator::linearises_at_midpoint; };
+  static constexpr bool predicts = requires { requires Scheme::predicts; };
   static constexpr bool projects_position = requires { requires Stabilisation::projects_position; };
 
   explicit Workspace(const Laws& laws) : book(laws) {}
@@ -73,12 +75,13 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<at_midpoint, Rows, Nothing<1>> at_start;
   [[no_unique_address]] std::conditional_t<restitutes, Impulses<Rows>, Nothing<2>> bounce;
   [[no_unique_address]] std::conditional_t<restitutes || projects_position, std::array<Impulses<Rows>, 2>, Nothing<3>> aside;
+  [[no_unique_address]] std::conditional_t<predicts, Impulses<Rows>, Nothing<5>> predicted;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
 };
 
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
-template <class World, class C, class S, class I, class St>
-struct Workspace<World, Constraints<>, C, S, I, St> {
+template <class World, class C, class S, class I, class St, class Sc>
+struct Workspace<World, Constraints<>, C, S, I, St, Sc> {
   explicit Workspace(const auto&) {}
 };
 
