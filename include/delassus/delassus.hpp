@@ -19,6 +19,7 @@
 #include <delassus/integrators/implicit_midpoint.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
 #include <delassus/listeners/convergence_record.hpp>
+#include <delassus/listeners/double_buffer.hpp>
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/predictive_scheme.hpp>

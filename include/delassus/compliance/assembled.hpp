@@ -88,6 +88,12 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   template <int p>
   void commit(const Rows&, Index, const Vec<Rows::template rows_of<p>, T>&) {}
 
+  /// W alone, without what builds it.
+  void copy_matrix(const Operator& from) {
+    blocks_ = from.blocks_;
+    diagonal_ = from.diagonal_;
+  }
+
   /// The off-diagonal blocks between pools a and b, for export and tests.
   template <int a, int b>
   const auto& blocks() const {

@@ -1,6 +1,7 @@
 /// The loop: the policies of a scene, and the stages of a step over them.
 #pragma once
 
+#include <delassus/loop/channels.hpp>
 #include <delassus/loop/checks.hpp>
 #include <delassus/loop/defaults.hpp>
 #include <delassus/loop/edit.hpp>
@@ -91,6 +92,15 @@ class AnimationLoop {
   {
     return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
   }
+  /// The same into one that is there: arrays that are large enough are written over, and nothing is allocated.
+  template <class P>
+  void copy_problem(P& to) const {
+    to.laws = laws();
+    to.rows = work_.rows;
+    to.W.copy_matrix(work_.W);
+    to.islands = work_.islands;
+    to.h = h_;
+  }
 
   /// The policy of a role, its default included.
   template <class Role>
@@ -115,6 +125,13 @@ class AnimationLoop {
     requires(has<P>)
   {
     return std::get<P>(policies_);
+  }
+  /// Where a listener that publishes meets other threads. It stays where it is when the loop moves.
+  template <class Listener>
+  auto& channel() const
+    requires(has<Listener> && Publisher<Listener>)
+  {
+    return channels_.template of<Listener>();
   }
 
   const StepReport& report() const { return report_; }
@@ -166,6 +183,7 @@ class AnimationLoop {
       sound, inner::Workspace<WorldType, Laws, typename Parts::Compliance, typename Parts::Solver,
                               typename Parts::Integrator, typename Parts::Stabilisation, typename Parts::Scheme>,
       inner::Workspace<WorldType, Constraints<>, void, void, void, void, void>>;
+  using Channels = typename inner::channels_of_loop<sound, Parts, Policies...>::type;
 
   template <class Role, class Self>
   static auto& part_of(Self& self) {
@@ -185,6 +203,7 @@ class AnimationLoop {
   std::tuple<Policies...> policies_;
   [[no_unique_address]] typename inner::DefaultsFor<Policies...>::type defaults_{};
   [[no_unique_address]] Work work_;
+  [[no_unique_address]] Channels channels_;
   typename inner::widths_of<WorldType>::Scratch scratch_;
   StepReport report_;
   double h_ = 0, last_h_ = 0, start_ = 0;
@@ -194,7 +213,7 @@ class AnimationLoop {
 
 template <class... Policies>
 AnimationLoop<Policies...>::AnimationLoop(Policies... policies)
-    : policies_{std::move(policies)...}, work_{laws()} {
+    : policies_{std::move(policies)...}, work_{laws()}, channels_{policies_} {
   if constexpr (sound) check_policies();
 }
 

@@ -6,6 +6,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/channels.hpp>
 #include <delassus/loop/policies.hpp>
 #include <delassus/loop/stage.hpp>
 #include <delassus/loop/workspace.hpp>
@@ -230,6 +231,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!(plays_its_role<Policies>() && ...)) return false;
   else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
   else if constexpr (!constraints_are_sound<Parts>()) return false;
+  else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;
   else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
 }
 
