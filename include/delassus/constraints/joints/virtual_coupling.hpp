@@ -1,0 +1,64 @@
+/// A virtual coupling: a spring and a damper between a tool and the device that leads it, in position and orientation.
+#pragma once
+
+#include <delassus/constraints/joints/bilateral.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/math/rotation.hpp>
+#include <delassus/rows/anchor.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// φ = (x_a − x_b, θ), θ the vector of the turn that takes b's frame to a's; u = (v_a − v_b, ω_a − ω_b), all in world axes.
+///
+///   λ = −h (K (φ + h u) + C u),   K = diag(k 1, k_θ 1), C = diag(c 1, c_θ 1):
+///
+/// six soft rows of compliance 1/(h² k + h c), stable for any k, c ≥ 0 and any mass. The rows about axes take θ̇ for
+/// ω_a − ω_b, true to second order in θ. Both impulses act at the middle of the two anchors.
+/// Source: [ColgateStanleyBrown1995] for the coupling.
+struct VirtualCoupling : Bilateral<6> {
+  struct Item {
+    Anchor a;                       ///< on the tool
+    Anchor b;                       ///< on the device: a kinematic body, or a place in the world
+    double stiffness = 500;         ///< k > 0, N/m
+    double damping = 0;             ///< c ≥ 0, N·s/m
+    double angular_stiffness = 1;   ///< k_θ > 0, N·m/rad
+    double angular_damping = 0;     ///< c_θ ≥ 0, N·m·s/rad
+  };
+
+  static void check(const Item& item) {
+    const auto is_positive = [](double x) { return std::isfinite(x) && x > 0; };
+    const auto is_not_negative = [](double x) { return std::isfinite(x) && x >= 0; };
+    DELASSUS_EXPECT(item.a.has_frame && item.b.has_frame,
+                    "VirtualCoupling: both ends need an orientation; a particle has none");
+    DELASSUS_EXPECT(is_positive(item.stiffness),
+                    "VirtualCoupling: stiffness " + inner::text(item.stiffness) + " must be finite and > 0 N/m");
+    DELASSUS_EXPECT(is_not_negative(item.damping),
+                    "VirtualCoupling: damping " + inner::text(item.damping) + " must be finite and >= 0 N·s/m");
+    DELASSUS_EXPECT(is_positive(item.angular_stiffness), "VirtualCoupling: angular_stiffness " +
+                                                             inner::text(item.angular_stiffness) +
+                                                             " must be finite and > 0 N·m/rad");
+    DELASSUS_EXPECT(is_not_negative(item.angular_damping), "VirtualCoupling: angular_damping " +
+                                                               inner::text(item.angular_damping) +
+                                                               " must be finite and >= 0 N·m·s/rad");
+  }
+
+  void linearize(const Item& item, const auto& world, auto row) const {
+    const Vec3 xa = world.point(item.a), xb = world.point(item.b), middle = 0.5 * (xa + xb);
+    const Vec3 turn = logarithm<double>(world.frame(item.a) * world.frame(item.b).conjugate());
+    auto a = row.end(item.a, middle), b = row.end(item.b, middle);
+    for (int k = 0; k < 3; ++k) {
+      a.along(k, Vec3::Unit(k));
+      b.along(k, -Vec3::Unit(k));
+      row.phi(k, xa[k] - xb[k]);
+      row.soft(k, item.stiffness, item.damping);
+      a.about(3 + k, Vec3::Unit(k));
+      b.about(3 + k, -Vec3::Unit(k));
+      row.phi(3 + k, turn[k]);
+      row.soft(3 + k, item.angular_stiffness, item.angular_damping);
+    }
+  }
+};
+
+}  // namespace delassus
