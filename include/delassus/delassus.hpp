@@ -12,6 +12,7 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/contact/frictionless.hpp>
+#include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/constraints/joints/distance_joint.hpp>
@@ -22,6 +23,7 @@
 #include <delassus/listeners/double_buffer.hpp>
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
+#include <delassus/loop/collisions_first.hpp>
 #include <delassus/loop/predictive_scheme.hpp>
 #include <delassus/loop/solve_until.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>

@@ -15,6 +15,7 @@
 #include <delassus/loop/stages/move_freely.hpp>
 #include <delassus/loop/stages/predict.hpp>
 #include <delassus/loop/stages/project_position.hpp>
+#include <delassus/loop/stages/push_apart.hpp>
 #include <delassus/loop/stages/solve.hpp>
 #include <delassus/loop/stages/warm_start.hpp>
 #include <delassus/loop/step_report.hpp>
@@ -159,6 +160,8 @@ class AnimationLoop {
 
   void begin(double h);
   void detect();
+  /// For a scheme that detects first: under an explicit integrator penalty contacts become forces of this step.
+  void push_apart();
   void linearize();
   void free_motion();
   void find_islands();
@@ -286,6 +289,14 @@ void AnimationLoop<Policies...>::detect() {
     for (const ContactPoint& p : contacts.points) report_.max_penetration = std::max(report_.max_penetration, -p.gap);
   }
   tell<stage::Detect>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::push_apart() {
+  if constexpr (Laws::has_contacts) {
+    const SystemScale A = part<role::Integrator>().scale(h_);
+    if (A.stiffness == 0 && A.damping == 0) delassus::push_apart(world(), laws(), work_.contacts, h_);
+  }
 }
 
 template <class... Policies>

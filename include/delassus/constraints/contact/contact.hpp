@@ -50,6 +50,7 @@ struct Contact {
       b.along(k, item.frame.row(k).transpose());
     }
     row.phi(0, item.record.gap);
+    if constexpr (requires { law.soften(row, item.record.gap); }) law.soften(row, item.record.gap);
   }
 
   template <class T>

@@ -1,0 +1,97 @@
+/// Penalty contact: a spring and a damper along the normal in place of a rigid surface.
+#pragma once
+
+#include <delassus/constraints/law.hpp>
+#include <delassus/core/expect.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus {
+
+/// `Contact{Penalty{Coulomb{.friction = 0.5}, 1e5, 50}}`: stiffness k (N/m) and damping c (N·s/m) of each contact point,
+///
+///   f_n = max(0, k δ − c u_n),  δ = −gap,   with the friction of `Law` on top.
+///
+/// As rows the spring is implicit Euler's, λ_n = max(0, h (k (δ − h u_n) − c u_n)) at the velocity after the step: stable
+/// for every k and h, and never a source of energy. Under the scheme `CollisionsFirst` with an explicit integrator it is
+/// a force of the free motion at the start of the step, with no row and no solve: stable for h √(k/m) < 2 only.
+template <class Law>
+struct Penalty {
+  static constexpr int rows = Law::rows;
+  static constexpr auto kinds = Law::kinds;
+
+  Law law{};
+  double stiffness = 0;  ///< k > 0, N/m
+  double damping = 0;    ///< c ≥ 0, N·s/m
+
+  using Parameters = typename Law::Parameters;
+
+  void check() const {
+    law.check();
+    DELASSUS_EXPECT(std::isfinite(stiffness) && stiffness > 0,
+                    "Penalty: stiffness " + inner::text(stiffness) + " N/m must be finite and > 0");
+    DELASSUS_EXPECT(std::isfinite(damping) && damping >= 0,
+                    "Penalty: damping " + inner::text(damping) + " N·s/m must be finite and >= 0");
+  }
+
+  Parameters parameters() const { return law.parameters(); }
+  static void set_friction(Parameters& p, double friction)
+    requires requires { Law::set_friction(p, friction); }
+  {
+    Law::set_friction(p, friction);
+  }
+
+  /// The normal row becomes a spring. The damper waits until the bodies touch.
+  void soften(auto& row, double gap) const { row.soft(0, stiffness, gap < 0 ? damping : 0.0); }
+
+  /// The force (N, in the contact's frame) at gap and relative velocity u. Friction never turns the slip round within h:
+  /// |f_t| ≤ min(μ f_n, |u_t| / (h w)), w the inverse mass that the bodies show along the slip, 1/kg.
+  Vec<rows> force(const Parameters& p, double gap, const Vec<rows>& u, double w, double h) const {
+    Vec<rows> f = Vec<rows>::Zero();
+    if (gap >= 0) return f;
+    f[0] = std::max(0.0, -stiffness * gap - damping * u[0]);
+    if constexpr (rows == 3) {
+      const double slip = std::hypot(u[1], u[2]);
+      if (slip > 0 && w > 0) {
+        const double size = std::min(p.friction * f[0], slip / (h * w));
+        f[1] = -size * u[1] / slip;
+        f[2] = -size * u[2] / slip;
+      }
+    }
+    return f;
+  }
+
+  template <class T>
+  using Memory = inner::memory_of_t<Law, T>;
+
+  template <class T>
+  void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
+    inner::prepare(law, W, memory);
+  }
+  template <class T>
+  void project(const Parameters& p, Local<rows, T>& c, Memory<T>& memory) const {
+    inner::project(law, p, c, memory);
+  }
+  template <class T>
+  Vec<rows, T> natural_map(const Parameters& p, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
+    return law.natural_map(p, lambda, u, scale);
+  }
+  template <class T>
+  void clamp(const Parameters& p, Vec<rows, T>& lambda) const {
+    law.clamp(p, lambda);
+  }
+  template <class T>
+  bool is_sliding(const Parameters& p, const Vec<rows, T>& lambda) const
+    requires requires { law.is_sliding(p, lambda); }
+  {
+    return law.is_sliding(p, lambda);
+  }
+};
+
+template <class Law>
+Penalty(Law, double) -> Penalty<Law>;
+template <class Law>
+Penalty(Law, double, double) -> Penalty<Law>;
+
+}  // namespace delassus
