@@ -142,6 +142,20 @@ TEST_CASE("a block slides on penalty contacts with mu g, and friction as a force
   REQUIRE(std::abs(set.velocity(block)[0]) <= 0.5 * g * step);
 }
 
+TEST_CASE("two bodies that push each other apart keep their momentum and angular momentum") {
+  auto loop = loop_with(1e4, 10, CollisionsFirst{});
+  auto& set = rigid_bodies(loop);
+  set.gravity.setZero();
+  const auto a = set.add({.position = {0, 0, 0}, .angular_velocity = {0, 3, 8}, .mass = 1.0, .shape = Sphere{0.5}});
+  const auto b = set.add({.position = {0.9, 0.3, 0}, .velocity = {-1, 0, 0}, .mass = 3.0, .shape = Sphere{0.5}});
+  const Vec3 p = momentum(set), L = angular_momentum(set);
+  for (int n = 0; n < 200; ++n) loop.step(1e-3);
+  REQUIRE((set.position(b) - set.position(a)).norm() > 1);
+  REQUIRE(std::abs(set.angular_velocity(b).z()) > 0.1);  // friction has turned it
+  REQUIRE((momentum(set) - p).norm() <= 1e-14 * 10);
+  REQUIRE((angular_momentum(set) - L).norm() <= 1e-13 * 10);
+}
+
 namespace {
 struct OnRubber {
   static bool takes(Index a, Index b) { return a == 1 || b == 1; }
