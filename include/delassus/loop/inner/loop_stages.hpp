@@ -1,0 +1,196 @@
+/// The stages of AnimationLoop, in the plain order: each fits the functions of `stages/` to the arrays of the loop.
+#pragma once
+
+#include <delassus/loop/animation_loop.hpp>
+#include <delassus/loop/stages/bias.hpp>
+#include <delassus/loop/stages/correct.hpp>
+#include <delassus/loop/stages/free_motion.hpp>
+#include <delassus/loop/stages/linearize.hpp>
+#include <delassus/loop/stages/predict.hpp>
+#include <delassus/loop/stages/project_position.hpp>
+#include <delassus/loop/stages/push_apart.hpp>
+#include <delassus/loop/stages/solve.hpp>
+#include <delassus/loop/stages/warm_start.hpp>
+
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace delassus {
+
+template <class... Policies>
+void AnimationLoop<Policies...>::begin(double h) {
+  DELASSUS_EXPECT(std::isfinite(h) && h > 0, "step: h = " + inner::text(h) + " s must be finite and > 0");
+  if (h != h_) {
+    start_ = time();
+    steps_ = 0;
+  }
+  last_h_ = h_ > 0 ? h_ : h;
+  h_ = h;
+  report_ = {};
+  // Before all else: Detect and Linearize ask how fast kinematic bodies go.
+  world().each([&](auto& set, auto) { set.begin_step(h); });
+  if constexpr (has_constraints) work_.book.attach(laws());
+  tell<stage::Begin>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::detect() {
+  if constexpr (Laws::has_contacts) {
+    auto& contacts = work_.contacts;
+    contacts.gather(std::as_const(*this).world());
+    const CollisionReport found =
+        part<role::Collision>().detect(std::span<const Collider>(contacts.colliders), h_, contacts.points);
+    contacts.record();
+    const Index unclaimed = route_contacts(laws(), contacts, work_.materials);
+    if (unclaimed > 0) report_.status = worse(report_.status, Status::unclaimed_contact);
+    report_.contacts = Index(contacts.points.size());
+    report_.pairs = found.pairs;
+    report_.queries = found.queries;
+    report_.rejects = found.rejects;
+    for (const ContactPoint& p : contacts.points) report_.max_penetration = std::max(report_.max_penetration, -p.gap);
+  }
+  tell<stage::Detect>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::push_apart() {
+  if constexpr (Laws::has_contacts) {
+    const SystemScale A = part<role::Integrator>().scale(h_);
+    if (A.stiffness == 0 && A.damping == 0) delassus::push_apart(world(), laws(), work_.contacts, h_);
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::linearize() {
+  if constexpr (has_constraints) {
+    if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
+    else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
+    warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
+    report_.rows = work_.rows.row_count();
+    report_.max_joint_violation = worst_equality(laws(), work_.rows);
+  }
+  tell<stage::Linearize>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::free_motion() {
+  world().each([&](auto& set, auto s) {
+    delassus::free_motion(set, part<role::Integrator>(), std::get<s>(scratch_), h_);
+  });
+  tell<stage::FreeMotion>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::find_islands() {
+  if constexpr (has_constraints) {
+    std::array<Index, WorldType::set_count> first{};
+    Index blocks = 0;
+    world().each([&](const auto& set, auto s) {
+      first[s] = blocks;
+      blocks += set.blocks();
+    });
+    work_.islands.find(work_.rows, std::span<const Index>(first), blocks,
+                       [&](auto s, Index b) { return world().template set<s>().moves(b); });
+    report_.islands = work_.islands.count();
+  }
+  tell<stage::Islands>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::make_bias() {
+  if constexpr (has_constraints) {
+    if constexpr (Work::restitutes) {
+      work_.bounce.resize_like(work_.rows);
+      for_each_index<Laws::pool_count>([&](auto p) {
+        for (auto& b : std::get<p>(work_.bounce.pools)) b.setZero();
+      });
+    }
+    delassus::make_bias(std::as_const(*this).world(), laws(), work_.rows, part<role::Stabilisation>(), h_,
+                        theta<typename Parts::Integrator>(), work_.bounce);
+  }
+  tell<stage::Bias>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::build() {
+  if constexpr (has_constraints) {
+    work_.W.build(std::as_const(*this).world(), work_.rows);
+    work_.book.prepare(work_.W, work_.rows);
+  }
+  tell<stage::Build>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::predict() {
+  if constexpr (has_constraints) delassus::predict(world(), work_.rows, work_.W, scratch_, work_.predicted);
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::solve() {
+  if constexpr (has_constraints) {
+    inner::with_observer(policies_, [&](auto& observer) {
+      solve_islands(work_, part<role::Solver>(), h_, observer);
+    });
+    for (const SolveReport& r : work_.reports) {
+      report_.status = worse(report_.status, r.status);
+      report_.sweeps = std::max(report_.sweeps, r.sweeps);
+      report_.residual = std::max(report_.residual, r.measure.residual);
+      report_.siconos_error = std::max(report_.siconos_error, r.measure.siconos);
+    }
+    keep_impulses(laws(), work_.rows, work_.contacts);
+  }
+  tell<stage::Solve>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::correct() {
+  if constexpr (has_constraints) {
+    if constexpr (Work::predicts) take_change(work_.rows, work_.predicted);
+    delassus::correct(world(), work_.rows, scratch_, work_.islands, work_.is_sick);
+    if constexpr (Work::predicts) give_back_total(work_.rows, work_.predicted);
+  } else {
+    world().each([](auto& set, auto) { set.v_next = set.v_free; });
+  }
+  tell<stage::Correct>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::move_freely() {
+  world().each([&](auto& set, auto s) {
+    if (set.is_separable()) {
+      delassus::move_freely(set, part<role::Integrator>(), h_);
+    } else {
+      delassus::free_motion(set, part<role::Integrator>(), std::get<s>(scratch_), h_);
+      set.v_next = set.v_free;
+      part<role::Integrator>().advance(set, h_);
+    }
+    report_.quarantined += set.held();
+  });
+  end_advance();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::advance() {
+  if constexpr (has_constraints)
+    if constexpr (Work::projects_position)
+      find_displacements(std::as_const(*this).world(), laws(), work_, part<role::Stabilisation>(), part<role::Solver>(),
+                         scratch_, h_);
+  world().each([&](auto& set, auto) {
+    part<role::Integrator>().advance(set, h_);
+    report_.quarantined += set.held();
+  });
+  if constexpr (has_constraints)
+    if constexpr (Work::projects_position) displace(world(), work_.displacement, h_);
+  end_advance();
+  tell<stage::Advance>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::end_advance() {
+  if (report_.quarantined > 0) report_.status = worse(report_.status, Status::quarantined);
+  ++steps_;
+  report_.time = time();
+}
+
+}  // namespace delassus
