@@ -63,3 +63,10 @@ TEST_CASE("the natural map sees each way to break the law") {
   REQUIRE(coulomb_natural_map<double>({1, 0.5, 0}, {0, 1, 0}, mu, 1.0).norm() > 0.1);     // friction that drives
   REQUIRE(coulomb_natural_map<double>({2, 1, 0}, {0.5, -1, 0}, mu, 1.0).norm() > 0.1);    // glides: u_n = mu |u_t|
 }
+
+TEST_CASE("without friction the cone is a ray, and an open contact meets its law") {
+  REQUIRE(project_on_cone<double>({-1, 0, 0}, 0.0) == Vec3(0, 0, 0));
+  REQUIRE(project_on_cone<double>({2, 0, 0}, 0.0) == Vec3(2, 0, 0));
+  REQUIRE(project_on_cone<double>({2, 3, -1}, 0.0) == Vec3(2, 0, 0));
+  REQUIRE(coulomb_natural_map<double>({0, 0, 0}, {1, 0, 0}, 0.0, 1.0).norm() == 0);
+}

@@ -23,8 +23,8 @@ T length(T a, T b) {
 template <class T>
 Vec<3, T> project_on_cone(const Vec<3, T>& x, T friction) {
   const T tangential = inner::length(x[1], x[2]);
+  if (friction * tangential <= -x[0]) return Vec<3, T>::Zero();  // first: without friction the next line is true here too
   if (tangential <= friction * x[0]) return x;
-  if (friction * tangential <= -x[0]) return Vec<3, T>::Zero();
   const T normal = (x[0] + friction * tangential) / (T(1) + friction * friction);
   const T scale = friction * normal / tangential;
   return {normal, scale * x[1], scale * x[2]};
