@@ -99,6 +99,15 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   const auto& blocks() const {
     return std::get<b>(std::get<a>(blocks_));
   }
+  /// For who changes a copy.
+  template <int a, int b>
+  auto& blocks() {
+    return std::get<b>(std::get<a>(blocks_));
+  }
+  template <int p>
+  auto& diagonal(Index i) {
+    return std::get<p>(diagonal_)[i];
+  }
 
  private:
   template <class Set>
