@@ -33,6 +33,8 @@ struct SymplecticEuler;
 struct ImplicitEuler;
 struct ImplicitMidpoint;
 struct MatrixFreeCompliance;
+struct HandPicked;
+struct Sleeping;
 struct StepReport;
 
 }  // namespace delassus

@@ -3,6 +3,7 @@
 
 #include <delassus/geometry/support.hpp>
 #include <delassus/bodies/world.hpp>
+#include <delassus/rows/alive.hpp>
 
 #include <Eigen/Geometry>
 
@@ -13,7 +14,7 @@ template <class... Sets>
 Eigen::AlignedBox3d bounds(const World<Sets...>& world) {
   Eigen::AlignedBox3d box;
   world.each([&](const auto& set, auto) {
-    for (const Index b : set.active()) {
+    for (const Index b : alive(set)) {
       const Pose pose = set.pose(b);
       if (set.has_collider(b)) {
         const Shape shape = set.shape(b);

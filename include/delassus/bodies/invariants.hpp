@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/particles.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/rows/alive.hpp>
 
 namespace delassus {
 
@@ -10,7 +11,7 @@ namespace delassus {
 template <class T>
 double kinetic_energy(const BasicRigidBodies<T>& set) {
   double sum = 0;
-  for (const Index b : set.active()) {
+  for (const Index b : alive(set)) {
     if (!set.moves(b)) continue;
     const Vec<6> v = set.velocity()[b].template cast<double>();
     const Vec3 rate = set.pose(b).rotation.transpose() * v.tail<3>();
@@ -24,7 +25,7 @@ double kinetic_energy(const BasicRigidBodies<T>& set) {
 template <class T>
 double potential_energy(const BasicRigidBodies<T>& set) {
   double sum = 0;
-  for (const Index b : set.active())
+  for (const Index b : alive(set))
     if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
   return sum;
 }
@@ -33,7 +34,7 @@ double potential_energy(const BasicRigidBodies<T>& set) {
 template <class T>
 Vec3 momentum(const BasicRigidBodies<T>& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : set.active())
+  for (const Index b : alive(set))
     if (set.moves(b)) sum += double(set.mass(b)) * set.velocity()[b].template head<3>().template cast<double>();
   return sum;
 }
@@ -42,7 +43,7 @@ Vec3 momentum(const BasicRigidBodies<T>& set) {
 template <class T>
 Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : set.active()) {
+  for (const Index b : alive(set)) {
     if (!set.moves(b)) continue;
     const Pose pose = set.pose(b);
     const Vec<6> v = set.velocity()[b].template cast<double>();
@@ -56,7 +57,7 @@ Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
 template <class T>
 double kinetic_energy(const BasicParticles<T>& set) {
   double sum = 0;
-  for (const Index b : set.active())
+  for (const Index b : alive(set))
     if (set.moves(b)) sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm());
   return sum;
 }
@@ -65,7 +66,7 @@ double kinetic_energy(const BasicParticles<T>& set) {
 template <class T>
 double potential_energy(const BasicParticles<T>& set) {
   double sum = set.spring_energy();
-  for (const Index b : set.active())
+  for (const Index b : alive(set))
     if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
   return sum;
 }
@@ -73,7 +74,7 @@ double potential_energy(const BasicParticles<T>& set) {
 template <class T>
 Vec3 momentum(const BasicParticles<T>& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : set.active())
+  for (const Index b : alive(set))
     if (set.moves(b)) sum += double(set.mass(b)) * set.velocity()[b].template cast<double>();
   return sum;
 }
@@ -81,7 +82,7 @@ Vec3 momentum(const BasicParticles<T>& set) {
 template <class T>
 Vec3 angular_momentum(const BasicParticles<T>& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : set.active())
+  for (const Index b : alive(set))
     if (set.moves(b))
       sum += set.pose(b).position.cross(double(set.mass(b)) * set.velocity()[b].template cast<double>());
   return sum;

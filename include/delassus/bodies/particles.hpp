@@ -93,7 +93,20 @@ class BasicParticles {
 
   Index blocks() const { return slots_.size(); }
   bool is_alive(Index b) const { return slots_.is_alive(b); }
+  bool is_awake(Index b) const { return slots_.is_awake(b); }
   bool moves(Index b) const { return inverse_mass_[b] > T(0); }
+  const Velocity& load(Index b) const { return load_[b]; }
+  /// Puts a particle to sleep where it is: it is in no list of `active`, and its velocity reads zero.
+  void lull(Index b) {
+    slots_.set_awake(b, false);
+    v_[b].setZero();
+    v_free[b] = v_next[b] = v_[b];
+  }
+  void rouse(Index b) { slots_.set_awake(b, true); }
+  /// Takes a particle's answer to impulses away (A⁻¹ = 0), or gives it back.
+  void hold(Index b, bool is_held) { inverse_mass_[b] = is_held || !(mass_[b] > T(0)) ? T(0) : T(1) / mass_[b]; }
+  /// Springs tie particles together outside of every island: while there are any, none sleeps.
+  bool may_sleep() const { return springs_.is_empty(); }
 
   void factor(SystemScale scale) { springs_.factor(scale, x_, mass_, inverse_mass_, slots_.active()); }
 

@@ -105,7 +105,21 @@ class BasicRigidBodies {
 
   Index blocks() const { return slots_.size(); }
   bool is_alive(Index b) const { return slots_.is_alive(b); }
+  bool is_awake(Index b) const { return slots_.is_awake(b); }
   bool moves(Index b) const { return inverse_mass_[b] > T(0); }
+  const Velocity& load(Index b) const { return load_[b]; }
+  /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
+  void lull(Index b) {
+    slots_.set_awake(b, false);
+    v_[b].setZero();
+    v_free[b] = v_next[b] = v_[b];
+  }
+  void rouse(Index b) { slots_.set_awake(b, true); }
+  /// Takes a body's answer to impulses away (A⁻¹ = 0), or gives it back.
+  void hold(Index b, bool is_held) {
+    if (is_held) inverse_mass_[b] = T(0), inverse_inertia_world_[b].setZero();
+    else set_mass(b);
+  }
   Motion motion(Index b) const { return motion_[b]; }
 
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }

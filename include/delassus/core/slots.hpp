@@ -8,7 +8,7 @@
 
 namespace delassus {
 
-/// Hands out indices. `take` reuses the lowest freed place; `active` lists the live ones in ascending order.
+/// Hands out indices. `take` reuses the lowest freed place; `active` lists the live ones that are awake, ascending.
 class Slots {
  public:
   /// A free place; `size()` has grown when it is a new one.
@@ -34,6 +34,12 @@ class Slots {
   }
 
   Index size() const { return Index(alive_.size()); }
+  /// A place asleep is alive and current, and in no list.
+  void set_awake(Index place, bool is_awake) {
+    alive_[place] = is_awake ? 1 : 2;
+    list();
+  }
+  bool is_awake(Index place) const { return place >= 0 && place < size() && alive_[place] == 1; }
   bool is_alive(Index place) const { return place >= 0 && place < size() && alive_[place] != 0; }
   bool is_current(Index place, std::uint32_t generation) const {
     return is_alive(place) && generation_[place] == generation;
@@ -43,7 +49,7 @@ class Slots {
     if (stale_) {
       active_.clear();
       for (Index i = 0; i < size(); ++i)
-        if (alive_[i]) active_.push_back(i);
+        if (alive_[i] == 1) active_.push_back(i);
       stale_ = false;
     }
     return active_;
@@ -53,7 +59,7 @@ class Slots {
   void list() { stale_ = true; }
 
   std::vector<std::uint32_t> generation_;
-  std::vector<char> alive_;
+  std::vector<char> alive_;  ///< 0 free, 1 awake, 2 asleep
   std::vector<Index> free_;
   mutable std::vector<Index> active_;
   mutable bool stale_ = false;

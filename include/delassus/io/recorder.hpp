@@ -6,6 +6,7 @@
 #include <delassus/io/recording.hpp>
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/stage.hpp>
+#include <delassus/rows/alive.hpp>
 
 #include <string>
 #include <utility>
@@ -42,7 +43,7 @@ class Recorder {
       if constexpr (requires { loop.template part<role::Solver>().tolerance; })
         recording_.steps.tolerance = loop.template part<role::Solver>().tolerance;
     loop.world().each([&](const auto& set, auto) {
-      for (const Index b : set.active()) {
+      for (const Index b : alive(set)) {
         if (set.has_collider(b))
           recording_.bodies.push_back(recorded_body(set.shape(b), is_fixed(set, b)));
         else
@@ -61,7 +62,7 @@ class Recorder {
     RecordedFrame frame;
     frame.time = loop.time();
     loop.world().each([&](const auto& set, auto) {
-      for (const Index b : set.active()) {
+      for (const Index b : alive(set)) {
         const Pose pose = set.pose(b);
         frame.poses.push_back({pose.position, Quat(pose.rotation)});
       }

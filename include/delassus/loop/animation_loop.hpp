@@ -1,6 +1,7 @@
 /// The loop: the policies of a scene, and the stages of a step over them.
 #pragma once
 
+#include <delassus/fwd.hpp>
 #include <delassus/loop/channels.hpp>
 #include <delassus/loop/checks.hpp>
 #include <delassus/loop/defaults.hpp>
@@ -31,6 +32,10 @@ class AnimationLoop {
   using Laws = typename Parts::Laws;
   using Scalar = typename WorldType::Scalar;
   static constexpr bool has_constraints = Laws::pool_count > 0;
+  static constexpr bool may_rest = has_constraints && has_dormant<typename Parts::Activity>;
+  /// A policy of the list, by type.
+  template <class P>
+  static constexpr bool has = (std::is_same_v<P, Policies> || ...);
 
   explicit AnimationLoop(Policies... policies);
 
@@ -78,6 +83,39 @@ class AnimationLoop {
     return work_.materials;
   }
 
+  /// Who takes no part in the steps, where the activity allows it.
+  const auto& dormant() const
+    requires(may_rest)
+  {
+    return work_.activity.dormant();
+  }
+  /// Wakes a body with all that sleeps with it; nothing for one that is awake.
+  template <class Set>
+  void wake(Handle<Set> body)
+    requires(may_rest)
+  {
+    inner::visit_body(world(), body, [&](auto&, Index s) { work_.activity.wake(world(), laws(), s, body.index); });
+  }
+  void wake_all()
+    requires(may_rest)
+  {
+    work_.activity.wake_all(world(), laws());
+  }
+  /// Takes a body out of the steps until it is switched on: for `HandPicked`.
+  template <class Set>
+  void switch_off(Handle<Set> body)
+    requires(has<HandPicked>)
+  {
+    inner::visit_body(world(), body,
+                      [&](auto& set, Index s) { work_.activity.lull(world(), laws(), set, s, body.index); });
+  }
+  template <class Set>
+  void switch_on(Handle<Set> body)
+    requires(has<HandPicked>)
+  {
+    wake(body);
+  }
+
   /// The constraint problem of the last step, whole and apart from the loop: laws, rows, W, islands.
   auto problem() const
     requires(has_constraints)
@@ -103,9 +141,6 @@ class AnimationLoop {
   const auto& part() const {
     return part_of<Role>(*this);
   }
-  /// A policy of the list, by type.
-  template <class P>
-  static constexpr bool has = (std::is_same_v<P, Policies> || ...);
   template <class P>
   P& get()
     requires(has<P>)
@@ -175,8 +210,9 @@ class AnimationLoop {
   static constexpr bool sound = inner::loop_is_sound<Parts, Policies...>();
   using Work = std::conditional_t<
       sound, inner::Workspace<WorldType, Laws, typename Parts::Compliance, typename Parts::Solver,
-                              typename Parts::Integrator, typename Parts::Stabilisation, typename Parts::Scheme>,
-      inner::Workspace<WorldType, Constraints<>, void, void, void, void, void>>;
+                              typename Parts::Integrator, typename Parts::Stabilisation, typename Parts::Scheme,
+                              typename Parts::Activity>,
+      inner::Workspace<WorldType, Constraints<>, void, void, void, void, void, void>>;
   using Channels = typename inner::channels_of_loop<sound, Parts, Policies...>::type;
 
   template <class Role, class Self>

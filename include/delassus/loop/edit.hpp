@@ -10,6 +10,20 @@
 
 namespace delassus::inner {
 
+/// f(set, number of the set) for the set a handle belongs to; refuses one that is stale or of another world.
+template <class World, class Set, class F>
+void visit_body(World& world, Handle<Set> body, F&& f) {
+  bool is_found = false;
+  world.each([&](auto& set, auto s) {
+    if constexpr (std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
+      if (set.contains(body)) {
+        is_found = true;
+        f(set, Index(s));
+      }
+  });
+  DELASSUS_EXPECT(is_found, "the handle of body " + text(body.index) + " is stale or of another world");
+}
+
 /// Takes a body out, with every constraint that holds it.
 template <class World, class Laws, class Set>
 void remove_body(World& world, Laws& laws, Handle<Set> body) {

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/loop/activity.hpp>
 #include <delassus/loop/stages/detect.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/row_system.hpp>
@@ -50,14 +51,25 @@ struct rows_of<World, Constraints<L...>> {
 template <int which>
 struct Nothing {};
 
+template <class Activity, class World, class Laws>
+struct activity_state {
+  using type = Nothing<6>;
+};
+template <class Activity, class World, class Laws>
+  requires has_dormant<Activity>
+struct activity_state<Activity, World, Laws> {
+  using type = typename Activity::template State<World, Laws>;
+};
+
 /// Arrays of a step; `reset` keeps their capacity, so a warm step allocates nothing.
 template <class World, class Laws, class Compliance, class Solver, class Integrator, class Stabilisation,
-          class Scheme>
+          class Scheme, class Activity>
 struct Workspace {
   using Rows = typename rows_of<World, Laws>::type;
   using Operator = typename Compliance::template Operator<Rows>;
   static constexpr bool restitutes = rows_of<World, Laws>::restitutes;
   static constexpr bool at_midpoint = requires { requires Integrator::linearises_at_midpoint; };
+  static constexpr bool has_dormant = delassus::has_dormant<Activity>;
   static constexpr bool predicts = requires { requires Scheme::predicts; };
   static constexpr bool projects_position = requires { requires Stabilisation::projects_position; };
 
@@ -75,13 +87,14 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<at_midpoint, Rows, Nothing<1>> at_start;
   [[no_unique_address]] std::conditional_t<restitutes, Impulses<Rows>, Nothing<2>> bounce;
   [[no_unique_address]] std::conditional_t<restitutes || projects_position, std::array<Impulses<Rows>, 2>, Nothing<3>> aside;
+  [[no_unique_address]] typename activity_state<Activity, World, Laws>::type activity;
   [[no_unique_address]] std::conditional_t<predicts, Impulses<Rows>, Nothing<5>> predicted;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
 };
 
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
-template <class World, class C, class S, class I, class St, class Sc>
-struct Workspace<World, Constraints<>, C, S, I, St, Sc> {
+template <class World, class C, class S, class I, class St, class Sc, class Ac>
+struct Workspace<World, Constraints<>, C, S, I, St, Sc, Ac> {
   explicit Workspace(const auto&) {}
 };
 

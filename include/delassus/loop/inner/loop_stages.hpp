@@ -30,7 +30,10 @@ void AnimationLoop<Policies...>::begin(double h) {
   report_ = {};
   // Before all else: Detect and Linearize ask how fast kinematic bodies go.
   world().each([&](auto& set, auto) { set.begin_step(h); });
-  if constexpr (has_constraints) work_.book.attach(laws());
+  if constexpr (has_constraints) {
+    work_.book.attach(laws());
+    if constexpr (Work::has_dormant) work_.activity.begin(world(), laws(), h);
+  }
   tell<stage::Begin>();
 }
 
@@ -39,8 +42,12 @@ void AnimationLoop<Policies...>::detect() {
   if constexpr (Laws::has_contacts) {
     auto& contacts = work_.contacts;
     contacts.gather(std::as_const(*this).world());
-    const CollisionReport found =
-        part<role::Collision>().detect(std::span<const Collider>(contacts.colliders), h_, contacts.points);
+    const auto detect_all = [&] {
+      return part<role::Collision>().detect(std::span<const Collider>(contacts.colliders), h_, contacts.points);
+    };
+    CollisionReport found;
+    if constexpr (Work::has_dormant) found = detect_awake(world(), laws(), work_.activity, contacts, h_, detect_all);
+    else found = detect_all();
     contacts.record();
     const Index unclaimed = route_contacts(laws(), contacts, work_.materials);
     if (unclaimed > 0) report_.status = worse(report_.status, Status::unclaimed_contact);
@@ -149,6 +156,8 @@ void AnimationLoop<Policies...>::correct() {
     if constexpr (Work::predicts) take_change(work_.rows, work_.predicted);
     delassus::correct(world(), work_.rows, scratch_, work_.islands, work_.is_sick);
     if constexpr (Work::predicts) give_back_total(work_.rows, work_.predicted);
+    if constexpr (Work::has_dormant)
+      work_.activity.watch(part<role::Activity>(), world(), work_.rows, work_.islands, work_.reports, h_);
   } else {
     world().each([](auto& set, auto) { set.v_next = set.v_free; });
   }
@@ -182,6 +191,8 @@ void AnimationLoop<Policies...>::advance() {
   });
   if constexpr (has_constraints)
     if constexpr (Work::projects_position) displace(world(), work_.displacement, h_);
+  if constexpr (has_constraints)
+    if constexpr (Work::has_dormant) work_.activity.settle(part<role::Activity>(), world(), laws(), work_.islands);
   end_advance();
   tell<stage::Advance>();
 }

@@ -59,7 +59,7 @@ void correct(World& world, const Rows& rows, Scratch& scratch, const Islands<poo
   Index first = 0;
   bool any = false;
   world.each([&](auto& set, auto s) {
-    set.v_next = set.v_free;
+    for (const Index b : set.active()) set.v_next[b] = set.v_free[b];
     add_impulses<s>(set, rows, set.v_next, std::get<s>(scratch));
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);

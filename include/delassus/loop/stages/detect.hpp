@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -35,25 +36,28 @@ class ContactBook {
     anchors_.clear();
     materials_.clear();
     world.each([&](const auto& set, auto s) {
-      for (const Index b : set.active()) {
-        if (!set.has_collider(b)) continue;
-        Collider c;
-        c.shape = set.shape(b);
-        c.pose = set.pose(b);
-        const auto& v = set.velocity()[b];
-        c.velocity = v.template head<3>().template cast<double>();
-        if constexpr (std::remove_cvref_t<decltype(v)>::RowsAtCompileTime == 6)
-          c.angular_velocity = v.template tail<3>().template cast<double>();
-        else c.angular_velocity.setZero();
-        c.is_movable = set.moves(b);
-        c.group = set.group(b);
-        c.collides_with = set.collides_with(b);
-        c.key = (std::uint32_t(int(s)) << 28) | std::uint32_t(b);
-        colliders.push_back(c);
-        anchors_.push_back({.set = s, .block = b});
-        materials_.push_back(set.material(b));
-      }
+      for (const Index b : set.active())
+        if (set.has_collider(b)) add(set, s, b, set.moves(b));
     });
+  }
+
+  /// Body b of set s as a collider; one that is not movable meets only those that are.
+  template <class Set>
+  void add(const Set& set, Index s, Index b, bool is_movable) {
+    Collider c;
+    c.shape = set.shape(b);
+    c.pose = set.pose(b);
+    const auto& v = set.velocity()[b];
+    c.velocity = v.template head<3>().template cast<double>();
+    if constexpr (Set::width == 6) c.angular_velocity = v.template tail<3>().template cast<double>();
+    else c.angular_velocity.setZero();
+    c.is_movable = is_movable;
+    c.group = set.group(b);
+    c.collides_with = set.collides_with(b);
+    c.key = (std::uint32_t(s) << 28) | std::uint32_t(b);
+    colliders.push_back(c);
+    anchors_.push_back({.set = s, .block = b});
+    materials_.push_back(set.material(b));
   }
 
   /// Turns points into records.
@@ -121,6 +125,23 @@ class ContactBook {
   std::vector<Index> materials_;
   std::vector<Memory> memory_;
 };
+
+/// Detection while some sleep: the sleepers near are obstacles, and whom an awake body reaches wakes before the step goes on.
+template <class World, class Laws, class State, class Detect>
+CollisionReport detect_awake(World& world, Laws& laws, State& activity, ContactBook& book, double h, const Detect& detect) {
+  CollisionReport found;
+  for (bool again = true; again;) {
+    if (!activity.add_obstacles(world, book)) {
+      book.points.clear();
+      return found;
+    }
+    found = detect();
+    again = activity.wake_touched(world, laws, book, h);
+    if (again) book.gather(std::as_const(world));
+  }
+  activity.drop_points(book);
+  return found;
+}
 
 /// Gives each record to the first contact law that takes its materials; returns how many nobody took.
 template <class Laws>

@@ -1,0 +1,326 @@
+/// Islands at rest sleep, and wake when something touches them.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/loop/dormant.hpp>
+#include <delassus/loop/stages/detect.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace delassus {
+
+template <class World, class Laws>
+class Sleepers;
+
+/// An island falls asleep when for `after` seconds on end each of its bodies was slower than `speed` and `angular_speed`
+/// and was not in free fall, its solve met the tolerance, and no moving kinematic body touched it. Asleep it has no rows, no
+/// pairs and no velocity, and its contacts are not listed; its joints keep their last impulse. It wakes
+///
+///   when an awake body touches it or will within the step, in time for that step;
+///   when the host gives one of its bodies a force, a velocity or another place, or changes the gravity;
+///   when a body it lies on or near, fixed or kinematic, is moved, added or taken out;
+///   when one of its own bodies or joints is taken out, or gets a new joint.
+///
+/// An edit of a law's own numbers or of materials wakes nobody: call `loop.wake_all()`.
+struct Sleeping {
+  using plays = role::Activity;
+  static constexpr bool has_dormant = true;
+  double speed = 5e-3;          ///< m/s
+  double angular_speed = 5e-3;  ///< rad/s
+  double after = 0.5;           ///< s
+
+  template <class World, class Laws>
+  using State = Sleepers<World, Laws>;
+
+  void check() const {
+    DELASSUS_EXPECT(speed >= 0 && std::isfinite(speed), "Sleeping: speed " + inner::text(speed) + " m/s must be finite and >= 0");
+    DELASSUS_EXPECT(angular_speed >= 0 && std::isfinite(angular_speed),
+                    "Sleeping: angular_speed " + inner::text(angular_speed) + " rad/s must be finite and >= 0");
+    DELASSUS_EXPECT(after > 0 && std::isfinite(after), "Sleeping: after " + inner::text(after) + " s must be finite and > 0");
+  }
+};
+
+/// Who sleeps, and since when the others are quiet.
+template <class World, class Laws>
+class Sleepers {
+ public:
+  const Dormant<World, Laws>& dormant() const { return dormant_; }
+
+  void wake_all(World& world, Laws& laws) {
+    dormant_.wake(world, laws, [](Index) { return true; });
+  }
+  void wake(World& world, Laws& laws, Index set, Index block) {
+    const Index group = dormant_.group_of(set, block);
+    if (group >= 0) dormant_.wake(world, laws, [&](Index g) { return g == group; });
+  }
+
+  // --- what the stages call ----------------------------------------------------------------------------------------
+
+  /// Begin: whatever is not as it was when its group fell asleep wakes that group.
+  void begin(World& world, Laws& laws, double h) {
+    called_.assign(std::size_t(called_.size()), 0);
+    called_any_ = false;
+    look_at_gravity(world);
+    look_at_supports(world, h);
+    if (dormant_.bodies().empty()) return;
+    for (const auto& body : dormant_.bodies())
+      world.each([&](const auto& set, auto s) {
+        if (s == body.set && (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body))) call(body.group);
+      });
+    look_at_items(laws);
+    answer(world, laws);
+  }
+
+  /// Detect: sleepers near an awake body are obstacles. False when nobody who can move is awake.
+  bool add_obstacles(const World& world, ContactBook& book) {
+    Aabb near;
+    for (const Collider& c : book.colliders) {
+      if (!c.is_movable || c.shape.kind == ShapeKind::half_space) continue;
+      const Aabb box = tight_box(c.shape, c.pose);
+      const double reach = 0.5 * box.sizes().maxCoeff();
+      near.extend(Aabb(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach)));
+    }
+    if (near.isEmpty()) return false;
+    for (const auto& body : dormant_.bodies())
+      if (!body.box.isEmpty() && body.box.intersects(near))
+        world.each([&](const auto& set, auto s) {
+          if (s == body.set) book.add(set, s, body.block, false);
+        });
+    return true;
+  }
+
+  /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
+  bool wake_touched(World& world, Laws& laws, const ContactBook& book, double h) {
+    const double fall = h * h * strongest_gravity(world);
+    for (const ContactPoint& p : book.points) {
+      const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
+      const Index group = std::max(group_of(a), group_of(b));
+      if (group < 0) continue;
+      const Vec3 va = a.velocity + a.angular_velocity.cross(p.point_a - a.pose.position);
+      const Vec3 vb = b.velocity + b.angular_velocity.cross(p.point_b - b.pose.position);
+      if (p.gap + h * (vb - va).dot(p.normal) <= fall) call(group);
+    }
+    return answer(world, laws);
+  }
+
+  /// Contact points of sleepers that are not reached make no rows.
+  void drop_points(ContactBook& book) const {
+    std::erase_if(book.points, [&](const ContactPoint& p) {
+      return group_of(book.colliders[p.a]) >= 0 || group_of(book.colliders[p.b]) >= 0;
+    });
+  }
+
+  /// Correct: how long each awake body has been quiet, and the least of each island.
+  template <class Rows, int pools>
+  void watch(const Sleeping& limits, World& world, const Rows& rows, const Islands<pools>& islands,
+             std::span<const SolveReport> reports, double h) {
+    island_quiet_.assign(islands.count(), std::numeric_limits<double>::infinity());
+    for (Index k = 0; k < islands.count(); ++k)
+      if (worse(reports[k].status, Status::stalled) != Status::stalled) island_quiet_[k] = 0;
+    Index first = 0;
+    world.each([&](auto& set, auto s) {
+      auto& quiet = quiet_[s];
+      quiet.resize(set.blocks(), 0);
+      const double gravity = gravity_of(set).norm();
+      bool may_sleep = true;
+      if constexpr (requires { set.may_sleep(); }) may_sleep = set.may_sleep();
+      for (const Index b : set.active()) {
+        if (!set.moves(b)) continue;
+        // Nearly all of gravity must be held; without gravity, what acts must need longer than `after` to reach `speed`.
+        const double most = h * (gravity > 0 ? 0.1 * gravity : limits.speed / limits.after);
+        const bool is_quiet = may_sleep && is_slow(set, b, limits) &&
+                              (set.v_next[b] - set.velocity()[b]).template head<3>().template cast<double>().norm() <= most;
+        quiet[b] = is_quiet ? quiet[b] + h : 0;
+        const Index island = islands.island_of(first + b);
+        if (island >= 0) island_quiet_[island] = std::min(island_quiet_[island], quiet[b]);
+      }
+      first += set.blocks();
+    });
+    keep_awake_where_driven(world, rows, islands);
+  }
+
+  /// Advance: islands that were quiet long enough fall asleep, and so do single bodies that nothing pulls.
+  template <int pools>
+  void settle(const Sleeping& limits, World& world, Laws& laws, const Islands<pools>& islands) {
+    std::vector<Index>& group = island_group_;
+    group.assign(islands.count(), -1);
+    Index first = 0;
+    bool any = false;
+    world.each([&](auto& set, auto s) {
+      falling_asleep_.clear();
+      for (const Index b : set.active()) {
+        if (!set.moves(b)) continue;
+        const Index k = islands.island_of(first + b);
+        if ((k >= 0 ? island_quiet_[k] : quiet_[s][b]) >= limits.after) falling_asleep_.push_back(b);
+      }
+      for (const Index b : falling_asleep_) {
+        const Index k = islands.island_of(first + b);
+        Index g = k >= 0 ? group[k] : -1;
+        if (g < 0) g = dormant_.new_group();
+        if (k >= 0) group[k] = g;
+        dormant_.add(set, s, b, g);
+        quiet_[s][b] = 0;
+        any = true;
+      }
+      first += set.blocks();
+    });
+    if (!any) return;
+    for (const Index g : group)
+      if (g >= 0)
+        for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, g); });
+  }
+
+ private:
+  /// A fixed or kinematic body with a shape, as it was when the step began.
+  struct Support {
+    Index set, block;
+    std::uint32_t generation;
+    Pose pose;
+    Aabb box;  ///< empty for a half-space
+  };
+
+  Index group_of(const Collider& c) const {
+    return dormant_.group_of(Index(c.key >> 28), Index(c.key & ((1u << 28) - 1)));
+  }
+
+  void call(Index group) {
+    if (group < 0) return;
+    if (Index(called_.size()) <= group) called_.resize(group + 1, 0);
+    called_[group] = 1;
+    called_any_ = true;
+  }
+  bool answer(World& world, Laws& laws) {
+    if (!called_any_) return false;
+    dormant_.wake(world, laws, [&](Index g) { return g < Index(called_.size()) && called_[g] != 0; });
+    std::fill(called_.begin(), called_.end(), 0);
+    called_any_ = false;
+    return true;
+  }
+
+  template <class Set, class Body>
+  static bool is_stirred(const Set& set, const Body& body) {
+    const Pose now = set.pose(body.block);
+    return !set.velocity()[body.block].isZero(0) || !set.load(body.block).isZero(0) ||
+           now.position != body.pose.position || now.rotation != body.pose.rotation;
+  }
+
+  template <class Set>
+  static Vec3 gravity_of(const Set& set) {
+    if constexpr (requires { set.gravity; }) return set.gravity;
+    else return Vec3::Zero();
+  }
+  static double strongest_gravity(const World& world) {
+    double most = 0;
+    world.each([&](const auto& set, auto) { most = std::max(most, gravity_of(set).norm()); });
+    return most;
+  }
+  void look_at_gravity(const World& world) {
+    world.each([&](const auto& set, auto s) {
+      const Vec3 now = gravity_of(set);
+      if (now != gravity_[s])
+        for (const auto& body : dormant_.bodies())
+          if (body.set == s) call(body.group);
+      gravity_[s] = now;
+    });
+  }
+
+  /// Compares the bodies that do not answer with what they were a step ago, and asks where they will be after this one; both
+  /// lists ascend by set and block.
+  void look_at_supports(const World& world, double h) {
+    now_.clear();
+    world.each([&](const auto& set, auto s) {
+      for (const Index b : set.active())
+        if (!set.moves(b) && set.has_collider(b)) {
+          const Pose pose = set.pose(b);
+          now_.push_back({s, b, set.handle(b).generation, pose, Dormant<World, Laws>::box_of(set, b, pose)});
+          const auto& v = set.velocity()[b];
+          if (v.isZero(0)) continue;
+          Aabb box = now_.back().box;
+          call_near(box.isEmpty() ? box : box.extend(Aabb(box).translate(h * v.template head<3>().template cast<double>())));
+        }
+    });
+    const auto before = [](const Support& x, const Support& y) {
+      return x.set != y.set ? x.set < y.set : x.block != y.block ? x.block < y.block : x.generation < y.generation;
+    };
+    auto then = supports_.begin();
+    for (const Support& s : now_) {
+      for (; then != supports_.end() && before(*then, s); ++then) call_near(then->box);
+      const bool is_same = then != supports_.end() && !before(s, *then);
+      if (is_same && s.pose.position == then->pose.position && s.pose.rotation == then->pose.rotation) {
+        ++then;
+        continue;
+      }
+      call_near(s.box);
+      if (is_same) call_near((then++)->box);
+    }
+    for (; then != supports_.end(); ++then) call_near(then->box);
+    supports_.swap(now_);
+  }
+  void call_near(const Aabb& box) {
+    for (const auto& body : dormant_.bodies())
+      if (box.isEmpty() || body.box.isEmpty() || box.intersects(body.box)) call(body.group);
+  }
+
+  void look_at_items(const Laws& laws) {
+    for (const auto& item : dormant_.items())
+      for_each_index<Laws::pool_count>([&](auto p) {
+        const auto& pool = laws.template pool<p>();
+        if constexpr (requires { pool.slots; })
+          if (item.pool == p && !pool.slots.is_current(item.place, item.generation)) call(item.group);
+      });
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.slots; })
+        for (Index i = 0; i < pool.count(); ++i) {
+          const auto& item = pool.item(i);
+          if constexpr (requires { item.a.owner, item.b.owner; }) {
+            call(dormant_.group_of(item.a.set, item.a.block));
+            call(dormant_.group_of(item.b.set, item.b.block));
+          }
+        }
+    });
+  }
+
+  template <class Set>
+  static bool is_slow(const Set& set, Index b, const Sleeping& limits) {
+    const auto v = set.v_next[b].template cast<double>().eval();
+    bool is_slow = v.template head<3>().norm() <= limits.speed;
+    if constexpr (Set::width == 6) is_slow = is_slow && v.template tail<3>().norm() <= limits.angular_speed;
+    return is_slow;
+  }
+
+  /// An island that a moving kinematic body touches stays awake.
+  template <class Rows, int pools>
+  void keep_awake_where_driven(const World& world, const Rows& rows, const Islands<pools>& islands) {
+    for (Index k = 0; k < islands.count(); ++k)
+      for_each_index<pools>([&](auto p) {
+        const auto& pool = rows.template pool<p>();
+        for (const Index i : islands.items(p, k))
+          world.each([&](const auto& set, auto s) {
+            const auto& blocks = std::get<s>(pool.sets);
+            for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+              if (!set.moves(blocks.block[e]) && !set.velocity()[blocks.block[e]].isZero(0)) island_quiet_[k] = 0;
+          });
+      });
+  }
+
+  Dormant<World, Laws> dormant_;
+  std::array<std::vector<double>, World::set_count> quiet_;  ///< s
+  std::array<Vec3, World::set_count> gravity_{};
+  std::vector<double> island_quiet_;
+  std::vector<Index> island_group_, falling_asleep_;
+  std::vector<Support> supports_, now_;
+  std::vector<char> called_;
+  bool called_any_ = false;
+};
+
+}  // namespace delassus
