@@ -1,5 +1,4 @@
 #include <delassus/delassus.hpp>
-#include <delassus/constraints/joints/virtual_coupling.hpp>
 
 #include "catch.hpp"
 

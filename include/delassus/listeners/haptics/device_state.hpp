@@ -1,0 +1,35 @@
+/// What a haptic device tells and what it is told.
+#pragma once
+
+#include <delassus/math/linear.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <cstdint>
+
+namespace delassus {
+
+/// Pose and velocity of the part of a device that the hand holds, world axes, m and m/s, rad/s. A device that cannot
+/// measure velocity may leave it zero: the damping of the coupling then acts on the tool alone.
+struct DeviceState {
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+
+  bool is_finite() const {
+    const double norm = orientation.coeffs().norm();
+    return delassus::is_finite(position) && delassus::is_finite(velocity) && delassus::is_finite(angular_velocity) &&
+           norm > 0.5 && norm < 2;
+  }
+};
+
+/// What the device shall exert on the hand, N and N·m, world axes, and how it came about.
+struct HapticForce {
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  SolveReport solve{};
+  std::uint64_t sequence = 0;  ///< of the snapshot it was computed from; 0: none yet
+  double snapshot_time = 0;    ///< s, simulated, at the start of the snapshot's step
+};
+
+}  // namespace delassus

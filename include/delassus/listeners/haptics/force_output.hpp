@@ -1,0 +1,41 @@
+/// The last stage before the motors: a low-pass filter and a limit.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace delassus {
+
+/// y ← y + α (x − y), α = 1 − exp(−2π f T), then |y| brought down to the limit, its direction kept.
+///
+/// A filter delays by about 1/(2π f): the stiffness that stays passive falls from 2 b/T to 2 b/(T + 1/(π f)), see
+/// docs/haptics.md. It is off by default. A force that is not finite becomes zero, and the filter starts anew.
+struct ForceOutput {
+  double cutoff = std::numeric_limits<double>::infinity();      ///< f, Hz
+  double period = 1e-3;                                         ///< T of a tick, s
+  double max_force = std::numeric_limits<double>::infinity();   ///< N
+  double max_torque = std::numeric_limits<double>::infinity();  ///< N·m
+
+  void check() const {
+    DELASSUS_EXPECT(cutoff > 0, "ForceOutput: cutoff " + inner::text(cutoff) + " Hz must be > 0");
+    DELASSUS_EXPECT(period > 0 && std::isfinite(period),
+                    "ForceOutput: period " + inner::text(period) + " s must be finite and > 0");
+    DELASSUS_EXPECT(max_force >= 0, "ForceOutput: max_force " + inner::text(max_force) + " N must be >= 0");
+    DELASSUS_EXPECT(max_torque >= 0, "ForceOutput: max_torque " + inner::text(max_torque) + " N·m must be >= 0");
+  }
+
+  double share() const { return std::isinf(cutoff) ? 1 : -std::expm1(-2 * std::numbers::pi * cutoff * period); }
+
+  /// One tick of one vector: `filtered` is the filter's memory.
+  Vec3 operator()(const Vec3& wanted, double limit, Vec3& filtered) const {
+    filtered = is_finite(wanted) ? Vec3(filtered + share() * (wanted - filtered)) : Vec3(Vec3::Zero());
+    const double size = filtered.norm();
+    return size > limit ? Vec3(limit / size * filtered) : filtered;
+  }
+};
+
+}  // namespace delassus
