@@ -28,7 +28,9 @@
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/collisions_first.hpp>
+#include <delassus/loop/hand_picked.hpp>
 #include <delassus/loop/predictive_scheme.hpp>
+#include <delassus/loop/sleeping.hpp>
 #include <delassus/loop/solve_until.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
