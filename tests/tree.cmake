@@ -58,7 +58,9 @@ delassus_tree_test(zero_cost/compiled_to ${Python3_EXECUTABLE} ${zero_cost}/comp
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # the limits are its counts
   delassus_tree_test(zero_cost/step_cost ${Python3_EXECUTABLE} ${zero_cost}/step_cost.py ${PROJECT_SOURCE_DIR}
     --compiler ${CMAKE_CXX_COMPILER} --system ${include_dirs})
-  set_tests_properties(zero_cost/step_cost PROPERTIES SKIP_RETURN_CODE 77)
+  delassus_tree_test(zero_cost/sleep_cost ${Python3_EXECUTABLE} ${zero_cost}/sleep_cost.py ${PROJECT_SOURCE_DIR}
+    --compiler ${CMAKE_CXX_COMPILER} --system ${include_dirs})
+  set_tests_properties(zero_cost/step_cost zero_cost/sleep_cost PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # --- wrong programs and the sentence each must print ----------------------------------------------------------------
