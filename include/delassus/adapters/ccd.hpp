@@ -18,6 +18,7 @@ struct CcdCollision {
   int max_points = 4;           ///< of one pair
   CollisionEngine<CcdKernel, SweepAndPrune> engine{};
 
+  void check() const { CollisionSettings{margin, contact_distance, max_points}.check("CcdCollision"); }
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
     return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
   }

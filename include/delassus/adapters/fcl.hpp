@@ -19,6 +19,7 @@ struct FclCollision {
   int max_points = 4;           ///< of one pair
   CollisionEngine<FclKernel, FclTree> engine{};
 
+  void check() const { CollisionSettings{margin, contact_distance, max_points}.check("FclCollision"); }
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
     return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
   }

@@ -84,6 +84,15 @@ class World {
     return q;
   }
 
+  /// Whether the body behind an anchor is still there; the world always is.
+  bool is_current(const Anchor& a) const {
+    bool is_there = true;
+    visit(a.set, [&](const auto& set, auto) {
+      is_there = set.is_alive(a.block) && set.handle(a.block).generation == a.generation;
+    });
+    return is_there;
+  }
+
   /// Finds the set an anchor speaks of; refuses one of another world or of a removed body.
   void resolve(Anchor& a, const char* what) const {
     if (a.owner == 0) {

@@ -61,7 +61,8 @@ inline bool is_simple(const Shape& s) {
 /// Turns an answer for (B, A) in the frame of B into one for (A, B) in the frame of A.
 inline SignedPair swapped(const SignedPair& r, const Pose& b_in_a) {
   SignedPair s = r;
-  s.normal = -(b_in_a.rotation * r.normal);
+  // The rotation may come from single precision, and is orthogonal to that only.
+  s.normal = -(b_in_a.rotation * r.normal).normalized();
   s.point_a = b_in_a.to_world(r.point_b);
   s.point_b = b_in_a.to_world(r.point_a);
   return s;

@@ -16,6 +16,7 @@ struct NativeCollision {
   int max_points = 4;           ///< of one pair
   CollisionEngine<GjkEpa, SweepAndPrune> engine{};
 
+  void check() const { CollisionSettings{margin, contact_distance, max_points}.check("NativeCollision"); }
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
     return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
   }

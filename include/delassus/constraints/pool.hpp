@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
 #include <delassus/rows/anchor.hpp>
 
@@ -16,6 +17,7 @@ template <class Law>
 struct ConstraintHandle {
   Index index = -1;
   std::uint32_t generation = 0;
+  std::uint32_t owner = 0;  ///< its pool's own number; copies of a loop share it
 };
 
 /// Items in places that never move, the impulse each had last step, and the list of live ones.
@@ -27,7 +29,9 @@ struct Pool {
   Law law{};
   std::vector<Item> items;
   std::vector<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
+  std::vector<char> starts_cold;   ///< that impulse is no start for the next step
   Slots slots;
+  std::uint32_t owner = inner::next_owner();
 
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}
@@ -37,16 +41,18 @@ struct Pool {
     if (place == Index(items.size())) {
       items.push_back(item);
       impulse.push_back(Vec<rows>::Zero());
+      starts_cold.push_back(0);
     }
     items[place] = item;
     impulse[place].setZero();
-    return {place, slots.generation(place)};
+    starts_cold[place] = 0;
+    return {place, slots.generation(place), owner};
   }
 
-  bool contains(ConstraintHandle<Law> h) const { return slots.is_current(h.index, h.generation); }
+  bool contains(ConstraintHandle<Law> h) const { return h.owner == owner && slots.is_current(h.index, h.generation); }
 
   void remove(ConstraintHandle<Law> h) {
-    DELASSUS_EXPECT(contains(h), "remove: this constraint was removed before; its handle is stale");
+    DELASSUS_EXPECT(contains(h), "remove: this constraint was removed before, or is another loop's; its handle is stale");
     slots.give_back(h.index);
   }
 

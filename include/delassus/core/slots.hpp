@@ -8,7 +8,7 @@
 
 namespace delassus {
 
-/// Hands out indices. `take` reuses the lowest freed place; `active` lists the live ones that are awake, ascending.
+/// Hands out indices. `take` reuses the place freed last; `active` lists the live ones that are awake, ascending.
 class Slots {
  public:
   /// A free place; `size()` has grown when it is a new one.

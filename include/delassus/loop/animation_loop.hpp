@@ -51,18 +51,20 @@ class AnimationLoop {
   template <class Law>
   void remove(ConstraintHandle<Law> constraint) {
     laws().template of<Law>().remove(constraint);
+    forget_rows();
   }
-  /// Takes a body out, with every constraint that holds it.
+  /// Takes a body out, with every constraint that holds it. `problem` and `each_constraint` are empty until the next step.
   template <class Set>
   void remove(Handle<Set> body) {
     inner::remove_body(world(), laws(), body);
+    forget_rows();
   }
 
   /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
   template <class Law>
   const auto& impulse(ConstraintHandle<Law> constraint) const {
     const auto& pool = laws().template of<Law>();
-    DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed; its handle is stale");
+    DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed, or is another loop's; its handle is stale");
     return pool.impulse[constraint.index];
   }
   /// The force (N, N·m) of a constraint's rows that the next step starts from, and that `PredictiveScheme` applies.
@@ -171,7 +173,7 @@ class AnimationLoop {
   /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
   template <class F>
   void each_constraint(F&& f) const {
-    if constexpr (has_constraints) inner::each_constraint(work_, h_, f);
+    if constexpr (has_constraints) inner::each_constraint(work_, laws(), h_, f);
   }
   /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
@@ -224,6 +226,14 @@ class AnimationLoop {
   Laws& laws() { return part<role::Constraints>(); }
   const Laws& laws() const { return part<role::Constraints>(); }
   void end_advance();
+  /// The rows of the last step speak of what has been taken out: there are none until the next one.
+  void forget_rows() {
+    if constexpr (has_constraints) {
+      work_.rows.reset();
+      work_.islands = {};
+      work_.reports.clear();
+    }
+  }
   template <class Stage>
   void tell() {
     inner::tell<Stage>(policies_, std::as_const(*this));
@@ -278,6 +288,10 @@ auto AnimationLoop<Policies...>::add(Item item) {
     if constexpr (requires { item.a.owner, item.b.owner; }) {
       world().resolve(item.a, "constraint, first end");
       world().resolve(item.b, "constraint, second end");
+      DELASSUS_EXPECT(item.a.set != item.b.set || item.a.block != item.b.block || item.a.is_world(),
+                      "constraint: both ends are on body " + inner::text(item.a.block) + "; it would hold nothing");
+      DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),
+                      "constraint: both ends are in the world; one must be on a body");
     }
     return laws().template of<Law>().add(item);
   }

@@ -24,6 +24,20 @@ void visit_body(World& world, Handle<Set> body, F&& f) {
   DELASSUS_EXPECT(is_found, "the handle of body " + text(body.index) + " is stale or of another world");
 }
 
+/// Takes out every constraint one of whose bodies is gone: a host may remove bodies through their set.
+template <class World, class Laws>
+void drop_stale(const World& world, Laws& laws) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.slots; })
+      for (Index i = 0; i < pool.count(); ++i) {
+        const auto& item = pool.item(i);
+        if constexpr (requires { item.a.owner, item.b.owner; })
+          if (!world.is_current(item.a) || !world.is_current(item.b)) pool.slots.give_back(pool.slots.active()[i--]);
+      }
+  });
+}
+
 /// Takes a body out, with every constraint that holds it.
 template <class World, class Laws, class Set>
 void remove_body(World& world, Laws& laws, Handle<Set> body) {

@@ -43,11 +43,12 @@ void with_observer(std::tuple<Policies...>& policies, F&& f) {
 }
 
 /// f(pool, item, λ, |F_i|, h) for every constraint, in the order of the sweep.
-template <class Work, class F>
-void each_constraint(const Work& work, double h, F&& f) {
+template <class Work, class Laws, class F>
+void each_constraint(const Work& work, const Laws& laws, double h, F&& f) {
   using Rows = typename Work::Rows;
   using T = typename Rows::Scalar;
   auto book = work.book;
+  book.attach(laws);  // the loop may be a copy
   for_each_index<Rows::pool_count>([&](auto p) {
     const auto& pool = work.rows.template pool<p>();
     constexpr int R = Rows::template rows_of<p>;

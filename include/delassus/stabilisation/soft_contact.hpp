@@ -5,6 +5,7 @@
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace delassus {
 
@@ -21,10 +22,13 @@ struct SoftContact {
   double joint_rate = 0.2;
 
   void check() const {
-    DELASSUS_EXPECT(frequency > 0, "SoftContact: frequency " + inner::text(frequency) + " must be > 0 Hz");
-    DELASSUS_EXPECT(damping_ratio >= 0,
-                    "SoftContact: damping_ratio " + inner::text(damping_ratio) + " must be >= 0");
+    DELASSUS_EXPECT(frequency > 0 && std::isfinite(frequency),
+                    "SoftContact: frequency " + inner::text(frequency) + " must be finite and > 0 Hz");
+    DELASSUS_EXPECT(damping_ratio >= 0 && std::isfinite(damping_ratio),
+                    "SoftContact: damping_ratio " + inner::text(damping_ratio) + " must be finite and >= 0");
     DELASSUS_EXPECT(max_speed > 0, "SoftContact: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
+    DELASSUS_EXPECT(joint_rate >= 0 && joint_rate <= 1,
+                    "SoftContact: joint_rate " + inner::text(joint_rate) + " must be in [0, 1]");
   }
   double omega() const { return 6.283185307179586 * frequency; }
   double equality(double phi, double h) const { return joint_rate * phi / h; }

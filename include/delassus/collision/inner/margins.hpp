@@ -3,10 +3,12 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/half_space.hpp>
+#include <delassus/core/expect.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace delassus {
 
@@ -17,6 +19,14 @@ struct CollisionSettings {
   double margin = -1;
   double contact_distance = 0;
   int max_points = 4;  ///< of one pair, at most 8
+
+  void check(const char* who) const {
+    DELASSUS_EXPECT(std::isfinite(margin), std::string(who) + ": margin " + inner::text(margin) + " m must be finite");
+    DELASSUS_EXPECT(std::isfinite(contact_distance) && contact_distance >= 0,
+                    std::string(who) + ": contact_distance " + inner::text(contact_distance) + " m must be finite and >= 0");
+    DELASSUS_EXPECT(max_points >= 1 && max_points <= 8,
+                    std::string(who) + ": max_points " + inner::text(max_points) + " must be in [1, 8]");
+  }
 };
 
 namespace inner {

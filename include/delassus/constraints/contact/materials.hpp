@@ -48,7 +48,7 @@ class Materials {
     const auto [low, high] = std::minmax(a, b);
     for (const Pair& p : pairs_)
       if (p.a == low && p.b == high) return p.material;
-    if (low <= 0) return {};
+    if (low <= 0 || high > Index(materials_.size())) return {};  // a number that nobody gave out says nothing
     const Material &x = materials_[low - 1], &y = materials_[high - 1];
     return Material{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution)};
   }

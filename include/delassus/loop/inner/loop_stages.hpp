@@ -32,6 +32,7 @@ void AnimationLoop<Policies...>::begin(double h) {
   world().each([&](auto& set, auto) { set.begin_step(h); });
   if constexpr (has_constraints) {
     work_.book.attach(laws());
+    inner::drop_stale(std::as_const(*this).world(), laws());
     if constexpr (Work::has_dormant) work_.activity.begin(world(), laws(), h);
   }
   tell<stage::Begin>();
@@ -146,6 +147,8 @@ void AnimationLoop<Policies...>::solve() {
       report_.siconos_error = std::max(report_.siconos_error, r.measure.siconos);
     }
     keep_impulses(laws(), work_.rows, work_.contacts);
+    forget_lost_islands(laws(), work_.rows, work_.W, work_.contacts, work_.islands, work_.reports);
+    work_.contacts.remember();
   }
   tell<stage::Solve>();
 }
@@ -183,8 +186,9 @@ template <class... Policies>
 void AnimationLoop<Policies...>::advance() {
   if constexpr (has_constraints)
     if constexpr (Work::projects_position)
-      find_displacements(std::as_const(*this).world(), laws(), work_, part<role::Stabilisation>(), part<role::Solver>(),
-                         scratch_, h_);
+      report_.status = worse(report_.status, find_displacements(std::as_const(*this).world(), laws(), work_,
+                                                                part<role::Stabilisation>(), part<role::Solver>(),
+                                                                scratch_, h_));
   world().each([&](auto& set, auto) {
     part<role::Integrator>().advance(set, h_);
     report_.quarantined += set.held();

@@ -19,7 +19,8 @@ namespace delassus {
 struct ContactResult {
   ContactRecord record;
   Vec3 impulse = Vec3::Zero();
-  bool is_sliding = false;  ///< the friction impulse is as large as the cone allows
+  bool starts_cold = false;  ///< the impulse is no start for the next step
+  bool is_sliding = false;   ///< the friction impulse is as large as the cone allows
 };
 
 /// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.
@@ -66,6 +67,7 @@ class ContactBook {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const ContactPoint& p = points[i];
       results[i].impulse.setZero();
+      results[i].starts_cold = false;
       results[i].record = {.a = anchors_[p.a],
                            .b = anchors_[p.b],
                            .point_a = p.point_a,
@@ -110,7 +112,7 @@ class ContactBook {
     memory_.resize(results.size());
     for (std::size_t i = 0; i < results.size(); ++i)
       memory_[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
-                    results[i].impulse};
+                    results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
   }
   void forget() { memory_.clear(); }
 

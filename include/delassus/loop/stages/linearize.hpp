@@ -26,15 +26,19 @@ void linearize(const World& world, const Laws& laws, Rows& rows) {
   });
 }
 
-/// H at the integrator's guess q ⊕ h v/2 of the mid-configuration, φ where the step starts.
+/// H at the integrator's guess q ⊕ h v/2 of the mid-configuration, φ where the step starts. Contacts keep the H of the start:
+/// their points are those of the start, and a point that stays while its body moves would turn the body.
 template <class World, class Laws, class Rows>
 void linearize_at_midpoint(World& world, const Laws& laws, Rows& rows, Rows& scratch, double h) {
   linearize(world, laws, scratch);
   world.each([&](auto& set, auto) { set.shift(h / 2); });
   linearize(world, laws, rows);
   world.each([&](auto& set, auto) { set.restore(); });
-  for_each_index<Laws::pool_count>(
-      [&](auto p) { std::swap(rows.template pool<p>().phi, scratch.template pool<p>().phi); });
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto &middle = rows.template pool<p>(), &start = scratch.template pool<p>();
+    if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) std::swap(middle, start);
+    else std::swap(middle.phi, start.phi);
+  });
 }
 
 /// The largest |φ| among the rows that are equalities, m or rad.
@@ -47,7 +51,7 @@ double worst_equality(const Laws& laws, const Rows& rows) {
     const auto& pool = rows.template pool<p>();
     for (Index i = 0; i < pool.items(); ++i)
       for (int k = 0; k < Law::rows; ++k)
-        if (kinds[k] == RowKind::equality && !(pool.stiffness[i][k] > 0))
+        if (kinds[k] == RowKind::equality && !(pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0))
           worst = std::max(worst, double(std::abs(pool.phi[i][k])));
   });
   return worst;

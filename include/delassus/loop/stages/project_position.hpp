@@ -72,9 +72,9 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
   });
 }
 
-/// w = A⁻¹ Hᵀ μ of the position problem, into `work.displacement`. λ and d of the step are put back.
+/// w = A⁻¹ Hᵀ μ of the position problem, into `work.displacement`; returns how its solve ended, the worst island's. λ and d of the step are put back.
 template <class World, class Laws, class Work, class S, class Solver, class Scratch>
-void find_displacements(const World& world, const Laws& laws, Work& work, const S& stabilisation, const Solver& solver,
+Status find_displacements(const World& world, const Laws& laws, Work& work, const S& stabilisation, const Solver& solver,
                         Scratch& scratch, double h) {
   for (auto& aside : work.aside) aside.resize_like(work.rows);
   for_each_index<Laws::pool_count>([&](auto p) {
@@ -85,8 +85,10 @@ void find_displacements(const World& world, const Laws& laws, Work& work, const 
   work.W.reset(work.rows);
   PositionBook<Laws, typename World::Scalar> book;
   NoObserver nobody;
+  Status worst = Status::converged;
   for (Index k = 0; k < work.islands.count(); ++k)
-    if (!work.is_sick[k]) solve_island(book, work.rows, work.W, work.islands, k, solver, work.solver, h, nobody);
+    if (!work.is_sick[k])
+      worst = worse(worst, solve_island(book, work.rows, work.W, work.islands, k, solver, work.solver, h, nobody).status);
   world.each([&](const auto& set, auto s) {
     auto& to = std::get<s>(work.displacement);
     to.resize(set.blocks());
@@ -97,6 +99,7 @@ void find_displacements(const World& world, const Laws& laws, Work& work, const 
     std::swap(std::get<p>(work.aside[0].pools), work.rows.template pool<p>().lambda);
     std::swap(std::get<p>(work.aside[1].pools), work.rows.template pool<p>().d);
   });
+  return worst;
 }
 
 /// q ← q ⊕ h w.

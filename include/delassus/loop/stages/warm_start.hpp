@@ -2,6 +2,12 @@
 #pragma once
 
 #include <delassus/loop/stages/detect.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <span>
 
 namespace delassus {
 
@@ -15,7 +21,9 @@ void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double step_rat
     auto& lambda = rows.template pool<p>().lambda;
     for (Index i = 0; i < pool.count(); ++i) {
       if constexpr (requires { pool.impulse; }) {
-        lambda[i] = (step_ratio * pool.impulse[pool.slots.active()[i]]).template cast<T>();
+        const Index place = pool.slots.active()[i];
+        if (pool.starts_cold[place]) lambda[i].setZero();
+        else lambda[i] = (step_ratio * pool.impulse[place]).template cast<T>();
       } else {
         const auto& item = pool.item(i);
         const Vec3 impulse = step_ratio * book.remembered(item.record, 0.02);
@@ -37,17 +45,55 @@ void keep_impulses(Laws& laws, const Rows& rows, ContactBook& book) {
     for (Index i = 0; i < pool.count(); ++i) {
       constexpr int R = Rows::template rows_of<p>;
       if constexpr (requires { pool.impulse; }) {
-        pool.impulse[pool.slots.active()[i]] = lambda[i].template cast<double>();
+        const Index place = pool.slots.active()[i];
+        pool.impulse[place] = lambda[i].template cast<double>();
+        pool.starts_cold[place] = !is_finite(lambda[i]);
       } else {
         const auto& item = pool.item(i);
-        book.results[item.result].impulse =
-            item.frame.template topRows<R>().transpose() * lambda[i].template cast<double>();
+        ContactResult& result = book.results[item.result];
+        result.impulse = item.frame.template topRows<R>().transpose() * lambda[i].template cast<double>();
+        result.starts_cold = !is_finite(lambda[i]);
         if constexpr (requires { pool.law.is_sliding(item, lambda[i]); })
-          book.results[item.result].is_sliding = pool.law.is_sliding(item, lambda[i]);
+          result.is_sliding = pool.law.is_sliding(item, lambda[i]);
       }
     }
   });
-  book.remember();
+}
+
+/// Impulses beyond every load are no start for the next step: those of constraints that contradict each other would grow
+/// from step to step without bound. A chain of n constraints between bodies whose compliances span r = max w/min w carries
+///
+///   w_i |λ_i| ≤ n r max |d|,   w = tr(W_ii)/rows,
+///
+/// at most; an island whose solve ended far from its laws and beyond that starts from zero.
+template <class Laws, class Rows, class Operator, int pools>
+void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, ContactBook& book, const Islands<pools>& islands,
+                         std::span<const SolveReport> reports) {
+  constexpr double far = 0.05;  // of the largest velocity of the island
+  for (Index k = 0; k < islands.count(); ++k) {
+    if (reports[k].status < Status::max_iterations || reports[k].measure.residual <= far) continue;
+    double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
+    Index count = 0;
+    for_each_index<pools>([&](auto p) {
+      const auto& pool = rows.template pool<p>();
+      for (const Index i : islands.items(p, k)) {
+        const double w = double(W.template diagonal<p>(i).trace()) / Rows::template rows_of<p>;
+        least = std::min(least, w);
+        most = std::max(most, w);
+        load = std::max(load, double(pool.d[i].norm()));
+        response = std::max(response, w * double(pool.lambda[i].norm()));
+        ++count;
+      }
+    });
+    if (response * least <= count * most * load) continue;
+    for_each_index<pools>([&](auto p) {
+      auto& pool = laws.template pool<p>();
+      for (const Index i : islands.items(p, k)) {
+        if constexpr (requires { pool.impulse; }) pool.starts_cold[pool.slots.active()[i]] = 1;
+        else book.results[pool.item(i).result].starts_cold = true;
+      }
+    });
+  }
 }
 
 }  // namespace delassus

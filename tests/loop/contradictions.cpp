@@ -1,0 +1,145 @@
+#include "scenes.hpp"
+
+#include "catch.hpp"
+
+using namespace scenes;
+
+namespace {
+
+constexpr double h = 0.01;
+
+}  // namespace
+
+// The walls push out at 1 m/s at most, friction and rounding let the box tumble; a body that is fed energy flies.
+TEST_CASE("a box between walls that leave it no room stays slow, and is free when a wall goes") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  set.add_fixed(HalfSpace{Vec3(1, 0, 0)}, {-0.45, 0, 0});
+  const auto wall = set.add_fixed(HalfSpace{Vec3(-1, 0, 0)}, {0.45, 0, 0});
+  const auto box = set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  int lost = 0;
+  for (int n = 0; n < 1000; ++n) {
+    lost += loop.step(h).status == Status::max_iterations;
+    REQUIRE(set.velocity(box).norm() <= 10);
+  }
+  REQUIRE(lost > 500);  // and it says so
+  loop.remove(wall);
+  StepReport r;
+  for (int n = 0; n < 300; ++n) r = loop.step(h);
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(set.velocity(box).norm() <= 0.1);
+}
+
+TEST_CASE("the impulses of joints that contradict each other do not grow from step to step") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  auto& set = rigid_bodies(loop);
+  const auto box = set.add({.position = {0, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  const auto a = loop.add(BallJoint::Item{anchor(set, box), world_anchor({0, 0, 0})});
+  loop.add(BallJoint::Item{anchor(set, box), world_anchor({1, 0, 0})});
+  double early = 0, late = 0;
+  for (int n = 0; n < 2000; ++n) {
+    loop.step(h);
+    (n < 1000 ? early : late) = std::max(n < 1000 ? early : late, loop.impulse(a).norm());
+  }
+  REQUIRE(late <= 1.01 * early);
+}
+
+TEST_CASE("a joint with both ends on one body, or both in the world, is refused") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  auto& set = rigid_bodies(loop);
+  const auto box = set.add({.mass = 1.0, .shape = Box{1, 1, 1}});
+  REQUIRE_THROWS_WITH(loop.add(BallJoint::Item{anchor(set, box), anchor(set, box, {1, 0, 0})}),
+                      Catch::Contains("both ends are on body 0"));
+  REQUIRE_THROWS_WITH(loop.add(BallJoint::Item{world_anchor({0, 0, 0}), world_anchor({0, 0, 1})}),
+                      Catch::Contains("both ends are in the world"));
+}
+
+TEST_CASE("a joint between two bodies that do not answer has no impulse and spoils nothing") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  auto& set = rigid_bodies(loop);
+  const auto a = set.add({.shape = Box{1, 1, 1}, .motion = Motion::kinematic});
+  const auto b = set.add({.position = {1, 0, 0}, .shape = Box{1, 1, 1}, .motion = Motion::kinematic});
+  const auto joint = loop.add(BallJoint::Item{anchor(set, a), anchor(set, b)});
+  const StepReport r = loop.step(h);
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(loop.impulse(joint).norm() == 0);
+}
+
+TEST_CASE("the handle of one loop names nothing in another, and its copies share it") {
+  AnimationLoop one{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  AnimationLoop two{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  const auto add = [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    return loop.add(BallJoint::Item{anchor(set, set.add({.mass = 1.0, .shape = Box{1, 1, 1}})), world_anchor({0, 0, 0})});
+  };
+  const auto joint = add(one);
+  add(two);
+  REQUIRE_THROWS_WITH(two.remove(joint), Catch::Contains("another loop's"));
+  auto copy = one;
+  REQUIRE_NOTHROW(copy.remove(joint));
+}
+
+TEST_CASE("a body removed through its set takes its joints with it before the next step") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  auto& set = rigid_bodies(loop);
+  const auto box = set.add({.mass = 1.0, .shape = Box{1, 1, 1}});
+  loop.add(BallJoint::Item{anchor(set, box), world_anchor({0, 0, 0})});
+  loop.step(h);
+  set.remove(box);
+  const auto next = set.add({.mass = 1.0, .shape = Box{1, 1, 1}});
+  REQUIRE(next.index == box.index);
+  REQUIRE(loop.step(h).rows == 0);
+  REQUIRE(set.velocity(next).z() == -g * h);
+}
+
+TEST_CASE("after something was taken out the last problem is empty, and a copied loop can be asked") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Contact{Coulomb{}}}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  const auto box = set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  const auto joint = loop.add(BallJoint::Item{anchor(set, box, {0, 0, 0.5}), world_anchor({0, 0, 1})});
+  loop.step(h);
+  const auto count = [](const auto& l) {
+    int n = 0;
+    l.each_constraint([&](auto&&...) { ++n; });
+    return n;
+  };
+  auto copy = std::make_unique<decltype(loop)>(loop);
+  REQUIRE(count(*copy) == 5);
+  copy->remove(joint);
+  REQUIRE(count(*copy) == 0);
+  auto problem = copy->problem();
+  REQUIRE(solve(problem, GaussSeidel{}).sweeps == 0);
+  REQUIRE(count(loop) == 5);
+}
+
+TEST_CASE("a material that nobody gave out leaves the law its own parameters") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+  auto& set = rigid_bodies(loop);
+  const Index ice = loop.materials().add({.friction = 0});
+  REQUIRE(ice == 1);
+  set.add({.shape = HalfSpace{}, .motion = Motion::fixed, .material = 77});
+  const auto box = set.add({.position = {0, 0, 0.5}, .velocity = {1, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 1}, .material = 78});
+  for (int n = 0; n < 10; ++n) loop.step(h);
+  REQUIRE(set.velocity(box).x() == Approx(1 - 0.5 * g * 10 * h).epsilon(1e-4));
+}
+
+TEST_CASE("a ball that rolls keeps its speed under the midpoint rule") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ImplicitMidpoint{}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  const auto ball = set.add({.position = {0, 0, 0.5}, .velocity = {2, 0, 0}, .angular_velocity = {0, 4, 0}, .mass = 1.0,
+                             .shape = Sphere{0.5}});
+  for (int n = 0; n < 600; ++n) loop.step(1.0 / 60);
+  REQUIRE(set.velocity(ball).x() == Approx(2).epsilon(1e-6));
+}
+
+TEST_CASE("margins, thicknesses and counts of points that cannot be are refused") {
+  const auto with = [](NativeCollision collision) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, collision};
+  };
+  REQUIRE_THROWS_WITH(with({.margin = INFINITY}), Catch::Contains("NativeCollision: margin inf m must be finite"));
+  REQUIRE_THROWS_WITH(with({.contact_distance = std::nan("")}), Catch::Contains("contact_distance"));
+  REQUIRE_THROWS_WITH(with({.max_points = 9}), Catch::Contains("max_points 9 must be in [1, 8]"));
+}
