@@ -41,7 +41,7 @@ struct BasicHapticChannel {
   using listens = Listens<stage::Solve>;
 
   Solver solver{.tolerance = 1e-4, .max_iterations = 100};  ///< of a tick
-  double budget = 300e-6;                                   ///< s a tick may solve, looked at after each sweep
+  double budget = 80e-6;                                    ///< s a tick may solve, looked at after each sweep
   C clock{};
   ForceOutput output{};
 
@@ -89,7 +89,7 @@ class BasicHapticChannel<Solver, C>::Channel {
     Slot& slot = slots_.back();
     inner::take_snapshot(loop, ++sequence_, slot.snapshot);
     auto& problem = slot.snapshot.problem;
-    slot.tool.take(loop.world(), problem, coupling_);
+    if (!slot.tool.take(loop.world(), problem, coupling_)) return;
     slot.book.prepare(problem.W, problem.rows);
     slot.workspace.reset(problem.rows);
     slots_.publish();

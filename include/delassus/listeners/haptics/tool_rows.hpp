@@ -72,21 +72,25 @@ class ToolRows {
   bool is_there() const { return island_ >= 0; }
   Index island() const { return island_; }
 
-  /// Finds and eliminates the coupling in the copy of a problem that a step has just solved, before the bodies move.
+  /// Finds and eliminates the coupling in the copy of a problem that a step has just solved, before the bodies move. False
+  /// when the coupling is asleep: then nothing moves, and the snapshot before still holds.
   template <class World>
-  void take(const World& world, Problem& problem, ConstraintHandle<VirtualCoupling> coupling) {
+  bool take(const World& world, Problem& problem, ConstraintHandle<VirtualCoupling> coupling) {
     island_ = -1;
     const auto& pool = problem.laws.template pool<p>();
-    if (coupling.index < 0 || !pool.contains(coupling)) return;
+    if (coupling.index < 0 || !pool.contains(coupling)) return true;
     const auto& active = pool.slots.active();
-    item_ = Index(std::lower_bound(active.begin(), active.end(), coupling.index) - active.begin());
+    const auto place = std::lower_bound(active.begin(), active.end(), coupling.index);
+    if (place == active.end() || *place != coupling.index) return false;
+    item_ = Index(place - active.begin());
     for (Index k = 0; k < problem.islands.count() && island_ < 0; ++k) {
       const auto items = problem.islands.items(p, k);
       if (std::binary_search(items.begin(), items.end(), item_)) island_ = k;
     }
-    if (!is_there()) return;
+    if (!is_there()) return true;
     remember_device(world, pool.item(item_), problem.h);
     eliminate(problem);
+    return true;
   }
 
   /// d of every row that feels the coupling, with the device where it is now.
