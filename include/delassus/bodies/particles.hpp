@@ -213,6 +213,12 @@ class BasicParticles {
   std::uint32_t owner() const { return owner_; }
   std::string who(Index b) const { return "particle #" + std::to_string(b); }
 
+  /// What outlives a step; handles of the set that wrote it stay with that set.
+  void memory(auto& archive) {
+    archive(gravity, slots_, springs_, x_, shifted_x_, v_, load_, mass_, inverse_mass_, radius_, material_, group_,
+            collides_with_, v_free, v_next);
+  }
+
  private:
   Index checked(Handle particle) const {
     DELASSUS_EXPECT(particle.owner == owner_, "this particle handle belongs to another world");

@@ -230,6 +230,12 @@ class BasicRigidBodies {
   std::uint32_t owner() const { return owner_; }
   std::string who(Index b) const { return "rigid body #" + std::to_string(b); }
 
+  /// What outlives a step, shapes included; handles of the set that wrote it stay with that set.
+  void memory(auto& archive) {
+    archive(gravity, slots_, has_targets_, x_, q_, R_, inertia_, inverse_inertia_, inverse_inertia_world_, mass_, inverse_mass_,
+            v_, load_, motion_, target_, shape_, hulls_, hull_, material_, group_, collides_with_, v_free, v_next);
+  }
+
  private:
   struct Target {
     Vec3 position = Vec3::Zero();

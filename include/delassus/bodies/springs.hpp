@@ -120,6 +120,11 @@ class Springs {
       for (std::size_t b = 0; b < x.size(); ++b) x[b] = solve_block<1>(Index(b), x[b]);
   }
 
+  void memory(auto& archive) {
+    archive(springs_);
+    analysed_blocks_ = -1;
+  }
+
  private:
   Vec3 span(const Spring& s, const std::vector<Velocity>& x) const {
     const Vec3 end = s.b < 0 ? s.point : Vec3(x[s.b].template cast<double>());

@@ -113,6 +113,8 @@ class World {
     DELASSUS_EXPECT(is_found, std::string(what) + ": the anchor belongs to a body of another world");
   }
 
+  void memory(auto& archive) { archive(sets_); }
+
  private:
   template <class Self, class F, int... s>
   static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {

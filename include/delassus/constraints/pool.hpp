@@ -67,6 +67,8 @@ struct Pool {
       }
   }
 
+  void memory(auto& archive) { archive(items, impulse, starts_cold, slots); }
+
   /// The item behind the i-th rows of this step.
   const Item& item(Index i) const { return items[slots.active()[i]]; }
   Index count() const { return Index(slots.active().size()); }

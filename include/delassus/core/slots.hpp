@@ -55,6 +55,12 @@ class Slots {
     return active_;
   }
 
+  /// What outlives a step.
+  void memory(auto& archive) {
+    archive(generation_, alive_, free_);
+    list();
+  }
+
  private:
   void list() { stale_ = true; }
 

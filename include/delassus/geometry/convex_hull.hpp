@@ -19,6 +19,7 @@ namespace delassus {
 class ConvexHull {
  public:
   /// Pre: at least four finite points that do not lie in one plane (thickness > 1e-6 of the extent).
+  ConvexHull() = default;  ///< nothing yet: a checkpoint fills it
   explicit ConvexHull(std::span<const Vec3> points) {
     const double extent = check_points(points);
     std::vector<inner::HullTriangle> triangles;
@@ -57,6 +58,11 @@ class ConvexHull {
     for (Vec3& v : moved.vertices_) v -= centroid_;
     moved.centroid_.setZero();
     return moved;
+  }
+
+  void memory(auto& archive) {
+    archive(vertices_, normals_, face_start_, face_loop_, around_start_, around_, volume_, inner_radius_, outer_radius_, centroid_,
+            second_moment_);
   }
 
  private:

@@ -180,9 +180,22 @@ class AnimationLoop {
   void each_joint(F&& f) const {
     inner::each_joint(laws(), f);
   }
+  /// f(impulse) for every constraint that is no contact, N·s of the last step.
+  template <class F>
+  void each_impulse(F&& f) const {
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = laws().template pool<p>();
+      if constexpr (requires { pool.slots; })
+        for (const Index place : pool.slots.active()) f(pool.impulse[place]);
+    });
+  }
   double time() const { return start_ + double(steps_) * h_; }
   /// h of the present step, or of the last one, s.
   double step_size() const { return h_; }
+
+  /// Everything that outlives a step: bodies, constraints, materials, warm starts, what collision and activity remember, time.
+  /// The numbers of the policies (tolerances, gains) are not part of it.
+  void memory(auto& archive);
 
   // --- the stages, in the plain order; a host that interleaves its own work calls begin(h), then these ----------------
 
@@ -255,6 +268,28 @@ template <class... Policies>
 AnimationLoop<Policies...>::AnimationLoop(Policies... policies)
     : policies_{std::move(policies)...}, work_{laws()}, channels_{policies_} {
   if constexpr (sound) check_policies();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::memory(auto& archive) {
+  archive(world(), h_, last_h_, start_, steps_);
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws().template pool<p>();
+    if constexpr (requires { pool.slots; }) {
+      archive(pool);
+      if constexpr (std::remove_reference_t<decltype(archive)>::reads) inner::adopt(world(), pool);
+    }
+  });
+  if constexpr (has_constraints) {
+    archive(work_.contacts, work_.materials);
+    if constexpr (Work::has_dormant) archive(work_.activity);
+    if constexpr (Laws::has_contacts) {
+      auto& collision = part<role::Collision>();
+      if constexpr (requires { collision.memory(archive); }) collision.memory(archive);
+      else if constexpr (requires { collision.engine.memory(archive); }) collision.engine.memory(archive);
+    }
+    forget_rows();
+  }
 }
 
 template <class... Policies>

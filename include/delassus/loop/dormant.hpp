@@ -116,6 +116,8 @@ class Dormant {
     return Aabb(box.min() - more, box.max() + more);
   }
 
+  void memory(auto& archive) { archive(bodies_, items_, group_, groups_); }
+
  private:
   std::vector<Body> bodies_;
   std::vector<Item> items_;

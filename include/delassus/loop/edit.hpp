@@ -24,6 +24,15 @@ void visit_body(World& world, Handle<Set> body, F&& f) {
   DELASSUS_EXPECT(is_found, "the handle of body " + text(body.index) + " is stale or of another world");
 }
 
+/// Items that were read speak of the sets of this world.
+template <class World, class Pool>
+void adopt(const World& world, Pool& pool) {
+  for (auto& item : pool.items)
+    if constexpr (requires { item.a.owner, item.b.owner; })
+      for (auto* anchor : {&item.a, &item.b})
+        world.visit(anchor->set, [&](const auto& set, auto) { anchor->owner = set.owner(); });
+}
+
 /// Takes out every constraint one of whose bodies is gone: a host may remove bodies through their set.
 template <class World, class Laws>
 void drop_stale(const World& world, Laws& laws) {

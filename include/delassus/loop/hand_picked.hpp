@@ -91,6 +91,8 @@ class SwitchedOff {
   template <int pools>
   void settle(const HandPicked&, World&, Laws&, const Islands<pools>&) const {}
 
+  void memory(auto& archive) { archive(dormant_, velocity_); }
+
  private:
   Dormant<World, Laws> dormant_;
   std::vector<Vec<6>> velocity_;  ///< by group: m/s, rad/s

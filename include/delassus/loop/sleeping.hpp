@@ -179,6 +179,8 @@ class Sleepers {
         for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, g); });
   }
 
+  void memory(auto& archive) { archive(dormant_, quiet_, gravity_, supports_); }
+
  private:
   /// A fixed or kinematic body with a shape, as it was when the step began.
   struct Support {

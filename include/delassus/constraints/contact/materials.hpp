@@ -56,6 +56,8 @@ class Materials {
   bool empty() const { return materials_.empty() && pairs_.empty(); }
   bool contains(Index material) const { return material >= 0 && material <= Index(materials_.size()); }
 
+  void memory(auto& archive) { archive(materials_, pairs_); }
+
  private:
   struct Pair {
     Index a, b;

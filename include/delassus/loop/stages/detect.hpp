@@ -114,7 +114,7 @@ class ContactBook {
       memory_[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
                     results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
   }
-  void forget() { memory_.clear(); }
+  void memory(auto& archive) { archive(memory_); }
 
  private:
   struct Memory {

@@ -1,0 +1,99 @@
+/// What outlives a step, as bytes: each owner names it in `memory(archive)`.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace delassus {
+namespace inner {
+
+/// Calls one(x) for the parts of x that can be copied byte by byte, and size(container) before the elements of a container.
+/// An owner with memory(archive) is asked; what holds a pointer and has no memory(archive) must not be named.
+template <class Archive, class X>
+void walk(Archive& archive, X& x) {
+  if constexpr (requires { x.memory(archive); }) x.memory(archive);
+  else archive.bytes(&x, sizeof x);
+}
+template <class Archive, class E>
+void walk(Archive& archive, std::vector<E>& list) {
+  archive.size(list);
+  if constexpr (requires(E& e) { e.memory(archive); })
+    for (E& e : list) walk(archive, e);
+  else archive.bytes(list.data(), list.size() * sizeof(E));
+}
+template <class Archive, class E>
+void walk(Archive& archive, std::deque<E>& list) {
+  archive.size(list);
+  for (E& e : list) walk(archive, e);
+}
+template <class Archive, class E, std::size_t n>
+void walk(Archive& archive, std::array<E, n>& list) {
+  for (E& e : list) walk(archive, e);
+}
+template <class Archive, class... E>
+void walk(Archive& archive, std::tuple<E...>& parts) {
+  std::apply([&](E&... part) { (walk(archive, part), ...); }, parts);
+}
+
+}  // namespace inner
+
+/// archive(a, b, …) appends their bytes.
+class ArchiveWriter {
+ public:
+  static constexpr bool reads = false;
+  std::vector<char> data;
+
+  template <class... X>
+  void operator()(X&... x) {
+    (inner::walk(*this, x), ...);
+  }
+  void bytes(const void* from, std::size_t count) {
+    const char* first = static_cast<const char*>(from);
+    data.insert(data.end(), first, first + count);
+  }
+  template <class List>
+  void size(const List& list) {
+    const std::uint64_t count = list.size();
+    bytes(&count, sizeof count);
+  }
+};
+
+/// archive(a, b, …) gives them the bytes that a writer took, in the same order. Throws InvalidArgument where they end early.
+class ArchiveReader {
+ public:
+  static constexpr bool reads = true;
+  explicit ArchiveReader(std::span<const char> data) : left_(data) {}
+
+  template <class... X>
+  void operator()(X&... x) {
+    (inner::walk(*this, x), ...);
+  }
+  void bytes(void* to, std::size_t count) {
+    DELASSUS_EXPECT(count <= left_.size(), "checkpoint: it ends in the middle; it was not written whole");
+    if (count > 0) std::memcpy(to, left_.data(), count);
+    left_ = left_.subspan(count);
+  }
+  template <class List>
+  void size(List& list) {
+    std::uint64_t count = 0;
+    bytes(&count, sizeof count);
+    // Every element takes a byte at least: a count beyond that is damage, and must not become an allocation.
+    DELASSUS_EXPECT(count <= left_.size(), "checkpoint: it ends in the middle; it was not written whole");
+    list.resize(std::size_t(count));
+  }
+  bool is_at_end() const { return left_.empty(); }
+
+ private:
+  std::span<const char> left_;
+};
+
+}  // namespace delassus

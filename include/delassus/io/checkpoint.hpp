@@ -1,0 +1,128 @@
+/// A loop as a file: restored, it goes on to the bit as if it had never stopped.
+#pragma once
+
+#include <delassus/core/archive.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/rows/alive.hpp>
+#include <delassus/rows/row_system.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+namespace inner {
+
+/// FNV-1a. Source: [FowlerNollVo].
+struct Fingerprint {
+  std::uint64_t value = 14695981039346656037ull;
+  void bytes(const void* from, std::size_t count) {
+    const auto* p = static_cast<const unsigned char*>(from);
+    for (std::size_t i = 0; i < count; ++i) value = (value ^ p[i]) * 1099511628211ull;
+  }
+};
+
+/// Scalar, widths of the sets, rows of the pools: loops that differ in it do not understand each other.
+template <class Loop>
+std::string shape_of(const Loop& loop) {
+  std::string text = "scalar " + std::to_string(sizeof(typename Loop::Scalar)) + ", sets";
+  loop.world().each([&](const auto& set, auto) { text += ' ' + std::to_string(std::remove_cvref_t<decltype(set)>::width); });
+  text += ", pools";
+  using Laws = typename Loop::Laws;
+  for_each_index<Laws::pool_count>([&](auto p) {
+    using Pool = std::remove_cvref_t<decltype(std::declval<Laws&>().template pool<p>())>;
+    text += ' ' + std::to_string(Pool::rows) + ':' + std::to_string(sizeof(typename Pool::Item));
+  });
+  return text;
+}
+
+}  // namespace inner
+
+/// The state of a loop as bytes, for `restore`: everything `AnimationLoop::memory` names. For this machine and this version.
+template <class Loop>
+std::vector<char> checkpoint(Loop& loop) {
+  ArchiveWriter archive;
+  loop.memory(archive);
+  const std::string header = "delassus checkpoint 1, " + inner::shape_of(loop) + '\n';
+  inner::Fingerprint sum;
+  sum.bytes(archive.data.data(), archive.data.size());
+  std::vector<char> all(header.begin(), header.end());
+  const auto* check = reinterpret_cast<const char*>(&sum.value);
+  all.insert(all.end(), check, check + sizeof sum.value);
+  all.insert(all.end(), archive.data.begin(), archive.data.end());
+  return all;
+}
+
+/// Gives a loop of the same type the state that `checkpoint` took, whatever it holds now. Throws InvalidArgument when the bytes
+/// are of another loop or damaged; the loop is then as it was.
+///
+/// Handles belong to the set that gave them out: in the restored loop `set.handle(block)` gives its own.
+template <class Loop>
+void restore(Loop& loop, std::span<const char> bytes) {
+  const std::string header = "delassus checkpoint 1, " + inner::shape_of(loop) + '\n';
+  const std::size_t most = std::min(bytes.size(), header.size());
+  DELASSUS_EXPECT(std::string(bytes.data(), most) == header,
+                  "checkpoint: it is of another version or another loop; this one is '" + inner::shape_of(loop) + "'");
+  bytes = bytes.subspan(header.size());
+  inner::Fingerprint sum, said;
+  DELASSUS_EXPECT(bytes.size() >= sizeof sum.value, "checkpoint: it ends in the middle; it was not written whole");
+  std::memcpy(&said.value, bytes.data(), sizeof said.value);
+  bytes = bytes.subspan(sizeof sum.value);
+  sum.bytes(bytes.data(), bytes.size());
+  DELASSUS_EXPECT(sum.value == said.value, "checkpoint: its bytes are not those that were written");
+  Loop next = loop;
+  ArchiveReader archive(bytes);
+  next.memory(archive);
+  DELASSUS_EXPECT(archive.is_at_end(), "checkpoint: it is longer than this loop can read");
+  loop = std::move(next);
+}
+
+/// The same in a file, which is there whole or not at all. Throws InvalidArgument when it cannot be written.
+template <class Loop>
+void save_checkpoint(Loop& loop, const std::string& path) {
+  const std::vector<char> bytes = checkpoint(loop);
+  const std::string part = path + ".part";
+  bool is_written = false;
+  if (std::FILE* file = std::fopen(part.c_str(), "wb")) {
+    is_written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    is_written = std::fclose(file) == 0 && is_written;
+  }
+  is_written = is_written && std::rename(part.c_str(), path.c_str()) == 0;
+  if (!is_written) std::remove(part.c_str());
+  DELASSUS_EXPECT(is_written, "checkpoint: cannot write '" + path + "'; is its folder there, and is there room?");
+}
+
+/// Restores from a file of `save_checkpoint`.
+template <class Loop>
+void load_checkpoint(Loop& loop, const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  DELASSUS_EXPECT(file != nullptr, "checkpoint: cannot read '" + path + "'");
+  std::vector<char> bytes;
+  char block[65536];
+  for (std::size_t n; (n = std::fread(block, 1, sizeof block, file.get())) > 0;) bytes.insert(bytes.end(), block, block + n);
+  restore(loop, bytes);
+}
+
+/// A number for the bits of all velocities and places and of the joints' impulses: equal states, equal numbers.
+template <class Loop>
+std::uint64_t state_hash(const Loop& loop) {
+  inner::Fingerprint print;
+  loop.world().each([&](const auto& set, auto) {
+    for (const Index b : alive(set)) {
+      const auto pose = set.pose(b);
+      const auto& v = set.velocity()[b];
+      print.bytes(pose.position.data(), sizeof(double) * 3);
+      print.bytes(pose.rotation.data(), sizeof(double) * 9);
+      print.bytes(v.data(), sizeof(v[0]) * std::size_t(v.size()));
+    }
+  });
+  loop.each_impulse([&](const auto& impulse) { print.bytes(impulse.data(), sizeof(double) * std::size_t(impulse.size())); });
+  return print.value;
+}
+
+}  // namespace delassus

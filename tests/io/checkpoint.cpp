@@ -1,0 +1,181 @@
+#include "scenes.hpp"
+
+#include <delassus/io/checkpoint.hpp>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "catch.hpp"
+
+using namespace scenes;
+
+namespace {
+
+/// At three random steps the state goes into a loop that is fresh and empty; both then run for a thousand steps.
+template <class Fresh, class Fill>
+void require_same_bits(double h, const Fresh& fresh, const Fill& fill) {
+  auto loop = fresh();
+  fill(loop);
+  std::minstd_rand random(3);
+  for (int k = 0; k < 3; ++k) {
+    for (int n = std::uniform_int_distribution<int>(1, 200)(random); n > 0; --n) loop.step(h);
+    const auto bytes = checkpoint(loop);
+    auto restored = fresh();
+    restore(restored, bytes);
+    REQUIRE(restored.time() == loop.time());
+    auto original = loop;
+    for (int n = 0; n < 1000; ++n) {
+      const StepReport a = original.step(h), b = restored.step(h);
+      REQUIRE(a.sweeps == b.sweeps);
+      REQUIRE(state_hash(original) == state_hash(restored));
+    }
+  }
+}
+
+struct Rope {
+  static constexpr int rows = 1;
+  static constexpr std::array kinds{RowKind::upper};
+  struct Item { Anchor a, b; double length; };
+  void linearize(const Item& item, const auto& world, auto row) const {
+    const Vec3 xa = world.point(item.a), xb = world.point(item.b), e = (xa - xb).normalized();
+    row.end(item.a, xa).along(0, e);
+    row.end(item.b, xb).along(0, -e);
+    row.phi(0, (xa - xb).norm() - item.length);
+  }
+  void project(const Item&, Local<1>& c) const { c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0)); }
+};
+
+auto stack_loop() {
+  return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}},
+                       AcceleratedGaussSeidel{.tolerance = 1e-6}};
+}
+
+}  // namespace
+
+TEST_CASE("restored, a falling and tumbling box goes on bit for bit") {
+  require_same_bits(1e-3, [] { return AnimationLoop{World{RigidBodies{}}}; }, [](auto& loop) {
+    rigid_bodies(loop).add({.position = {0, 0, 5}, .angular_velocity = {1, 2, 3}, .mass = 2.0, .shape = Box{1, 2, 3}});
+  });
+}
+
+TEST_CASE("restored, a stack of boxes and hulls goes on bit for bit, contacts, ids and warm starts") {
+  require_same_bits(5e-3, stack_loop, [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    set.add_fixed(HalfSpace{});
+    for (int i = 0; i < 6; ++i) {
+      const ConvexHull cube = cube_of_points();
+      set.add({.position = {0.01 * i, 0, 0.501 + 1.001 * i}, .mass = 1.0, .shape = i % 2 ? Shape(Box{1, 1, 1}) : Shape(cube)});
+    }
+    set.add({.position = {0.3, 0, 9}, .angular_velocity = {3, 1, 0}, .mass = 2.0, .shape = Capsule{0.3, 0.8}});
+  });
+}
+
+TEST_CASE("restored, a chain on ball joints goes on bit for bit") {
+  require_same_bits(2e-3, [] {
+    return AnimationLoop{World{RigidBodies{}}, Constraints{BallJoint{}}, AcceleratedGaussSeidel{.tolerance = 1e-8}};
+  }, [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    Anchor end = world_anchor({0, 0, 3});
+    for (int k = 0; k < 8; ++k) {
+      const auto link = set.add({.position = {0.2 * k + 0.1, 0, 3}, .mass = 0.1, .shape = Box{0.2, 0.02, 0.02}});
+      loop.add(BallJoint::Item{end, anchor(set, link, {-0.1, 0, 0})});
+      end = anchor(set, link, {0.1, 0, 0});
+    }
+  });
+}
+
+TEST_CASE("restored, a slope with materials and a bouncing ball goes on bit for bit") {
+  require_same_bits(5e-3, [] {
+    return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.3}, 0.8}}}, PredictiveScheme{}};
+  }, [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    const Index ice = loop.materials().add({.friction = 0.05});
+    set.add({.orientation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitY())), .shape = HalfSpace{}, .motion = Motion::fixed, .material = ice});
+    set.add({.position = {0, 0, 0.6}, .mass = 1.0, .shape = Box{1, 1, 1}, .material = ice});
+    set.add({.position = {0, 3, 4}, .velocity = {1, 0, 0}, .mass = 1.0, .shape = Sphere{0.4}});
+  });
+}
+
+TEST_CASE("restored, a law of one's own, springs and two sets go on bit for bit") {
+  require_same_bits(5e-3, [] {
+    return AnimationLoop{World{RigidBodies{}, Particles{}}, Constraints{Rope{}, DistanceJoint{}}, ImplicitEuler{}};
+  }, [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    auto& dust = loop.world().template set<1>();
+    const auto weight = set.add({.position = {1, 0, 2}, .mass = 5.0, .shape = Sphere{0.1}});
+    loop.add(Rope::Item{world_anchor({0, 0, 2}), anchor(set, weight), 1.0});
+    const auto p = dust.add({.position = {1, 0, 1}, .mass = 0.2}), q = dust.add({.position = {1, 0, 0.5}, .mass = 0.1});
+    dust.add_spring(p, q, 40, 0.3);
+    loop.add(DistanceJoint::Item{anchor(set, weight), anchor(dust, p), 1.0});
+  });
+}
+
+TEST_CASE("restored, sleepers sleep on, and wake where they would have") {
+  require_same_bits(1.0 / 60, [] {
+    return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}, Sleeping{}};
+  }, [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    add_stack(set, 3, Box{1, 1, 1});
+    const auto bob = set.add({.position = {3, 0, 2.5}, .mass = 1.0, .shape = Sphere{0.4}});
+    loop.add(BallJoint::Item{anchor(set, bob), world_anchor({0, 0, 5})});
+  });
+}
+
+TEST_CASE("removed bodies leave their gaps in a checkpoint, and a new body takes the same place in both") {
+  auto loop = stack_loop();
+  auto& set = rigid_bodies(loop);
+  const auto handles = add_stack(set, 4, Box{1, 1, 1});
+  for (int n = 0; n < 50; ++n) loop.step(5e-3);
+  loop.remove(handles[1]);
+  for (int n = 0; n < 20; ++n) loop.step(5e-3);
+  auto restored = stack_loop();
+  restore(restored, checkpoint(loop));
+  for (auto* l : {&loop, &restored}) {
+    const auto added = rigid_bodies(*l).add({.position = {0, 0, 6}, .mass = 1.0, .shape = Box{1, 1, 1}});
+    REQUIRE(added.index == handles[1].index);
+    for (int n = 0; n < 500; ++n) l->step(5e-3);
+  }
+  REQUIRE(state_hash(loop) == state_hash(restored));
+}
+
+TEST_CASE("a checkpoint of another loop, cut short, or damaged is refused and changes nothing") {
+  auto loop = stack_loop();
+  add_stack(rigid_bodies(loop), 3, Box{1, 1, 1});
+  for (int n = 0; n < 20; ++n) loop.step(5e-3);
+  const auto bytes = checkpoint(loop);
+  loop.step(5e-3);
+  const auto before = state_hash(loop);
+  auto damaged = bytes;
+  damaged[bytes.size() / 2] ^= 1;
+  REQUIRE_THROWS_WITH(restore(loop, damaged), Catch::Contains("not those that were written"));
+  for (const std::size_t n : {std::size_t(0), std::size_t(10), bytes.size() / 2, bytes.size() - 1})
+    REQUIRE_THROWS_AS(restore(loop, std::span(bytes).first(n)), InvalidArgument);
+  AnimationLoop other{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  REQUIRE_THROWS_WITH(restore(other, bytes), Catch::Contains("another version or another loop"));
+  REQUIRE(state_hash(loop) == before);
+}
+
+TEST_CASE("a checkpoint file is written whole, and a path that cannot be is named") {
+  const auto path = (std::filesystem::temp_directory_path() / "delassus_checkpoint_test").string();
+  auto loop = stack_loop();
+  add_stack(rigid_bodies(loop), 3, Box{1, 1, 1});
+  for (int n = 0; n < 20; ++n) loop.step(5e-3);
+  save_checkpoint(loop, path);
+  auto restored = stack_loop();
+  load_checkpoint(restored, path);
+  REQUIRE(state_hash(restored) == state_hash(loop));
+  REQUIRE(!std::filesystem::exists(path + ".part"));
+  std::filesystem::remove(path);
+  REQUIRE_THROWS_WITH(save_checkpoint(loop, "/no/such/folder/x"), Catch::Contains("cannot write '/no/such/folder/x'"));
+  REQUIRE_THROWS_WITH(load_checkpoint(loop, "/no/such/folder/x"), Catch::Contains("cannot read '/no/such/folder/x'"));
+}
+
+TEST_CASE("equal states have equal hashes, one bit makes another") {
+  AnimationLoop loop{World{RigidBodies{}}};
+  auto& set = rigid_bodies(loop);
+  const auto box = set.add({.position = {0, 0, 5}, .mass = 2.0, .shape = Box{1, 2, 3}});
+  const auto before = state_hash(loop);
+  REQUIRE(state_hash(loop) == before);
+  set.place(box, {0, 0, std::nextafter(5.0, 6.0)});
+  REQUIRE(state_hash(loop) != before);
+}
