@@ -6,6 +6,7 @@
 #include <delassus/rows/alive.hpp>
 #include <delassus/rows/row_system.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
