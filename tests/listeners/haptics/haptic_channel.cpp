@@ -1,77 +1,11 @@
-#include <delassus/delassus.hpp>
+#include "tool_scene.hpp"
 
 #include "catch.hpp"
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
-using namespace delassus;
-
-namespace {
-
-constexpr double h = 0.02;
-
-/// A tool led by a device, above the ground, with a ball in its way. Round bodies touch in single points, so that the impulses are unique.
-template <class Set>
-struct Scene {
-  static auto make(BasicHapticChannel<AcceleratedGaussSeidel, ScriptedClock> channel) {
-    return AnimationLoop{World{Set{}}, Constraints{Contact{Coulomb{.friction = 0.4}}, VirtualCoupling{}},
-                         NativeCollision{.margin = 0.05},
-                         AcceleratedGaussSeidel{.tolerance = std::is_same_v<Set, RigidBodies> ? 1e-12 : 1e-6,
-                                                .max_iterations = 100000},
-                         channel};
-  }
-  static constexpr double k = 800, c = 2, kt = 2, ct = 0.05, mass = 0.05;
-  double time = 0;
-  BasicHapticChannel<AcceleratedGaussSeidel, ScriptedClock> channel{
-      .solver{.tolerance = 1e-12, .max_iterations = 10000}, .budget = 1, .clock{&time, 0}};
-  decltype(make(std::declval<BasicHapticChannel<AcceleratedGaussSeidel, ScriptedClock>>())) loop;
-  typename Set::Handle tool{}, device{};
-  ConstraintHandle<VirtualCoupling> coupling{};
-
-  explicit Scene(const Vec3& place, double tick = 0, double budget = 1)
-      : loop([&] {
-          channel.clock.tick = tick;
-          channel.budget = budget;
-          return make(channel);
-        }()) {
-    auto& set = bodies<Set>(loop.world());
-    set.add_fixed(HalfSpace{});
-    tool = set.add({.position = place, .mass = mass, .shape = Sphere{0.01}});
-    device = set.add({.position = place, .motion = Motion::kinematic});
-    set.add({.position = {0.05, 0, 0.03}, .mass = 0.2, .shape = Sphere{0.03}});
-    coupling = loop.add(VirtualCoupling::Item{anchor(set, tool), anchor(set, device), k, c, kt, ct});
-    haptics().connect(coupling);
-  }
-  auto& set() { return bodies<Set>(loop.world()); }
-  auto& haptics() { return loop.template channel<BasicHapticChannel<AcceleratedGaussSeidel, ScriptedClock>>(); }
-
-  Vec3 half_stretch = Vec3::Zero();
-  void step(const Vec3& x, const Quat& q = Quat::Identity()) {
-    half_stretch = 0.5 * (set().position(tool) - set().position(device));
-    set().move_to(device, x, q);
-    loop.step(h);
-  }
-  /// What the device is told by the loop's own solve; the rows act half a stretch away from it.
-  Vec<6> force() {
-    Vec<6> f = -loop.impulse(coupling) / h;
-    f.template tail<3>() += half_stretch.cross(f.template head<3>());
-    return f;
-  }
-};
-
-/// A path that comes down on the ground, leans on the ball and turns.
-Vec3 path(int n) { return {0.0006 * n, 0.0002 * n, 0.03 - 0.0008 * n}; }
-Quat turn(int n) { return exponential<double>(Vec3(0.002 * n, -0.001 * n, 0.003 * n)); }
-
-/// What the loop takes for the state of the device when it goes from pose n to a pose m ahead in one step.
-DeviceState arrival(int n, int m) {
-  const Quat from = turn(n), to = turn(m);
-  return {path(m), to, (path(m) - path(n)) / h, logarithm<double>(to * from.conjugate()) / h};
-}
-
-}  // namespace
+using namespace tool_scene;
 
 TEST_CASE("a tick with the device where the step took it gives the force of the step") {
   Scene<RigidBodies> s(path(0));
@@ -132,20 +66,6 @@ TEST_CASE("in free space the device feels the tool's inertia over one step and n
   CHECK(std::abs(f.force.y()) < 1e-12);
 }
 
-TEST_CASE("a loop in single precision feeds a device") {
-  Scene<RigidBodiesF> s(path(0));
-  Scene<RigidBodies> exact(path(0));
-  for (int n = 0; n < 12; ++n) {
-    s.step(path(n + 1), turn(n + 1));
-    exact.step(path(n + 1), turn(n + 1));
-  }
-  const HapticForce f = s.haptics().tick(arrival(11, 13)), g = exact.haptics().tick(arrival(11, 13));
-  // Positions of 0.05 m are kept to 3e-9 m, φ to as much; over 12 steps the force, k φ with k = 800 N/m and 1/(h k + c) = 18
-  // of a velocity's rounding of 1e-7, is good to a few mN.
-  CHECK((f.force - g.force).norm() < 5e-3);
-  CHECK(g.force.norm() > 0.1);
-}
-
 TEST_CASE("without a snapshot, a coupling or a finite state there is no force") {
   Scene<RigidBodies> s(path(0));
   CHECK(s.haptics().tick({}).force == Vec3::Zero());
@@ -198,22 +118,4 @@ TEST_CASE("a tick that runs out of time returns what it has, and the next one go
 
 TEST_CASE("bad parameters of a haptic channel are refused with their names") {
   REQUIRE_THROWS_WITH((Scene<RigidBodies>(path(0), 0, -1)), "delassus: HapticChannel: budget -1 s must be >= 0");
-}
-
-TEST_CASE("a tool that is switched off keeps its last snapshot, and the force with it") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{VirtualCoupling{}}, HandPicked{}, HapticChannel{}};
-  auto& set = bodies<RigidBodies>(loop.world());
-  const auto tool = set.add({.mass = 0.05, .shape = Sphere{0.01}});
-  const auto device = set.add({.motion = Motion::kinematic});
-  auto& haptics = loop.channel<HapticChannel>();
-  haptics.connect(loop.add(VirtualCoupling::Item{anchor(set, tool), anchor(set, device)}));
-  loop.step(h);
-  const Vec3 force = haptics.tick({.position = {0.01, 0, 0}}).force;
-  REQUIRE(force.x() < -0.1);
-  loop.switch_off(tool);
-  for (int n = 0; n < 3; ++n) loop.step(h);
-  REQUIRE(haptics.tick({.position = {0.01, 0, 0}}).force == force);
-  loop.switch_on(tool);
-  loop.step(h);
-  REQUIRE(haptics.tick({.position = {0.01, 0, 0}}).sequence > 1);
 }
