@@ -122,6 +122,26 @@ TEST_CASE("the criterion LastChange stops on the displacement of the last sweep"
   REQUIRE(change > 0);
 }
 
+TEST_CASE("the last change of every constraint below the tolerance is not yet their sum below it") {
+  const double tolerance = 1e-9;  // m
+  auto every = three, sum = three;
+  const SolveReport a = solve(every, BasicGaussSeidel<LastChange>{.tolerance = tolerance, .max_iterations = 100000, .all_verified = true});
+  const SolveReport b = solve(sum, BasicGaussSeidel<LastChange>{.tolerance = tolerance, .max_iterations = 100000});
+  REQUIRE(a.status == Status::converged);
+  REQUIRE(a.sweeps < b.sweeps);
+  auto before = every.rows.pool<0>().lambda;
+  solve(every, GaussSeidel{.tolerance = 0, .max_iterations = 1});
+  double worst = 0, all = 0;
+  for (Index i = 0; i < every.rows.pool<0>().items(); ++i) {
+    const double change =
+        every.h * every.W.diagonal<0>(i).trace() / 3 * (every.rows.pool<0>().lambda[i] - before[i]).norm();
+    worst = std::max(worst, change);
+    all += change;
+  }
+  REQUIRE(worst <= tolerance);
+  REQUIRE(all > tolerance);
+}
+
 TEST_CASE("the impulses of a solve do not depend on the scale of time and mass beyond rounding") {
   // d and λ of a problem times 1024: the same sweeps, the same bits times 1024.
   auto p = three, q = three;

@@ -130,6 +130,11 @@ class BasicParticles {
   bool is_coupled() const { return springs_.is_coupled(); }
   /// x ← A⁻¹ x for the whole set.
   void solve(std::vector<Velocity>& x) const { springs_.solve(x); }
+  /// What A⁻¹ would be of the masses alone: for `UncoupledCompliance`.
+  template <int C>
+  Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
+    return springs_.solve_mass(b, x);
+  }
   template <int C>
   Mat<3, C, T> solve_block(Index b, const Mat<3, C, T>& x) const {
     return springs_.solve_block(b, x);

@@ -105,6 +105,11 @@ class Springs {
         inverse_[b] = inverse_mass[b] > 0 ? Block(inverse_[b].inverse()) : Block(Block::Zero());
   }
 
+  /// (scale.mass · m_b)⁻¹ x: as if no spring were there.
+  template <int C>
+  Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
+    return (inverse_scale_ * inverse_mass_[b]) * x;
+  }
   template <int C>
   Mat<3, C, T> solve_block(Index b, const Mat<3, C, T>& x) const {
     if (inverse_.empty()) return (inverse_scale_ * inverse_mass_[b]) * x;

@@ -56,7 +56,12 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
     world.each([&](const auto& set, auto s) {
       if constexpr (couples<decltype(set)>)
         if (set.is_coupled()) return columns_.template prepare<s>(set, rows);
-      inner::apply_inverse(set, rows, s);
+      if constexpr (!Inverse::is_whole && inner::may_couple<std::remove_cvref_t<decltype(set)>>) {
+        if (set.is_coupled()) inner::apply_mass_inverse(set, rows, s);
+        else inner::apply_inverse(set, rows, s);
+      } else {
+        inner::apply_inverse(set, rows, s);
+      }
       incidence_.template find<s>(rows, set.blocks());
     });
     for_each_index<pools>([&](auto a) { build_rows<a>(world, rows); });

@@ -31,6 +31,18 @@ void apply_inverse(const Set& set, Rows& rows, S s) {
   });
 }
 
+/// G_e = M⁻¹ H_eᵀ: the same of the masses alone.
+template <class Set, class Rows, class S>
+void apply_mass_inverse(const Set& set, Rows& rows, S s) {
+  for_each_index<Rows::pool_count>([&](auto p) {
+    auto& blocks = std::get<s>(rows.template pool<p>().sets);
+    constexpr int R = Rows::template rows_of<p>;
+    blocks.G.resize(blocks.H.size());
+    for (std::size_t e = 0; e < blocks.H.size(); ++e)
+      blocks.G[e] = set.template solve_mass<R>(blocks.block[e], blocks.H[e].transpose());
+  });
+}
+
 /// W_ii + diag(R) + diag(softness · W_kk).
 template <int R, class T>
 void add_compliance(Mat<R, R, T>& W, const Vec<R, T>& compliance, const Vec<R, T>& softness) {

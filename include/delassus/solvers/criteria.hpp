@@ -23,7 +23,7 @@ struct SiconosError {
 struct LastChange {
   static constexpr bool needs_measure = false;
   static double sum(const Measure& m) { return m.last_change; }
-  static double worst(const Measure& m) { return m.last_change; }
+  static double worst(const Measure& m) { return m.worst_change; }
 };
 
 }  // namespace delassus

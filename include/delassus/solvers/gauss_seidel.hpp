@@ -51,7 +51,7 @@ struct BasicGaussSeidel {
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       }
       if constexpr (Criterion::needs_measure || Problem::Observes::every_sweep) report.measure = problem.measure();
-      else report.measure.last_change = problem.last_change();
+      else report.measure.last_change = problem.last_change(), report.measure.worst_change = problem.worst_change();
       problem.tell(report.sweeps, report.measure);
     }
     const bool is_within = inner::is_within<Criterion>(*this, report.measure, rows);

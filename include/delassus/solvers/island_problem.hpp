@@ -51,11 +51,12 @@ class IslandProblem {
   /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the others
   /// stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows.
   double sweep(double relaxation = 1) {
-    T energy = 0, displacement = 0;
+    T energy = 0, displacement = 0, most = 0;
     for_each_index<pools>([&](auto p) {
-      for (const Index i : islands_.items(p, island_)) visit<p>(i, T(relaxation), energy, displacement);
+      for (const Index i : islands_.items(p, island_)) visit<p>(i, T(relaxation), energy, displacement, most);
     });
     last_change_ = h_ * double(displacement);
+    worst_change_ = h_ * double(most);
     return double(energy);
   }
 
@@ -66,10 +67,12 @@ class IslandProblem {
     });
     Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
+    m.worst_change = worst_change_;
     return m;
   }
 
   double last_change() const { return last_change_; }
+  double worst_change() const { return worst_change_; }
   /// A solver asks after each sweep; only `WithDeadline` ever says yes.
   static constexpr bool is_out_of_time() { return false; }
   void tell(int sweeps, const Measure& m) { observer_(sweeps, m); }
@@ -120,7 +123,7 @@ class IslandProblem {
   }
 
   template <int p>
-  void visit(Index i, T relaxation, T& energy, T& displacement) {
+  void visit(Index i, T relaxation, T& energy, T& displacement, T& most) {
     constexpr int R = Rows::template rows_of<p>;
     auto& lambda = rows_.template pool<p>().lambda[i];
     Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
@@ -134,7 +137,9 @@ class IslandProblem {
     W_.template commit<p>(rows_, i, change);
     const T weight = c.W.trace() / T(R), square = change.squaredNorm();
     energy += weight * square;
-    displacement += weight * std::sqrt(square);
+    const T share = weight * std::sqrt(square);
+    displacement += share;
+    most = std::max(most, share);
   }
 
   template <int p>
@@ -161,7 +166,7 @@ class IslandProblem {
   Index island_;
   double h_;
   Observer& observer_;
-  double last_change_ = std::numeric_limits<double>::infinity();
+  double last_change_ = std::numeric_limits<double>::infinity(), worst_change_ = last_change_;
 };
 
 }  // namespace delassus

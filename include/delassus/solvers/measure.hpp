@@ -18,7 +18,8 @@ struct Measure {
   double siconos = 0;
   double worst = 0;
   double floor = 0;
-  double last_change = 0;  ///< Σ|h W_ii Δλ_i| of the last sweep, m: the change expressed as displacement
+  double last_change = 0;   ///< Σ|h w_i Δλ_i| of the last sweep, m: the change expressed as displacement
+  double worst_change = 0;  ///< its largest share of one constraint
 };
 
 /// Sums that become a Measure.
