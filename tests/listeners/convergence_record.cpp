@@ -1,8 +1,8 @@
-#include <delassus/delassus.hpp>
+#include "scenes.hpp"
 
 #include "catch.hpp"
 
-using namespace delassus;
+using namespace scenes;
 
 TEST_CASE("a convergence record has an entry for every sweep, and its last one is the report's residual") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}, BallJoint{}},
@@ -36,4 +36,20 @@ TEST_CASE("the forces of a convergence record carry the weight") {
   // m g; the solve is within 1e-10 of the free velocity g h, so the sum of the forces is within 1e-10 of m g, and the
   // body's own acceleration, which dies out like 0.8^n, within 0.8^100 = 2e-10 of it.
   CHECK(force == Approx(2.0 * 9.81).epsilon(1e-9));
+}
+
+TEST_CASE("asked for every force, a convergence record has each row after each sweep, and ends with the step's own") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ConvergenceRecord{true}};
+  add_stack(rigid_bodies(loop), 3, Box{1, 1, 1});
+  const StepReport r = loop.step(0.01);
+  const auto& record = loop.get<ConvergenceRecord>();
+  REQUIRE(record.sweeps().size() > 2);
+  REQUIRE(record.forces().size() == record.sweeps().size() * std::size_t(r.rows));
+  const std::size_t last = record.forces().size() - std::size_t(r.rows);
+  for (int k = 0; k < r.rows; ++k) {
+    const auto& force = record.forces()[last + std::size_t(k)];
+    REQUIRE(force.sweep == r.sweeps);
+    REQUIRE(force.row.force == record.rows()[std::size_t(k)].force);
+  }
+  REQUIRE(record.forces()[0].row.force == 0);  // a cold start
 }

@@ -37,15 +37,31 @@ class ConvergenceRecord {
     double error;
   };
 
+  /// One row after one sweep.
+  struct Force {
+    Index island;
+    int sweep;
+    Row row;
+  };
+
+  /// With `every_force` the force of each row is kept after every sweep, too.
+  explicit ConvergenceRecord(bool every_force = false) : every_force_(every_force) {}
+
   const std::vector<Sweep>& sweeps() const { return sweeps_; }
+  const std::vector<Force>& forces() const { return forces_; }
   const std::vector<Row>& rows() const { return rows_; }
   const std::vector<Constraint>& constraints() const { return constraints_; }
 
   void begin_island(Index island) { island_ = island; }
   void operator()(int sweep, const Measure& m) { sweeps_.push_back({island_, sweep, m}); }
+  bool wants_forces() const { return every_force_; }
+  void force(int sweep, int pool, Index item, const auto& lambda, double h) {
+    for (int k = 0; k < int(lambda.size()); ++k) forces_.push_back({island_, sweep, {pool, item, k, double(lambda[k]) / h}});
+  }
 
   void after(stage::Begin, const auto&) {
     sweeps_.clear();
+    forces_.clear();
     rows_.clear();
     constraints_.clear();
   }
@@ -57,8 +73,10 @@ class ConvergenceRecord {
   }
 
  private:
+  bool every_force_ = false;
   Index island_ = 0;
   std::vector<Sweep> sweeps_;
+  std::vector<Force> forces_;
   std::vector<Row> rows_;
   std::vector<Constraint> constraints_;
 };
