@@ -10,8 +10,8 @@ namespace delassus {
 enum class Status : std::uint8_t {
   converged,          ///< the residual is within the tolerance
   stalled,            ///< the rounding floor was met above the tolerance; the result is the best seen
-  max_iterations,     ///< the sweeps ran out; the result is the best seen
-  deadline,           ///< the time ran out; the result is the best seen
+  max_iterations,     ///< the sweeps ran out; the result is the best that the solver kept
+  deadline,           ///< the time ran out; the result is the best measured
   unclaimed_contact,  ///< a contact exists that no contact law takes
   quarantined,        ///< a non-finite number appeared: that island was left where it was
 };

@@ -56,7 +56,9 @@ Vec<3, T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, cons
   const T floor = std::numeric_limits<T>::epsilon() * c.norm();
   for (int iteration = 0; iteration < 20 && size > floor; ++iteration) {
     const Mat<3, 3, T> slope = T(2) * inertia + (h / 2) * (T(2) * skew(mid) * inertia - skew(sum));
-    const Vec<3, T> move = slope.inverse() * residual;
+    // Scaled by tr I, so that the determinant of a small body's moments does not underflow in single precision.
+    const T scale = T(1) / inertia.trace();
+    const Vec<3, T> move = Mat<3, 3, T>(scale * slope).inverse() * Vec<3, T>(scale * residual);
     T step = 1;
     for (int halving = 0;; ++halving, step /= 2) {
       const Vec<3, T> trial = mid - step * move;
