@@ -1,0 +1,84 @@
+/// Sparse LU factorization of an unsymmetric matrix of small square blocks whose pattern is symmetric.
+#pragma once
+
+#include <delassus/linear/block_pattern.hpp>
+#include <delassus/math/pivoted_lu.hpp>
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// P A Pᵀ = L D U with w × w blocks, D_j the block pivots and U unit upper: rows are exchanged inside a block
+/// only, so A should be one whose Schur complements are well behaved, as that of a penalty method, 1 + G S H,
+/// is. The pattern is analysed once; `factor` and `solve` do not allocate. Right-looking, as `BlockCholesky`.
+template <int w, class T>
+class BlockLu {
+ public:
+  using Block = Mat<w, w, T>;
+
+  /// All diagonal blocks and, both ways, the pairs (i, j), i ≠ j, in any order, repeats allowed.
+  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
+    pattern_.analyse(blocks, pairs);
+    diagonal_.resize(blocks);
+    pivot_.resize(blocks);
+    work_.resize(blocks);
+    lower_.resize(pattern_.entries());
+    upper_.resize(pattern_.entries());
+  }
+
+  void set_identity() {
+    for (Block& b : diagonal_) b.setIdentity();
+    for (Block& b : lower_) b.setZero();
+    for (Block& b : upper_) b.setZero();
+  }
+  /// A_ij, to be added to.
+  Block& at(Index i, Index j) {
+    const Index row = pattern_.place(i), column = pattern_.place(j);
+    if (row == column) return diagonal_[row];
+    return row > column ? lower_[pattern_.find(row, column)] : upper_[pattern_.find(column, row)];
+  }
+
+  /// Replaces A by its factors; false when a pivot block is singular or not finite.
+  bool factor() {
+    for (Index j = 0; j < Index(diagonal_.size()); ++j) {
+      if (!pivot_[j].factor(diagonal_[j])) return false;
+      const Index first = pattern_.start(j), last = pattern_.start(j + 1);
+      for (Index e = first; e < last; ++e) pivot_[j].solve(upper_[e]);  // U_jk = D_j⁻¹ A_jk
+      for (Index e = first; e < last; ++e) {
+        const Index i = pattern_.row(e);
+        diagonal_[i].noalias() -= lower_[e] * upper_[e];
+        for (Index f = e + 1; f < last; ++f) {
+          const Index at = pattern_.find(pattern_.row(f), i);
+          lower_[at].noalias() -= lower_[f] * upper_[e];
+          upper_[at].noalias() -= lower_[e] * upper_[f];
+        }
+      }
+    }
+    return true;
+  }
+
+  /// x ← A⁻¹ x.
+  void solve(std::vector<Vec<w, T>>& x) const {
+    const Index n = Index(diagonal_.size());
+    for (Index i = 0; i < n; ++i) work_[pattern_.place(i)] = x[i];
+    for (Index j = 0; j < n; ++j) {
+      pivot_[j].solve(work_[j]);
+      for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
+        work_[pattern_.row(e)].noalias() -= lower_[e] * work_[j];
+    }
+    for (Index j = n; j-- > 0;)
+      for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
+        work_[j].noalias() -= upper_[e] * work_[pattern_.row(e)];
+    for (Index i = 0; i < n; ++i) x[i] = work_[pattern_.place(i)];
+  }
+
+ private:
+  BlockPattern pattern_;
+  std::vector<Block> diagonal_, lower_, upper_;
+  std::vector<PivotedLu<w, T>> pivot_;
+  mutable std::vector<Vec<w, T>> work_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,58 @@
+/// The LU factorization of one small matrix, with row pivots.
+#pragma once
+
+#include <delassus/math/linear.hpp>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace delassus {
+
+/// P A = L U, w × w, L unit lower: Gaussian elimination, the largest entry of a column being its pivot. Fixed
+/// trip counts.
+template <int w, class T>
+class PivotedLu {
+ public:
+  /// False when a pivot is zero or not finite.
+  bool factor(const Mat<w, w, T>& A) {
+    lu_ = A;
+    for (int k = 0; k < w; ++k) {
+      int pivot = k;
+      for (int i = k + 1; i < w; ++i)
+        if (std::abs(lu_(i, k)) > std::abs(lu_(pivot, k))) pivot = i;
+      const T size = std::abs(lu_(pivot, k));
+      if (!(size > T(0)) || !std::isfinite(size)) return false;
+      swap_[k] = pivot;
+      if (pivot != k) lu_.row(k).swap(lu_.row(pivot));
+      over_[k] = T(1) / lu_(k, k);
+      for (int i = k + 1; i < w; ++i) lu_(i, k) *= over_[k];
+      for (int j = k + 1; j < w; ++j) {
+        const T u = lu_(k, j);
+        for (int i = k + 1; i < w; ++i) lu_(i, j) -= lu_(i, k) * u;
+      }
+    }
+    return true;
+  }
+
+  /// x ← A⁻¹ x, column by column.
+  template <int C>
+  void solve(Mat<w, C, T>& x) const {
+    for (int c = 0; c < C; ++c) {
+      for (int k = 0; k < w; ++k) std::swap(x(k, c), x(swap_[k], c));
+      for (int k = 0; k < w; ++k)
+        for (int i = k + 1; i < w; ++i) x(i, c) -= lu_(i, k) * x(k, c);
+      for (int k = w; k-- > 0;) {
+        x(k, c) *= over_[k];
+        for (int i = 0; i < k; ++i) x(i, c) -= lu_(i, k) * x(k, c);
+      }
+    }
+  }
+
+ private:
+  Mat<w, w, T> lu_;
+  std::array<T, w> over_;  ///< 1 / U_kk
+  std::array<int, w> swap_;
+};
+
+}  // namespace delassus
