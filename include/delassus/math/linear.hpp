@@ -1,6 +1,8 @@
 /// The names under which the library uses Eigen's fixed-size types.
 #pragma once
 
+#include <delassus/math/eager.hpp>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -18,20 +20,47 @@ using Vec3 = Vec<3>;
 using Mat3 = Mat<3, 3>;
 using Quat = Eigen::Quaternion<double>;
 
-/// The matrix of the cross product: skew(a) b = a × b.
-template <class Derived>
-Mat<3, 3, typename Derived::Scalar> skew(const Eigen::MatrixBase<Derived>& a) {
-  using T = typename Derived::Scalar;
+/// The k-th axis.
+template <class T = double>
+Vec<3, T> unit_axis(int k) {
+  return {T(k == 0), T(k == 1), T(k == 2)};
+}
+
+/// The matrix with these columns.
+template <class T>
+Mat<3, 3, T> columns(const Vec<3, T>& x, const Vec<3, T>& y, const Vec<3, T>& z) {
   Mat<3, 3, T> m;
-  m << T(0), -a[2], a[1], a[2], T(0), -a[0], -a[1], a[0], T(0);
+  for (int i = 0; i < 3; ++i) m(i, 0) = x[i], m(i, 1) = y[i], m(i, 2) = z[i];
   return m;
 }
 
+/// Which entry is the largest in size; the first of equals.
+template <class T>
+int largest_entry(const Vec<3, T>& a) {
+  int k = std::abs(a[1]) > std::abs(a[0]) ? 1 : 0;
+  return std::abs(a[2]) > std::abs(a[k]) ? 2 : k;
+}
+
+/// The matrix of the cross product: skew(a) b = a × b.
+template <class T>
+Mat<3, 3, T> skew(const Vec<3, T>& a) {
+  return columns<T>({0, a[2], -a[1]}, {-a[2], 0, a[0]}, {a[1], -a[0], 0});
+}
+
+/// A⁻¹ = adj(A) / det A. Pre: A is regular.
+template <class T>
+Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
+  const Vec<3, T> x(A(0, 0), A(1, 0), A(2, 0)), y(A(0, 1), A(1, 1), A(2, 1)), z(A(0, 2), A(1, 2), A(2, 2));
+  const Vec<3, T> yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the rows of adj(A)
+  return T(1) / x.dot(yz) * columns<T>({yz[0], zx[0], xy[0]}, {yz[1], zx[1], xy[1]}, {yz[2], zx[2], xy[2]});
+}
+
 /// True when every entry is finite: 0·x is 0 for finite x and NaN otherwise, so one sum decides.
-template <class Derived>
-bool is_finite(const Eigen::MatrixBase<Derived>& x) {
-  using T = typename Derived::Scalar;
-  return (x * T(0)).sum() == T(0);
+template <class T, int R, int C>
+bool is_finite(const Eigen::Matrix<T, R, C>& x) {
+  T sum = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) sum += 0 * x.data()[i];
+  return sum == T(0);
 }
 
 }  // namespace delassus

@@ -7,34 +7,35 @@
 
 namespace delassus {
 
+/// q / |q|.
+template <class T>
+Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
+  const T size = q.norm();
+  return {q.w() / size, q.x() / size, q.y() / size, q.z() / size};
+}
+
 /// The quaternion of a turn by the vector θ (rad): exp(θ/2).
 template <class T>
 Eigen::Quaternion<T> exponential(const Vec<3, T>& theta) {
   const T angle = theta.norm();
   // sin(x/2)/x to rounding for small x: the next term of the series is x⁴/3840.
   const T s = angle < T(1e-3) ? T(0.5) - angle * angle / T(48) : std::sin(angle / 2) / angle;
-  Eigen::Quaternion<T> q;
-  q.w() = std::cos(angle / 2);
-  q.vec() = s * theta;
-  return q;
+  return {std::cos(angle / 2), s * theta[0], s * theta[1], s * theta[2]};
 }
 
 /// The vector θ of a unit quaternion, |θ| ≤ π: the inverse of `exponential`.
 template <class T>
-Vec<3, T> logarithm(Eigen::Quaternion<T> q) {
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
-  const T s = q.vec().norm();
-  return s < T(1e-12) ? Vec<3, T>(T(2) * q.vec()) : Vec<3, T>(T(2) * std::atan2(s, q.w()) / s * q.vec());
+Vec<3, T> logarithm(const Eigen::Quaternion<T>& q) {
+  const T sign = q.w() < 0 ? T(-1) : T(1);
+  const Vec<3, T> v(sign * q.x(), sign * q.y(), sign * q.z());
+  const T s = v.norm();
+  return s < T(1e-12) ? T(2) * v : T(2) * std::atan2(s, sign * q.w()) / s * v;
 }
 
 /// The Cayley map as a quaternion: (I − θ̂/2)⁻¹ (I + θ̂/2) turns like (1, θ/2) normalised.
 template <class T>
 Eigen::Quaternion<T> cayley(const Vec<3, T>& theta) {
-  Eigen::Quaternion<T> q;
-  q.w() = T(1);
-  q.vec() = T(0.5) * theta;
-  q.normalize();
-  return q;
+  return unit(Eigen::Quaternion<T>(T(1), T(0.5) * theta[0], T(0.5) * theta[1], T(0.5) * theta[2]));
 }
 
 /// One step of rotation by the implicit midpoint rule, in the body's frame. a = I Ω is the momentum before, c the one
@@ -58,7 +59,7 @@ Vec<3, T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, cons
     const Mat<3, 3, T> slope = T(2) * inertia + (h / 2) * (T(2) * skew(mid) * inertia - skew(sum));
     // Scaled by tr I, so that the determinant of a small body's moments does not underflow in single precision.
     const T scale = T(1) / inertia.trace();
-    const Vec<3, T> move = Mat<3, 3, T>(scale * slope).inverse() * Vec<3, T>(scale * residual);
+    const Vec<3, T> move = inverse(Mat<3, 3, T>(scale * slope)) * (scale * residual);
     T step = 1;
     for (int halving = 0;; ++halving, step /= 2) {
       const Vec<3, T> trial = mid - step * move;
