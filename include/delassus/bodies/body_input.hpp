@@ -4,6 +4,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/inertia.hpp>
 #include <delassus/geometry/shape.hpp>
+#include <delassus/math/rotation.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ inline Quat check_state(const RigidBody& body, const std::string& who) {
   const double norm = body.orientation.coeffs().norm();
   DELASSUS_EXPECT(std::isfinite(norm) && norm > 1e-12,
                   who + ": orientation is the zero quaternion or not finite; the identity is (1, 0, 0, 0)");
-  return Quat(body.orientation.coeffs() / norm);
+  return unit(body.orientation);
 }
 
 /// Mass (kg) and inertia (kg·m²) of a dynamic body from what the user gave.

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/particles.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/math/twist.hpp>
 #include <delassus/rows/alive.hpp>
 
 namespace delassus {
@@ -14,9 +15,9 @@ double kinetic_energy(const BasicRigidBodies<T>& set) {
   for (const Index b : alive(set)) {
     if (!set.moves(b)) continue;
     const Vec<6> v = set.velocity()[b].template cast<double>();
-    const Vec3 rate = set.pose(b).rotation.transpose() * v.tail<3>();
-    sum += 0.5 * double(set.mass(b)) * v.head<3>().squaredNorm() +
-           0.5 * rate.dot(set.inertia(b).template cast<double>() * rate);
+    const Vec3 rate = set.pose(b).rotation.transpose() * angular_part(v);
+    sum += 0.5 * double(set.mass(b)) * linear_part(v).squaredNorm() +
+           0.5 * rate.dot(Mat3(set.inertia(b).template cast<double>()) * rate);
   }
   return sum;
 }
@@ -35,7 +36,7 @@ template <class T>
 Vec3 momentum(const BasicRigidBodies<T>& set) {
   Vec3 sum = Vec3::Zero();
   for (const Index b : alive(set))
-    if (set.moves(b)) sum += double(set.mass(b)) * set.velocity()[b].template head<3>().template cast<double>();
+    if (set.moves(b)) sum += double(set.mass(b)) * Vec3(linear_part(set.velocity()[b]).template cast<double>());
   return sum;
 }
 
@@ -47,9 +48,9 @@ Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
     if (!set.moves(b)) continue;
     const Pose pose = set.pose(b);
     const Vec<6> v = set.velocity()[b].template cast<double>();
-    const Vec3 rate = pose.rotation.transpose() * v.tail<3>();
-    sum += pose.position.cross(double(set.mass(b)) * v.head<3>()) +
-           pose.rotation * (set.inertia(b).template cast<double>() * rate);
+    const Vec3 rate = pose.rotation.transpose() * angular_part(v);
+    sum += pose.position.cross(double(set.mass(b)) * linear_part(v)) +
+           pose.rotation * (Mat3(set.inertia(b).template cast<double>()) * rate);
   }
   return sum;
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <delassus/bodies/body_input.hpp>
+#include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
 #include <delassus/math/pose.hpp>
 #include <delassus/math/rotation.hpp>
+#include <delassus/math/twist.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <deque>
@@ -50,21 +52,21 @@ class BasicRigidBodies {
   /// Adds a force (N, at the world point, m) that acts during the next step only.
   void apply_force(Handle body, const Vec3& force, const Vec3& point) {
     const Index b = checked(body);
-    const Vec3 arm = point - x_[b].template cast<double>();
-    load_[b].template head<3>() += force.template cast<T>();
-    load_[b].template tail<3>() += arm.cross(force).template cast<T>();
+    const Vec3 arm = point - position_of(b);
+    load_[b] += twist<T>(force.template cast<T>(), arm.cross(force).template cast<T>());
   }
   void apply_force(Handle body, const Vec3& force) {
-    load_[checked(body)].template head<3>() += force.template cast<T>();
+    load_[checked(body)] += twist<T>(force.template cast<T>(), Vec<3, T>::Zero());
   }
   /// Adds a torque (N·m) that acts during the next step only.
   void apply_torque(Handle body, const Vec3& torque) {
-    load_[checked(body)].template tail<3>() += torque.template cast<T>();
+    load_[checked(body)] += twist<T>(Vec<3, T>::Zero(), torque.template cast<T>());
   }
 
   void set_velocity(Handle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
-    DELASSUS_EXPECT(is_finite(velocity) && is_finite(angular_velocity), who(body.index) + ": velocity is not finite");
-    v_[checked(body)] << velocity.template cast<T>(), angular_velocity.template cast<T>();
+    DELASSUS_EXPECT(is_finite(velocity) && is_finite(angular_velocity),
+                    who(body.index) + ": velocity is not finite");
+    v_[checked(body)] = twist<T>(velocity.template cast<T>(), angular_velocity.template cast<T>());
   }
 
   /// Where a kinematic body shall be at the end of the next step; its velocity is (q(t+h) ⊖ q(t)) / h.
@@ -72,7 +74,7 @@ class BasicRigidBodies {
     const Index b = checked(body);
     DELASSUS_EXPECT(motion_[b] == Motion::kinematic, who(b) + ": only a kinematic body can be moved along a path");
     DELASSUS_EXPECT(is_pose(position, orientation), who(b) + ": pose is not finite");
-    target_[b] = Target{position, orientation.normalized(), true};
+    target_[b] = Target{position, unit(orientation), true};
     has_targets_ = true;
   }
 
@@ -80,33 +82,33 @@ class BasicRigidBodies {
   void place(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
     const Index b = checked(body);
     DELASSUS_EXPECT(is_pose(position, orientation), who(b) + ": pose is not finite");
-    x_[b] = position.template cast<T>();
-    q_[b] = orientation.normalized().template cast<T>();
-    turn(b);
+    state_.x[b] = position.template cast<T>();
+    state_.q[b] = unit(orientation).template cast<T>();
+    state_.turn(b);
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
 
-  Vec3 position(Handle body) const { return x_[checked(body)].template cast<double>(); }
-  Quat orientation(Handle body) const { return q_[checked(body)].template cast<double>(); }
-  Vec3 velocity(Handle body) const { return v_[checked(body)].template head<3>().template cast<double>(); }
-  Vec3 angular_velocity(Handle body) const { return v_[checked(body)].template tail<3>().template cast<double>(); }
-  double mass(Handle body) const { return mass_[checked(body)]; }
+  Vec3 position(Handle body) const { return position_of(checked(body)); }
+  Quat orientation(Handle body) const { return state_.q[checked(body)].template cast<double>(); }
+  Vec3 velocity(Handle body) const { return linear_part(v_[checked(body)]).template cast<double>(); }
+  Vec3 angular_velocity(Handle body) const { return angular_part(v_[checked(body)]).template cast<double>(); }
+  double mass(Handle body) const { return state_.mass[checked(body)]; }
   bool contains(Handle body) const {
     return body.owner == owner_ && slots_.is_current(body.index, body.generation);
   }
   Handle handle(Index block) const { return {block, slots_.generation(block), owner_}; }
   const std::vector<Index>& active() const { return slots_.active(); }
 
-  const Mat<3, 3, T>& inertia(Index b) const { return inertia_[b]; }
-  T mass(Index b) const { return mass_[b]; }
+  const Mat<3, 3, T>& inertia(Index b) const { return state_.inertia[b]; }
+  T mass(Index b) const { return state_.mass[b]; }
 
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
 
   Index blocks() const { return slots_.size(); }
   bool is_alive(Index b) const { return slots_.is_alive(b); }
   bool is_awake(Index b) const { return slots_.is_awake(b); }
-  bool moves(Index b) const { return inverse_mass_[b] > T(0); }
+  bool moves(Index b) const { return state_.inverse_mass[b] > T(0); }
   const Velocity& load(Index b) const { return load_[b]; }
   /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
   void lull(Index b) {
@@ -117,7 +119,7 @@ class BasicRigidBodies {
   void rouse(Index b) { slots_.set_awake(b, true); }
   /// Takes a body's answer to impulses away (A⁻¹ = 0), or gives it back.
   void hold(Index b, bool is_held) {
-    if (is_held) inverse_mass_[b] = T(0), inverse_inertia_world_[b].setZero();
+    if (is_held) state_.inverse_mass[b] = T(0), state_.inverse_inertia_world[b].setZero();
     else set_mass(b);
   }
   Motion motion(Index b) const { return motion_[b]; }
@@ -129,7 +131,8 @@ class BasicRigidBodies {
   }
   void add_force(Index b, Velocity& p) const {
     p += load_[b];
-    p.template head<3>() += mass_[b] * gravity.template cast<T>();
+    const Vec<3, T> weight = state_.mass[b] * Vec<3, T>(gravity.template cast<T>());
+    for (int k = 0; k < 3; ++k) p[k] += weight[k];
   }
 
   /// p += s M v.
@@ -137,20 +140,13 @@ class BasicRigidBodies {
     for (const Index b : slots_.active()) add_mass_times_velocity(b, p[b], s);
   }
   void add_mass_times_velocity(Index b, Velocity& p, double s) const {
-    if (!moves(b)) return;
-    const Mat<3, 3, T>& R = R_[b];
-    p.template head<3>() += T(s) * mass_[b] * v_[b].template head<3>();
-    p.template tail<3>() += T(s) * (R * (inertia_[b] * (R.transpose() * v_[b].template tail<3>())));
+    if (moves(b)) p += state_.momentum(b, v_[b], T(s));
   }
 
   /// A_b⁻¹ x for each column of x: diag(1/m, R I⁻¹ Rᵀ) / mass scale.
   template <int C>
   Mat<6, C, T> solve_block(Index b, const Mat<6, C, T>& x) const {
-    Mat<6, C, T> y;
-    y.template topRows<3>() = (inverse_scale_ * inverse_mass_[b]) * x.template topRows<3>();
-    y.template bottomRows<3>().noalias() = inverse_inertia_world_[b] * x.template bottomRows<3>();
-    if (inverse_scale_ != T(1)) y.template bottomRows<3>() *= inverse_scale_;
-    return y;
+    return state_.solve(b, x, inverse_scale_);
   }
 
   /// A fixed body answers to nothing and does not move: it has no block in any row.
@@ -158,18 +154,17 @@ class BasicRigidBodies {
   Index anchor_block(const Anchor& a, int) const { return a.block; }
   /// Row of H: direction · (v + ω × r) = (direction, r × direction) · (v, ω), r from the centre of mass to `point`.
   Velocity along(const Anchor& a, int, const Vec3& point, const Vec3& direction) const {
-    const Vec3 arm = point - x_[a.block].template cast<double>();
-    Velocity row;
-    row << direction.template cast<T>(), arm.cross(direction).template cast<T>();
-    return row;
+    const Vec3 arm = point - position_of(a.block);
+    return twist<T>(direction.template cast<T>(), arm.cross(direction).template cast<T>());
   }
   Velocity about(const Anchor&, int, const Vec3& axis) const {
-    Velocity row;
-    row << Vec<3, T>::Zero(), axis.template cast<T>();
-    return row;
+    return twist<T>(Vec<3, T>::Zero(), axis.template cast<T>());
   }
-  Vec3 point(const Anchor& a) const { return (x_[a.block] + R_[a.block] * a.local.template cast<T>()).template cast<double>(); }
-  Quat frame(const Anchor& a) const { return q_[a.block].template cast<double>() * a.frame; }
+  Vec3 point(const Anchor& a) const {
+    return (state_.x[a.block] + state_.R[a.block] * Vec<3, T>(a.local.template cast<T>()))
+        .template cast<double>();
+  }
+  Quat frame(const Anchor& a) const { return state_.q[a.block].template cast<double>() * a.frame; }
 
   /// Kick and drift: x₊ = x + h v_next, and free rotation from ω_next. A body whose v_next is not finite stays where it is.
   void advance(double h) { advance_with(h, T(0)); }
@@ -198,11 +193,7 @@ class BasicRigidBodies {
   /// How many bodies the last advance left where they were.
   Index held() const { return held_; }
   /// Moves block b by a small displacement (m, rad) without touching its velocity.
-  void displace(Index b, const Velocity& by) {
-    x_[b] += by.template head<3>();
-    q_[b] = (exponential<T>(by.template tail<3>()) * q_[b]).normalized();
-    turn(b);
-  }
+  void displace(Index b, const Velocity& by) { state_.displace(b, linear_part(by), angular_part(by)); }
 
   /// Velocities: of kinematic bodies for this step, and the arrays the stages write.
   void begin_step(double h);
@@ -222,7 +213,7 @@ class BasicRigidBodies {
     if (hull_[b] >= 0) shape.hull = &hulls_[hull_[b]];
     return shape;
   }
-  Pose pose(Index b) const { return {x_[b].template cast<double>(), R_[b].template cast<double>()}; }
+  Pose pose(Index b) const { return {position_of(b), state_.R[b].template cast<double>()}; }
   Index material(Index b) const { return material_[b]; }
   std::uint32_t group(Index b) const { return group_[b]; }
   std::uint32_t collides_with(Index b) const { return collides_with_[b]; }
@@ -232,8 +223,9 @@ class BasicRigidBodies {
 
   /// What outlives a step, shapes included; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    archive(gravity, slots_, has_targets_, x_, q_, R_, inertia_, inverse_inertia_, inverse_inertia_world_, mass_, inverse_mass_,
-            v_, load_, motion_, target_, shape_, hulls_, hull_, material_, group_, collides_with_, v_free, v_next);
+    archive(gravity, slots_, has_targets_, state_.x, state_.q, state_.R, state_.inertia,
+            state_.inverse_inertia, state_.inverse_inertia_world, state_.mass, state_.inverse_mass, v_, load_,
+            motion_, target_, shape_, hulls_, hull_, material_, group_, collides_with_, v_free, v_next);
   }
 
  private:
@@ -243,6 +235,7 @@ class BasicRigidBodies {
     bool is_set = false;
   };
 
+  Vec3 position_of(Index b) const { return state_.x[b].template cast<double>(); }
   Index checked(Handle body) const {
     DELASSUS_EXPECT(body.owner == owner_, "this rigid body handle belongs to another world");
     DELASSUS_EXPECT(slots_.is_current(body.index, body.generation), who(body.index) + " was removed; its handle is stale");
@@ -252,11 +245,9 @@ class BasicRigidBodies {
     const double norm = orientation.coeffs().norm();
     return is_finite(position) && std::isfinite(norm) && norm > 1e-12;
   }
-  void set_mass(Index b);
-  void turn(Index b);
+  void set_mass(Index b) { state_.set_mass(b, motion_[b] == Motion::dynamic); }
   void advance_with(double h, T old_share);
-  /// q and v of body b from its v_next; `old_share` of the old velocity in the mean that moves it: 0 for kick and drift,
-  /// ½ for the midpoint rule.
+  /// q and v of body b from its v_next.
   void advance_block(Index b, const Velocity& next, double h, T old_share);
   void follow(Index b, const Velocity& next, T h);
 
@@ -265,10 +256,9 @@ class BasicRigidBodies {
   T inverse_scale_ = 1;
   Index held_ = 0;
   bool has_targets_ = false;  ///< move_to was called and the step that goes there is not over
-  std::vector<Vec<3, T>> x_, shifted_x_;
-  std::vector<Eigen::Quaternion<T>> q_, shifted_q_;
-  std::vector<Mat<3, 3, T>> R_, inertia_, inverse_inertia_, inverse_inertia_world_;
-  std::vector<T> mass_, inverse_mass_;
+  inner::RigidState<T> state_;
+  std::vector<Vec<3, T>> shifted_x_;
+  std::vector<Eigen::Quaternion<T>> shifted_q_;
   std::vector<Velocity> v_, load_;
   std::vector<Motion> motion_;
   std::vector<Target> target_;
@@ -291,10 +281,9 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
 
   const Index b = slots_.take();
   const std::size_t n = std::size_t(slots_.size());
-  for (auto* array : {&x_, &shifted_x_}) array->resize(n);
-  for (auto* array : {&q_, &shifted_q_}) array->resize(n);
-  for (auto* array : {&R_, &inertia_, &inverse_inertia_, &inverse_inertia_world_}) array->resize(n);
-  for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
+  state_.resize(n);
+  shifted_x_.resize(n);
+  shifted_q_.resize(n);
   for (auto* array : {&v_, &load_, &v_free, &v_next}) array->resize(n);
   motion_.resize(n);
   target_.resize(n);
@@ -304,14 +293,13 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
   group_.resize(n);
   collides_with_.resize(n);
 
-  x_[b] = body.position.template cast<T>();
-  q_[b] = orientation.template cast<T>();
+  state_.x[b] = body.position.template cast<T>();
+  state_.q[b] = orientation.template cast<T>();
   motion_[b] = body.motion;
-  mass_[b] = T(mass.mass);
-  inertia_[b] = mass.inertia.template cast<T>();
-  const bool is_dynamic = body.motion == Motion::dynamic;
-  inverse_inertia_[b] = is_dynamic ? Mat<3, 3, T>(mass.inertia.inverse().template cast<T>()) : Mat<3, 3, T>::Zero();
-  v_[b] << body.velocity.template cast<T>(), body.angular_velocity.template cast<T>();
+  state_.mass[b] = T(mass.mass);
+  state_.inertia[b] = mass.inertia.template cast<T>();
+  if (body.motion == Motion::dynamic) state_.inverse_inertia[b] = inverse(mass.inertia).template cast<T>();
+  v_[b] = twist<T>(body.velocity.template cast<T>(), body.angular_velocity.template cast<T>());
   if (body.motion == Motion::fixed) v_[b].setZero();
   load_[b].setZero();
   v_free[b] = v_next[b] = v_[b];
@@ -337,29 +325,16 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add_fixed(const Shape&
 }
 
 template <class T>
-void BasicRigidBodies<T>::set_mass(Index b) {
-  inverse_mass_[b] = motion_[b] == Motion::dynamic ? T(1) / mass_[b] : T(0);
-  if (motion_[b] != Motion::dynamic) inverse_inertia_[b].setZero();
-  turn(b);
-}
-
-/// R and R I⁻¹ Rᵀ of the present orientation.
-template <class T>
-void BasicRigidBodies<T>::turn(Index b) {
-  R_[b] = q_[b].toRotationMatrix();
-  inverse_inertia_world_[b].noalias() = R_[b] * inverse_inertia_[b] * R_[b].transpose();
-}
-
-template <class T>
 void BasicRigidBodies<T>::begin_step(double h) {
   if (!has_targets_) return;
   has_targets_ = false;
   for (const Index b : slots_.active()) {
     if (motion_[b] != Motion::kinematic || !target_[b].is_set) continue;
     has_targets_ = true;
-    const Quat now = q_[b].template cast<double>();
-    v_[b] << ((target_[b].position - x_[b].template cast<double>()) / h).template cast<T>(),
-        (logarithm<double>(target_[b].orientation * now.conjugate()) / h).template cast<T>();
+    const Quat now = state_.q[b].template cast<double>();
+    const Vec3 way = target_[b].position - position_of(b),
+               turn = logarithm<double>(target_[b].orientation * now.conjugate());
+    v_[b] = twist<T>((way / h).template cast<T>(), (turn / h).template cast<T>());
   }
 }
 
@@ -379,51 +354,36 @@ void BasicRigidBodies<T>::advance_block(Index b, const Velocity& next, double h_
     return;
   }
   if (motion_[b] == Motion::kinematic) return follow(b, next, h);
-  x_[b] += h * inner::mean<Vec<3, T>>(v_[b].template head<3>(), next.template head<3>(), old_share);
-  // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
-  const Vec<3, T> kicked = R_[b].transpose() * next.template tail<3>();
-  const Vec<3, T> start = old_share > T(0) ? Vec<3, T>(R_[b].transpose() * v_[b].template tail<3>()) : kicked;
-  const Vec<3, T> momentum = inertia_[b] * kicked;
-  const Vec<3, T> before = old_share > T(0) ? Vec<3, T>(inertia_[b] * start) : momentum;
-  const Vec<3, T> spatial = R_[b] * momentum;
-  q_[b] = (q_[b] * cayley<T>(h * midpoint_rate<T>(inertia_[b], start, before, momentum, h))).normalized();
-  turn(b);
-  v_[b].template head<3>() = next.template head<3>();
-  // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small ones.
-  v_[b].template tail<3>() = R_[b] * (inverse_inertia_[b] * (R_[b].transpose() * spatial));
+  v_[b] = state_.drift(b, v_[b], next, h, old_share);
 }
 
 /// A kinematic body goes where it was told, exactly.
 template <class T>
 void BasicRigidBodies<T>::follow(Index b, const Velocity& next, T h) {
-  x_[b] += h * next.template head<3>();
-  q_[b] = (exponential<T>(h * next.template tail<3>()) * q_[b]).normalized();
-  if (target_[b].is_set) {
-    x_[b] = target_[b].position.template cast<T>();
-    q_[b] = target_[b].orientation.template cast<T>();
-    target_[b].is_set = false;
-    v_[b].setZero();
-  }
-  turn(b);
+  state_.displace(b, h * linear_part(next), h * angular_part(next));
+  if (!target_[b].is_set) return;
+  state_.x[b] = target_[b].position.template cast<T>();
+  state_.q[b] = target_[b].orientation.template cast<T>();
+  state_.turn(b);
+  target_[b].is_set = false;
+  v_[b].setZero();
 }
 
 template <class T>
 void BasicRigidBodies<T>::shift(double h) {
-  shifted_x_ = x_;
-  shifted_q_ = q_;
+  shifted_x_ = state_.x;
+  shifted_q_ = state_.q;
   for (const Index b : slots_.active()) {
     if (motion_[b] == Motion::fixed) continue;
-    x_[b] += T(h) * v_[b].template head<3>();
-    q_[b] = (exponential<T>(T(h) * v_[b].template tail<3>()) * q_[b]).normalized();
-    turn(b);
+    state_.displace(b, T(h) * linear_part(v_[b]), T(h) * angular_part(v_[b]));
   }
 }
 
 template <class T>
 void BasicRigidBodies<T>::restore() {
-  x_ = shifted_x_;
-  q_ = shifted_q_;
-  for (const Index b : slots_.active()) turn(b);
+  state_.x = shifted_x_;
+  state_.q = shifted_q_;
+  for (const Index b : slots_.active()) state_.turn(b);
 }
 
 }  // namespace delassus

@@ -6,6 +6,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
+#include <delassus/math/twist.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <algorithm>
@@ -49,8 +50,8 @@ class ContactBook {
     c.shape = set.shape(b);
     c.pose = set.pose(b);
     const auto& v = set.velocity()[b];
-    c.velocity = v.template head<3>().template cast<double>();
-    if constexpr (Set::width == 6) c.angular_velocity = v.template tail<3>().template cast<double>();
+    c.velocity = linear_part(v).template cast<double>();
+    if constexpr (Set::width == 6) c.angular_velocity = angular_part(v).template cast<double>();
     else c.angular_velocity.setZero();
     c.is_movable = is_movable;
     c.group = set.group(b);

@@ -1,0 +1,95 @@
+/// Poses, masses and inertias of rigid bodies as arrays, and how a velocity moves them.
+#pragma once
+
+#include <delassus/math/rotation.hpp>
+#include <delassus/math/twist.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace delassus::inner {
+
+/// What M = diag(m 1, R I Rᵀ) is made of. x in m, in the world; I in kg·m², in the axes of R.
+template <class T>
+struct RigidState {
+  using Vector = Vec<3, T>;
+  using Matrix = Mat<3, 3, T>;
+  using Velocity = Vec<6, T>;
+
+  std::vector<Vector> x;
+  std::vector<Eigen::Quaternion<T>> q;
+  std::vector<Matrix> R, inertia, inverse_inertia, inverse_inertia_world;  ///< the last is R I⁻¹ Rᵀ
+  std::vector<T> mass, inverse_mass;
+
+  void resize(std::size_t n) {
+    x.resize(n);
+    q.resize(n);
+    for (auto* array : {&R, &inertia, &inverse_inertia, &inverse_inertia_world}) array->resize(n);
+    for (auto* array : {&mass, &inverse_mass}) array->resize(n);
+  }
+
+  /// A body that is not dynamic answers to no impulse: A⁻¹ = 0.
+  void set_mass(Index b, bool is_dynamic) {
+    inverse_mass[b] = is_dynamic ? T(1) / mass[b] : T(0);
+    if (!is_dynamic) inverse_inertia[b].setZero();
+    turn(b);
+  }
+
+  /// R and R I⁻¹ Rᵀ of the present orientation.
+  void turn(Index b) {
+    R[b] = q[b].toRotationMatrix();
+    inverse_inertia_world[b] = R[b] * inverse_inertia[b] * R[b].transpose();
+  }
+
+  /// M v.
+  Velocity momentum(Index b, const Velocity& v, T scale) const {
+    return twist<T>(scale * mass[b] * linear_part(v),
+                    scale * (R[b] * (inertia[b] * (R[b].transpose() * angular_part(v)))));
+  }
+
+  /// M⁻¹ X / mass scale, for each column of X.
+  template <int C>
+  Mat<6, C, T> solve(Index b, const Mat<6, C, T>& X, T inverse_scale) const {
+    Mat<6, C, T> Y;
+    const T over_mass = inverse_scale * inverse_mass[b];
+    const T* K = inverse_inertia_world[b].data();
+    for (int c = 0; c < C; ++c) {
+      const T* p = X.data() + 6 * c;
+      T* v = Y.data() + 6 * c;
+      for (int i = 0; i < 3; ++i) {
+        v[i] = over_mass * p[i];
+        v[i + 3] = row_times(K[i], K[i + 3], K[i + 6], p + 3);
+        if (inverse_scale != T(1)) v[i + 3] *= inverse_scale;
+      }
+    }
+    return Y;
+  }
+
+  /// x + step, and the axes turned by the vector `turn_by`, rad.
+  void displace(Index b, const Vector& step, const Vector& turn_by) {
+    x[b] += step;
+    q[b] = unit(exponential<T>(turn_by) * q[b]);
+    turn(b);
+  }
+
+  /// q of one dynamic body after a step from its velocity before and after the impulses; returns the one it
+  /// ends with. `old_share` of the old velocity in the mean that moves it: 0 for kick and drift, ½ for the
+  /// midpoint rule.
+  Velocity drift(Index b, const Velocity& before, const Velocity& next, T h, T old_share) {
+    x[b] += h * mean<Vector>(linear_part(before), linear_part(next), old_share);
+    // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
+    const Vector kicked = R[b].transpose() * angular_part(next);
+    const Vector start = old_share > T(0) ? R[b].transpose() * angular_part(before) : kicked;
+    const Vector impulse = inertia[b] * kicked;
+    const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
+    const Vector spatial = R[b] * impulse;
+    q[b] = unit(q[b] * cayley<T>(h * midpoint_rate<T>(inertia[b], start, old_impulse, impulse, h)));
+    turn(b);
+    // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
+    // ones.
+    return twist<T>(linear_part(next), R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial)));
+  }
+};
+
+}  // namespace delassus::inner
