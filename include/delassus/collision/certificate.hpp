@@ -59,7 +59,7 @@ inline SignedPair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a
   };
   const auto consider_faces = [&](const Shape& s, const Mat3& turn) {
     for (int k = 0; k < 3; ++k)
-      for (const double sign : {1.0, -1.0}) consider(sign * turn.col(k));
+      for (const double sign : {1.0, -1.0}) consider(sign * Vec3(turn.col(k)));
     if (s.kind == ShapeKind::convex_hull)
       for (Index f = 0; f < s.hull->face_count(); ++f) consider(turn * s.hull->normal(f));
   };

@@ -33,7 +33,7 @@ inline void nearest_on_segments(const Vec3& u, const Vec3& v, const Vec3& x, dou
 }
 
 inline SignedPair two_capsules(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& wish) {
-  const Vec3 u = a.size[1] * Vec3::UnitZ(), v = b.size[1] * b_in_a.rotation.col(2);
+  const Vec3 u = a.size[1] * unit_axis(2), v = b.size[1] * Vec3(b_in_a.rotation.col(2));
   double s = 0, t = 0;
   nearest_on_segments(u, v, b_in_a.position, s, t);
   const Vec3 on_a = s * u, on_b = b_in_a.position + t * v, apart = on_b - on_a;
@@ -46,7 +46,7 @@ inline SignedPair two_capsules(const Shape& a, const Shape& b, const Pose& b_in_
     const Vec3 out = u.cross(v);
     const bool is_plane = out.squaredNorm() > 1e-12 * u.squaredNorm() * v.squaredNorm();
     r.normal =
-        is_plane ? Vec3(with_sign(1, out.dot(wish)) * out.normalized()) : perpendicular(Vec3::UnitZ(), wish);
+        is_plane ? Vec3(with_sign(1, out.dot(wish)) * out.normalized()) : perpendicular(unit_axis(2), wish);
   }
   r.point_a = on_a + a.size[0] * r.normal;
   r.point_b = on_b - b.size[0] * r.normal;

@@ -25,7 +25,7 @@ struct Collider {
 struct ContactPoint {
   Index a = -1, b = -1;
   Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();  ///< point_b − point_a = gap · normal
-  Vec3 normal = Vec3::UnitZ();                          ///< unit, from A to B
+  Vec3 normal = unit_axis(2);                           ///< unit, from A to B
   double gap = 0;                                       ///< m, negative when the bodies overlap
   std::uint64_t pair = 0;                               ///< key of a · 2³² + key of b
   std::uint32_t feature = 0;  ///< names the point within its pair, kept from step to step

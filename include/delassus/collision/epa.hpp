@@ -21,8 +21,9 @@ inline Vec3 perpendicular(const Vec3& axis, const Vec3& wish) {
   const double length = across.norm();
   if (length > 1e-6 * wish.norm()) return across / length;
   int k = 0;
-  axis.cwiseAbs().minCoeff(&k);
-  return axis.cross(Vec3::Unit(k)).normalized();
+  for (const int j : {1, 2})
+    if (std::abs(axis[j]) < std::abs(axis[k])) k = j;
+  return axis.cross(unit_axis(k)).normalized();
 }
 
 /// Grows the simplex to one more dimension: takes the support point that lies farthest from its hull.
@@ -38,9 +39,9 @@ bool grow(const D& difference, std::array<DifferencePoint, 4>& p, int& count, do
   };
   if (count == 1) {
     for (int k = 0; k < 6; ++k)
-      consider((k < 3 ? 1.0 : -1.0) * Vec3::Unit(k % 3), [](const Vec3& d) { return d.norm(); });
+      consider((k < 3 ? 1.0 : -1.0) * unit_axis(k % 3), [](const Vec3& d) { return d.norm(); });
   } else if (count == 2) {
-    const Vec3 axis = (p[1].w - p[0].w).normalized(), x = perpendicular(axis, Vec3::UnitX()),
+    const Vec3 axis = (p[1].w - p[0].w).normalized(), x = perpendicular(axis, unit_axis(0)),
                y = axis.cross(x);
     constexpr double c = 0.5, s = 0.86602540378443864676;
     constexpr double hexagon[6][2] = {{1, 0}, {c, s}, {-c, s}, {-1, 0}, {-c, -s}, {c, -s}};
@@ -100,7 +101,7 @@ template <class D>
 EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
   double size = 0, size_a = 0, size_b = 0;
   for (int k = 0; k < 3; ++k) {
-    const DifferencePoint high = difference.core(Vec3::Unit(k)), low = difference.core(-Vec3::Unit(k));
+    const DifferencePoint high = difference.core(unit_axis(k)), low = difference.core(-unit_axis(k));
     size = std::max(size, (high.w - low.w).norm());
     size_a = std::max(size_a, (high.a - low.a).norm());
     size_b = std::max(size_b, (high.b - low.b).norm());

@@ -26,7 +26,7 @@ struct GjkEpa {
     const inner::Difference difference{a, b, b_in_a};
     const double radius = difference.radius();
     if (!(guess.squaredNorm() > 0)) guess = b_in_a.position;
-    if (!(guess.squaredNorm() > 0)) guess = Vec3::UnitZ();
+    if (!(guess.squaredNorm() > 0)) guess = unit_axis(2);
     const inner::GjkResult apart = inner::gjk(difference, guess, margin + radius);
     if (apart.is_apart) {
       const inner::Simplex& s = apart.simplex;

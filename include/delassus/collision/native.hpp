@@ -7,19 +7,23 @@
 
 namespace delassus {
 
-/// Sweep and prune, then formulas, GJK and EPA.
-struct NativeCollision {
+/// Pairs from `Broad`, distances from `Kernel`. A template, so that only a program that detects collisions compiles it.
+template <NarrowKernel Kernel, BroadPhase Broad>
+struct NativeDetection {
   using plays = role::Collision;
 
   double margin = -1;  ///< contacts up to this gap, m; negative: by size and speed (CollisionSettings)
   double contact_distance = 0;  ///< thickness between the bodies, m
   int max_points = 4;           ///< of one pair
-  CollisionEngine<GjkEpa, SweepAndPrune> engine{};
+  CollisionEngine<Kernel, Broad> engine{};
 
   void check() const { CollisionSettings{margin, contact_distance, max_points}.check("NativeCollision"); }
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
     return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
   }
 };
+
+/// Sweep and prune, then formulas, GJK and EPA.
+using NativeCollision = NativeDetection<GjkEpa, SweepAndPrune>;
 
 }  // namespace delassus

@@ -56,15 +56,21 @@ class SweepAndPrune {
     Index count = 0;
     for (const Aabb& box : boxes) {
       if (box.isEmpty()) continue;
-      if (count++ == 0) low = box.center();
-      const Vec3 centre = box.center() - low;
-      sum += centre;
-      squares += centre.cwiseProduct(centre);
+      const Vec3 middle = (box.min() + box.max()) / 2;
+      if (count++ == 0) low = middle;
+      for (int k = 0; k < 3; ++k) {
+        const double centre = middle[k] - low[k];
+        sum[k] += centre;
+        squares[k] += centre * centre;
+      }
     }
     if (count == 0) return axis_;
-    const Vec3 variance = squares - sum.cwiseProduct(sum) / double(count);
+    Vec3 variance;
     int widest = 0;
-    variance.maxCoeff(&widest);
+    for (int k = 0; k < 3; ++k) {
+      variance[k] = squares[k] - sum[k] * sum[k] / double(count);
+      if (variance[k] > variance[widest]) widest = k;
+    }
     return variance[widest] > 2 * variance[axis_] ? widest : axis_;
   }
 

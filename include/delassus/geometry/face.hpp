@@ -30,10 +30,8 @@ namespace inner {
 inline constexpr double line_slope = 0.05;
 
 inline void box_face(const Shape& s, const Vec3& d, Face& face) {
-  int k = 0;
-  d.cwiseAbs().maxCoeff(&k);
-  const int i = (k + 1) % 3, j = (k + 2) % 3, side = d[k] < 0 ? -1 : 1;
-  face.normal = side * Vec3::Unit(k);
+  const int k = largest_entry(d), i = (k + 1) % 3, j = (k + 2) % 3, side = d[k] < 0 ? -1 : 1;
+  face.normal = side * unit_axis(k);
   constexpr int signs[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
   for (const auto& [u, v] : signs) {
     Vec3 p;
@@ -58,7 +56,7 @@ inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
   const double across = std::hypot(d[0], d[1]);
   if (across > std::abs(d[2])) return mantle_line(s.size[0], s.size[1], d, 16, face);
   const int side = d[2] < 0 ? -1 : 1;
-  face.normal = side * Vec3::UnitZ();
+  face.normal = side * unit_axis(2);
   constexpr double c = 0.70710678118654752440;
   constexpr double octagon[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
   for (int k = 0; k < 8; ++k)

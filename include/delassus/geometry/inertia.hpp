@@ -18,7 +18,11 @@ namespace inner {
 inline constexpr double pi = 3.14159265358979323846;
 
 inline MassProperties solid(double mass, double xx, double yy, double zz) {
-  return {.mass = mass, .inertia = Vec3(xx, yy, zz).asDiagonal()};
+  MassProperties p{.mass = mass};
+  p.inertia(0, 0) = xx;
+  p.inertia(1, 1) = yy;
+  p.inertia(2, 2) = zz;
+  return p;
 }
 
 inline MassProperties unit_solid(const Sphere& s) {
@@ -47,8 +51,10 @@ inline MassProperties unit_solid(const Capsule& c) {
 
 /// I = tr(S) 1 − S with the second moment S.
 inline MassProperties unit_solid(const ConvexHull& h) {
-  const Mat3& s = h.second_moment();
-  return {.mass = h.volume(), .centre = h.centroid(), .inertia = s.trace() * Mat3::Identity() - s};
+  const Mat3& S = h.second_moment();
+  MassProperties p{.mass = h.volume(), .centre = h.centroid(), .inertia = -S};
+  for (int k = 0; k < 3; ++k) p.inertia(k, k) += S(0, 0) + S(1, 1) + S(2, 2);
+  return p;
 }
 
 /// Of density 1 kg/m³.

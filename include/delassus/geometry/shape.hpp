@@ -12,6 +12,18 @@ namespace delassus {
 
 class ConvexHull;
 
+namespace inner {
+
+/// n / |n|, scaled first so that no square overflows or vanishes; zero stays zero.
+inline Vec3 direction_of(const Vec3& n) {
+  const double size = std::abs(n[largest_entry(n)]);
+  if (!(size > 0)) return n;
+  const Vec3 scaled = n / size;
+  return scaled / scaled.norm();
+}
+
+}  // namespace inner
+
 /// Ball around the origin of the body. m.
 struct Sphere {
   double radius = 0;
@@ -36,7 +48,7 @@ struct Cylinder {
 /// `normal` points out of the solid and need not be given as a unit vector; `offset` is in m along the unit
 /// normal.
 struct HalfSpace {
-  Vec3 normal = Vec3::UnitZ();
+  Vec3 normal = unit_axis(2);
   double offset = 0;
 };
 
@@ -56,7 +68,7 @@ struct Shape {
   constexpr Shape(const Capsule& c) : kind(ShapeKind::capsule), size{c.radius, 0.5 * c.height} {}
   constexpr Shape(const Cylinder& c) : kind(ShapeKind::cylinder), size{c.radius, 0.5 * c.height} {}
   Shape(const HalfSpace& h) : kind(ShapeKind::half_space) {
-    const Vec3 n = h.normal.stableNormalized();
+    const Vec3 n = inner::direction_of(h.normal);
     size = {n[0], n[1], n[2], h.offset};
   }
   constexpr Shape(const ConvexHull& h) : kind(ShapeKind::convex_hull), hull(&h) {}

@@ -12,7 +12,7 @@ namespace delassus {
 struct ContactRecord {
   Anchor a, b;
   Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();
+  Vec3 normal = unit_axis(2);
   double gap = 0;
   std::uint64_t pair = 0;
   std::uint32_t feature = 0;

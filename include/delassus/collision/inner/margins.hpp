@@ -67,15 +67,17 @@ inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, 
 /// A body that is not finite has none. (min(x, L_a/2) + min(y, L_b/2) ≥ min(x + y, min(L_a, L_b)/2), and L_a
 /// + L_b ≥ 2 min(L_a, L_b).)
 inline Aabb alarm_box(const Collider& c, double h, const CollisionSettings& s) {
-  Aabb box = tight_box(c.shape, c.pose);
-  if (box.isEmpty() || !is_finite(box.sizes()) || !is_finite(c.pose.rotation) || !std::isfinite(top_speed(c)))
+  const Aabb box = tight_box(c.shape, c.pose);
+  const Vec3 sizes = box.max() - box.min();
+  if (box.isEmpty() || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(top_speed(c)))
     return Aabb();
   const double scale = length_scale(c.shape);
   const double share =
       s.margin >= 0 ? 0.5 * s.margin
                     : std::min(std::max(0.5 * margin_share * scale, top_speed(c) * h), margin_limit * scale);
-  const Vec3 more = Vec3::Constant(0.5 * s.contact_distance + share + 1e-12 * box.sizes().maxCoeff());
-  return Aabb(box.min() - more, box.max() + more);
+  const double more = 0.5 * s.contact_distance + share + 1e-12 * sizes.maxCoeff();
+  const Vec3 diagonal(more, more, more);
+  return Aabb(box.min() - diagonal, box.max() + diagonal);
 }
 
 inline Plane plane_of(const Shape& s, const Pose& pose) {
@@ -86,9 +88,12 @@ inline Plane plane_of(const Shape& s, const Pose& pose) {
 /// False when the box, with all the margin its pair with this half-space can have, lies clear of the solid.
 inline bool may_touch(const Collider& half_space, const Aabb& box, double h, const CollisionSettings& s) {
   const Plane plane = plane_of(half_space.shape, half_space.pose);
-  const double lowest = plane.normal.dot(box.center()) - 0.5 * plane.normal.cwiseAbs().dot(box.sizes());
+  const Vec3 sizes = box.max() - box.min(), centre = (box.min() + box.max()) / 2;
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) reach += std::abs(plane.normal[k]) * sizes[k];
+  const double lowest = plane.normal.dot(centre) - 0.5 * reach;
   const double share =
-      s.margin >= 0 ? 0.5 * s.margin : std::max(half_space.velocity.norm() * h, 0.5 * box.sizes().maxCoeff());
+      s.margin >= 0 ? 0.5 * s.margin : std::max(half_space.velocity.norm() * h, 0.5 * sizes.maxCoeff());
   return lowest - plane.offset <= s.contact_distance + share;
 }
 

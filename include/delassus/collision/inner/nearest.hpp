@@ -18,16 +18,21 @@ struct NearestSurface {
 inline NearestSurface nearest_surface_of_ball(double radius, const Vec3& p, const Vec3& wish) {
   const double length = p.norm();
   if (length > 0) return {p / length, length - radius};
-  return {wish.squaredNorm() > 0 ? wish.normalized() : Vec3(Vec3::UnitZ()), -radius};
+  return {wish.squaredNorm() > 0 ? wish.normalized() : unit_axis(2), -radius};
 }
 
 inline NearestSurface nearest_surface_of_box(const Vec3& half, const Vec3& p) {
-  const Vec3 beyond = p - p.cwiseMax(-half).cwiseMin(half);
+  Vec3 beyond;
+  for (int k = 0; k < 3; ++k) beyond[k] = p[k] - std::clamp(p[k], -half[k], half[k]);
   const double length = beyond.norm();
   if (length > 0) return {beyond / length, length};
-  int k = 0;
-  const double inside = (half - p.cwiseAbs()).minCoeff(&k);
-  return {with_sign(1, p[k]) * Vec3::Unit(k), -inside};
+  int nearest = 0;
+  double inside = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const double depth = half[k] - std::abs(p[k]);
+    if (depth < inside) inside = depth, nearest = k;
+  }
+  return {with_sign(1, p[nearest]) * unit_axis(nearest), -inside};
 }
 
 inline NearestSurface nearest_surface_of_capsule(double radius, double half, const Vec3& p,
@@ -35,14 +40,14 @@ inline NearestSurface nearest_surface_of_capsule(double radius, double half, con
   const Vec3 from_axis = p - Vec3(0, 0, std::clamp(p[2], -half, half));
   const double length = from_axis.norm();
   if (length > 0) return {from_axis / length, length - radius};
-  return {perpendicular(Vec3::UnitZ(), wish), -radius};
+  return {perpendicular(unit_axis(2), wish), -radius};
 }
 
 inline NearestSurface nearest_surface_of_cylinder(double radius, double half, const Vec3& p,
                                                   const Vec3& wish) {
   const double rho = std::hypot(p[0], p[1]), side = rho - radius, cap = std::abs(p[2]) - half;
-  const Vec3 outward = rho > 0 ? Vec3(p[0] / rho, p[1] / rho, 0) : perpendicular(Vec3::UnitZ(), wish);
-  const Vec3 along = with_sign(1, p[2]) * Vec3::UnitZ();
+  const Vec3 outward = rho > 0 ? Vec3(p[0] / rho, p[1] / rho, 0) : perpendicular(unit_axis(2), wish);
+  const Vec3 along = with_sign(1, p[2]) * unit_axis(2);
   if (side > 0 && cap > 0) {
     const double length = std::hypot(side, cap);
     return {(side * outward + cap * along) / length, length};

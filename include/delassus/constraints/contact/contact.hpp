@@ -13,10 +13,12 @@ namespace delassus {
 inline Mat3 contact_frame(const Vec3& n) {
   const double sign = std::copysign(1.0, n[2]);
   const double a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+  const double rows[3][3] = {{n[0], n[1], n[2]},
+                             {1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]},
+                             {b, sign + n[1] * n[1] * a, -n[1]}};
   Mat3 frame;
-  frame.row(0) = n;
-  frame.row(1) << 1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0];
-  frame.row(2) << b, sign + n[1] * n[1] * a, -n[1];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) frame(i, j) = rows[i][j];
   return frame;
 }
 
@@ -46,8 +48,9 @@ struct Contact {
     const Vec3 point = item.record.point();
     auto a = row.end(item.record.a, point), b = row.end(item.record.b, point);
     for (int k = 0; k < rows; ++k) {
-      a.along(k, -item.frame.row(k).transpose());
-      b.along(k, item.frame.row(k).transpose());
+      const Vec3 direction(item.frame(k, 0), item.frame(k, 1), item.frame(k, 2));
+      a.along(k, -direction);
+      b.along(k, direction);
     }
     row.phi(0, item.record.gap);
     if constexpr (requires { law.soften(row, item.record.gap); }) law.soften(row, item.record.gap);

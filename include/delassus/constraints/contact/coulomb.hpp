@@ -55,13 +55,18 @@ struct Coulomb {
     // its inverse exists: any lift shifts the solution by as much.
     const T mean = W.trace() / T(3), rounding = T(64) * std::numeric_limits<T>::epsilon();
     const T lift = W.determinant() > rounding * mean * mean * mean ? T(0) : rounding * mean;
-    const Mat<3, 3, T> lifted = W + lift * Mat<3, 3, T>::Identity();
-    memory.inverse = lifted.inverse();
+    Mat<3, 3, T> lifted = W;
+    for (int k = 0; k < 3; ++k) lifted(k, k) += lift;
+    memory.inverse = inverse(lifted);
     memory.normal = lifted(0, 0);
-    memory.to_normal = lifted.template topRightCorner<1, 2>().transpose() / memory.normal;
-    memory.from_normal = lifted.template bottomLeftCorner<2, 1>() / memory.normal;
-    memory.schur = lifted.template bottomRightCorner<2, 2>() -
-                   memory.normal * memory.from_normal * memory.to_normal.transpose();
+    for (int i = 0; i < 2; ++i) {
+      memory.to_normal[i] = lifted(0, i + 1) / memory.normal;
+      memory.from_normal[i] = lifted(i + 1, 0) / memory.normal;
+    }
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        memory.schur(i, j) =
+            lifted(i + 1, j + 1) - memory.normal * memory.from_normal[i] * memory.to_normal[j];
     memory.alpha = 0;
   }
 
@@ -73,7 +78,7 @@ struct Coulomb {
       return;
     }
     const T mu = T(p.friction);
-    c.lambda.noalias() = -(memory.inverse * b);
+    c.lambda = -(memory.inverse * b);
     const T limit = mu * c.lambda[0];
     if (c.lambda[0] >= T(0) && c.lambda[1] * c.lambda[1] + c.lambda[2] * c.lambda[2] <= limit * limit) return;
     c.lambda = slip(b, mu, memory);

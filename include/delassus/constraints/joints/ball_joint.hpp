@@ -19,8 +19,8 @@ struct BallJoint : Bilateral<3> {
     const Vec3 point = !item.a.has_frame ? xa : !item.b.has_frame ? xb : Vec3(0.5 * (xa + xb));
     auto a = row.end(item.a, point), b = row.end(item.b, point);
     for (int k = 0; k < 3; ++k) {
-      a.along(k, Vec3::Unit(k));
-      b.along(k, -Vec3::Unit(k));
+      a.along(k, unit_axis(k));
+      b.along(k, -unit_axis(k));
       row.phi(k, xa[k] - xb[k]);
     }
   }

@@ -33,7 +33,7 @@ struct DistanceJoint : Bilateral<1> {
   void linearize(const Item& item, const auto& world, auto row) const {
     const Vec3 xa = world.point(item.a), xb = world.point(item.b), span = xa - xb;
     const double distance = span.norm();
-    const Vec3 e = distance > 0 ? Vec3(span / distance) : Vec3(Vec3::UnitZ());
+    const Vec3 e = distance > 0 ? Vec3(span / distance) : unit_axis(2);
     // Along the line of the two points every point of it gives the same row, each end's own included.
     row.end(item.a, xa).along(0, e);
     row.end(item.b, xb).along(0, -e);

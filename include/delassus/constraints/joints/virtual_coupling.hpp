@@ -49,12 +49,12 @@ struct VirtualCoupling : Bilateral<6> {
     const Vec3 turn = logarithm<double>(world.frame(item.a) * world.frame(item.b).conjugate());
     auto a = row.end(item.a, middle), b = row.end(item.b, middle);
     for (int k = 0; k < 3; ++k) {
-      a.along(k, Vec3::Unit(k));
-      b.along(k, -Vec3::Unit(k));
+      a.along(k, unit_axis(k));
+      b.along(k, -unit_axis(k));
       row.phi(k, xa[k] - xb[k]);
       row.soft(k, item.stiffness, item.damping);
-      a.about(3 + k, Vec3::Unit(k));
-      b.about(3 + k, -Vec3::Unit(k));
+      a.about(3 + k, unit_axis(k));
+      b.about(3 + k, -unit_axis(k));
       row.phi(3 + k, turn[k]);
       row.soft(3 + k, item.angular_stiffness, item.angular_damping);
     }

@@ -29,8 +29,9 @@ inline std::vector<Index> coplanar_regions(std::span<const Vec3> points,
 
   std::vector<Index> seeds(triangles.size()), region(triangles.size(), -1), front;
   std::iota(seeds.begin(), seeds.end(), 0);
-  std::stable_sort(seeds.begin(), seeds.end(),
-                   [&](Index s, Index t) { return triangles[s].area > triangles[t].area; });
+  std::sort(seeds.begin(), seeds.end(), [&](Index s, Index t) {
+    return triangles[s].area != triangles[t].area ? triangles[s].area > triangles[t].area : s < t;
+  });
   count = 0;
   for (const Index seed : seeds) {
     if (region[seed] >= 0) continue;
