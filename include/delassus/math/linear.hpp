@@ -28,9 +28,12 @@ Vec<3, T> unit_axis(int k) {
 
 /// The matrix with these columns.
 template <class T>
-Mat<3, 3, T> columns(const Vec<3, T>& x, const Vec<3, T>& y, const Vec<3, T>& z) {
+inline Mat<3, 3, T> columns(const Vec<3, T>& x, const Vec<3, T>& y, const Vec<3, T>& z) {
   Mat<3, 3, T> m;
-  for (int i = 0; i < 3; ++i) m(i, 0) = x[i], m(i, 1) = y[i], m(i, 2) = z[i];
+  T* e = m.data();
+  e[0] = x[0], e[1] = x[1], e[2] = x[2];
+  e[3] = y[0], e[4] = y[1], e[5] = y[2];
+  e[6] = z[0], e[7] = z[1], e[8] = z[2];
   return m;
 }
 
@@ -43,13 +46,13 @@ int largest_entry(const Vec<3, T>& a) {
 
 /// The matrix of the cross product: skew(a) b = a × b.
 template <class T>
-Mat<3, 3, T> skew(const Vec<3, T>& a) {
+inline Mat<3, 3, T> skew(const Vec<3, T>& a) {
   return columns<T>({0, a[2], -a[1]}, {-a[2], 0, a[0]}, {a[1], -a[0], 0});
 }
 
 /// A⁻¹ = adj(A) / det A. Pre: A is regular.
 template <class T>
-Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
+inline Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
   const Vec<3, T> x(A(0, 0), A(1, 0), A(2, 0)), y(A(0, 1), A(1, 1), A(2, 1)), z(A(0, 2), A(1, 2), A(2, 2));
   const Vec<3, T> yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the rows of adj(A)
   return T(1) / x.dot(yz) * columns<T>({yz[0], zx[0], xy[0]}, {yz[1], zx[1], xy[1]}, {yz[2], zx[2], xy[2]});
@@ -57,10 +60,8 @@ Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
 
 /// True when every entry is finite: 0·x is 0 for finite x and NaN otherwise, so one sum decides.
 template <class T, int R, int C>
-bool is_finite(const Eigen::Matrix<T, R, C>& x) {
-  T sum = 0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) sum += 0 * x.data()[i];
-  return sum == T(0);
+inline bool is_finite(const Eigen::Matrix<T, R, C>& x) {
+  return (x * T(0)).sum() == T(0);
 }
 
 }  // namespace delassus

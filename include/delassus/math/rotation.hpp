@@ -9,7 +9,7 @@ namespace delassus {
 
 /// q / |q|.
 template <class T>
-Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
+inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
   const T size = q.norm();
   return {q.w() / size, q.x() / size, q.y() / size, q.z() / size};
 }

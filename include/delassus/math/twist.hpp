@@ -7,20 +7,22 @@ namespace delassus {
 
 /// Of a point's velocity too, which has no other half.
 template <int N, class T>
-Vec<3, T> linear_part(const Eigen::Matrix<T, N, 1>& v) {
+inline Vec<3, T> linear_part(const Eigen::Matrix<T, N, 1>& v) {
   static_assert(N == 3 || N == 6);
   return {v.data()[0], v.data()[1], v.data()[2]};
 }
 
 template <class T>
-Vec<3, T> angular_part(const Eigen::Matrix<T, 6, 1>& v) {
+inline Vec<3, T> angular_part(const Eigen::Matrix<T, 6, 1>& v) {
   return {v.data()[3], v.data()[4], v.data()[5]};
 }
 
 template <class T>
-Vec<6, T> twist(const Vec<3, T>& linear, const Vec<3, T>& angular) {
+inline Vec<6, T> twist(const Vec<3, T>& linear, const Vec<3, T>& angular) {
   Vec<6, T> both;
-  for (int k = 0; k < 3; ++k) both.data()[k] = linear[k], both.data()[k + 3] = angular[k];
+  T* e = both.data();
+  e[0] = linear[0], e[1] = linear[1], e[2] = linear[2];
+  e[3] = angular[0], e[4] = angular[1], e[5] = angular[2];
   return both;
 }
 

@@ -44,18 +44,21 @@ inline constexpr bool steps_by_block<World<Sets...>> = true;
 
 }  // namespace inner
 
-/// v_next = v + A⁻¹ p and q, v from it, without arrays in between: bit for bit what `free_motion` and `advance` do.
+/// v_next = v + A⁻¹ p and q, v from it, without arrays in between: what `free_motion` and `advance` do, to the bit but
+/// for the sign of a zero.
 template <class Set, class I>
 void move_freely(Set& set, const I& integrator, double h) {
   using Velocity = typename Set::Velocity;
   auto blocks = set.by_block(integrator.scale(h));
   for (const Index b : set.active()) {
-    OneBlock<decltype(blocks), Velocity> block{blocks, b, blocks.velocity(b)};
-    if (blocks.moves(b)) {
+    OneBlock<decltype(blocks), Velocity> block{blocks, b, {}};
+    if (!blocks.moves(b)) [[unlikely]] {
+      block.v_next = blocks.velocity(b);
+    } else {
       std::array<Velocity, 1> p;
-      p[0].setZero();
+      p[0].setConstant(typename Velocity::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
       integrator.impulse(block, p, h);
-      block.v_next += blocks.solve(b, p[0]);
+      block.v_next = blocks.velocity(b) + blocks.solve(b, p[0]);
     }
     integrator.advance(block, h);
   }
