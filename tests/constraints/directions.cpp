@@ -73,7 +73,8 @@ struct Written {
 
   Written(const Law& law, const typename Law::Item& item, const TwoSets& world) {
     PoolRows<Law::rows, double, 6, 3> rows;
-    law.linearize(item, world, RowWriter(world, rows));
+    rows.reset(1);
+    law.linearize(item, world, RowWriter(world, rows, 0));
     rows.close();
     phi = rows.phi[0];
     const auto& rigid = std::get<0>(rows.sets);

@@ -17,7 +17,7 @@ struct Graph {
   template <int p>
   void item(std::vector<Index> held) {
     auto& pool = rows.pool<p>();
-    pool.append();
+    pool.phi.emplace_back();
     for (const Index b : held) {
       std::get<0>(pool.sets).block.push_back(b);
       std::get<0>(pool.sets).H.emplace_back();

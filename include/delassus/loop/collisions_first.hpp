@@ -1,7 +1,7 @@
 /// The order of the stages in which contacts may push during the free motion.
 #pragma once
 
-#include <delassus/core/roles.hpp>
+#include <delassus/loop/scheme.hpp>
 
 namespace delassus {
 
@@ -13,14 +13,8 @@ struct CollisionsFirst {
   void run(auto& loop) const {
     loop.detect();
     loop.push_apart();
-    loop.linearize();
-    loop.free_motion();
-    loop.find_islands();
-    loop.make_bias();
-    loop.build();
-    loop.solve();
-    loop.correct();
-    loop.advance();
+    inner::linearize_to_build(loop);
+    inner::solve_to_advance(loop);
   }
 };
 

@@ -1,7 +1,7 @@
 /// The order of the stages in which last step's impulses act first.
 #pragma once
 
-#include <delassus/core/roles.hpp>
+#include <delassus/loop/scheme.hpp>
 
 namespace delassus {
 
@@ -15,15 +15,9 @@ struct PredictiveScheme {
 
   void run(auto& loop) const {
     loop.detect();
-    loop.linearize();
-    loop.free_motion();
-    loop.find_islands();
-    loop.make_bias();
-    loop.build();
+    inner::linearize_to_build(loop);
     loop.predict();
-    loop.solve();
-    loop.correct();
-    loop.advance();
+    inner::solve_to_advance(loop);
   }
 };
 

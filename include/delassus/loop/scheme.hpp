@@ -7,6 +7,26 @@
 
 namespace delassus {
 
+namespace inner {
+
+/// From what was detected to W and d.
+void linearize_to_build(auto& loop) {
+  loop.linearize();
+  loop.free_motion();
+  loop.find_islands();
+  loop.make_bias();
+  loop.build();
+}
+
+/// From W and d to the end of the step.
+void solve_to_advance(auto& loop) {
+  loop.solve();
+  loop.correct();
+  loop.advance();
+}
+
+}  // namespace inner
+
 /// Detect, linearise, move freely, and solve: the plain order. A scheme calls the stages of a loop in its own order.
 struct PlainOrder {
   using plays = role::Scheme;
@@ -16,14 +36,8 @@ struct PlainOrder {
       loop.move_freely();
     } else {
       loop.detect();
-      loop.linearize();
-      loop.free_motion();
-      loop.find_islands();
-      loop.make_bias();
-      loop.build();
-      loop.solve();
-      loop.correct();
-      loop.advance();
+      inner::linearize_to_build(loop);
+      inner::solve_to_advance(loop);
     }
   }
 };

@@ -21,7 +21,7 @@ struct SetBlocks {
   std::vector<Mat<w, R, T>> G;
 
   void reset() {
-    offset.assign(1, 0);
+    offset.resize(1);
     block.clear();
     H.clear();
   }
@@ -41,18 +41,16 @@ struct PoolRows {
 
   Index items() const { return Index(phi.size()); }
 
-  void reset() {
+  /// The rows of `items` items, all zero and without entries. The items are closed one by one, in order.
+  void reset(Index items) {
     std::apply([](auto&... s) { (s.reset(), ...); }, sets);
-    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) array->clear();
+    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) {
+      array->resize(items);
+      for (auto& x : *array) x.setZero();
+    }
   }
 
-  /// Opens the rows of one more item, all zero.
-  Index append() {
-    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) array->push_back(Vec<R, T>::Zero());
-    return items() - 1;
-  }
-
-  /// Closes the item opened last: its entries end here in every set.
+  /// The entries of the next item end here in every set.
   void close() {
     std::apply([](auto&... s) { (s.offset.push_back(Index(s.block.size())), ...); }, sets);
   }

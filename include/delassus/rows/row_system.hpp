@@ -41,8 +41,9 @@ struct RowSystem<T, Widths<w...>, R...> {
     return std::get<p>(pools);
   }
 
+  /// No item in any pool.
   void reset() {
-    std::apply([](auto&... p) { (p.reset(), ...); }, pools);
+    std::apply([](auto&... p) { (p.reset(0), ...); }, pools);
   }
 
   Index row_count() const {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/rows/anchor.hpp>
-#include <delassus/rows/pool_rows.hpp>
+#include <delassus/rows/row_system.hpp>
 
 namespace delassus {
 
@@ -36,6 +36,21 @@ class RowEnd {
     });
   }
 
+  /// The first n rows see the velocity of the point along the rows of `axes`, times `sign`: one visit for all of them.
+  template <int n>
+  void along(const Mat<n, 3>& axes, double sign) {
+    world_.visit(anchor_.set, [&](const auto& set, auto s) {
+      auto& blocks = std::get<s>(pool_.sets);
+      const int count = set.anchor_blocks(anchor_);
+      for (int b = 0; b < count; ++b)
+        for_each_index<n>([&](auto row) {
+          constexpr int k = row;
+          const Vec3 direction(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2));
+          blocks.H[first_ + b].row(k) += set.along(anchor_, b, point_, direction).transpose().template cast<T>();
+        });
+    });
+  }
+
   /// Row k sees the rate of turn about `axis`: u_k += axis · ω. The anchor must have a frame.
   void about(int k, const Vec3& axis) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
@@ -60,7 +75,7 @@ class RowEnd {
 template <class World, class Pool>
 class RowWriter {
  public:
-  RowWriter(const World& world, Pool& pool) : world_(world), pool_(pool), item_(pool.append()) {}
+  RowWriter(const World& world, Pool& pool, Index item) : world_(world), pool_(pool), item_(item) {}
 
   /// The blocks that move the material point of `anchor` that is at `point` (world, m) now.
   RowEnd<World, Pool> end(const Anchor& anchor, const Vec3& point) { return {world_, pool_, anchor, point}; }

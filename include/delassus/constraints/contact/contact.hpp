@@ -46,12 +46,9 @@ struct Contact {
   void linearize(const Item& item, const auto& world, auto row) const {
     (void)world;
     const Vec3 point = item.record.point();
-    auto a = row.end(item.record.a, point), b = row.end(item.record.b, point);
-    for (int k = 0; k < rows; ++k) {
-      const Vec3 direction(item.frame(k, 0), item.frame(k, 1), item.frame(k, 2));
-      a.along(k, -direction);
-      b.along(k, direction);
-    }
+    const Mat<rows, 3> axes = item.frame.template topRows<rows>();
+    row.end(item.record.a, point).along(axes, -1);
+    row.end(item.record.b, point).along(axes, 1);
     row.phi(0, item.record.gap);
     if constexpr (requires { law.soften(row, item.record.gap); }) law.soften(row, item.record.gap);
   }

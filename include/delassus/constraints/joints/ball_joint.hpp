@@ -17,12 +17,9 @@ struct BallJoint : Bilateral<3> {
   void linearize(const Item& item, const auto& world, auto row) const {
     const Vec3 xa = world.point(item.a), xb = world.point(item.b);
     const Vec3 point = !item.a.has_frame ? xa : !item.b.has_frame ? xb : Vec3(0.5 * (xa + xb));
-    auto a = row.end(item.a, point), b = row.end(item.b, point);
-    for (int k = 0; k < 3; ++k) {
-      a.along(k, unit_axis(k));
-      b.along(k, -unit_axis(k));
-      row.phi(k, xa[k] - xb[k]);
-    }
+    row.end(item.a, point).along(Mat3::Identity().eval(), 1);
+    row.end(item.b, point).along(Mat3::Identity().eval(), -1);
+    for (int k = 0; k < 3; ++k) row.phi(k, xa[k] - xb[k]);
   }
 };
 

@@ -8,6 +8,8 @@
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <tuple>
 #include <vector>
 
@@ -53,6 +55,13 @@ Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, co
   return u;
 }
 
+template <std::size_t rows>
+constexpr bool are_equalities(const std::array<RowKind, rows>& kinds) {
+  for (const RowKind kind : kinds)
+    if (kind != RowKind::equality) return false;
+  return true;
+}
+
 template <class Law, class Item>
 double restitution_of(const Law& law, const Item& item) {
   if constexpr (requires { law.restitution(item); }) return law.restitution(item);
@@ -83,7 +92,9 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
     constexpr auto kinds = row_kinds<Law>();
     for (Index i = 0; i < pool.items(); ++i) {
       const auto free = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_free; });
-      const auto start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
+      Vec<Law::rows, T> start = Vec<Law::rows, T>::Zero();
+      if (theta != 1 || !inner::are_equalities(kinds))
+        start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
       const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
       pool.d[i] = free;
       for (int k = 0; k < Law::rows; ++k) {

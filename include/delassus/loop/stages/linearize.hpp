@@ -14,13 +14,13 @@ namespace delassus {
 /// H and φ at the present configuration of the world.
 template <class World, class Laws, class Rows>
 void linearize(const World& world, const Laws& laws, Rows& rows) {
-  rows.reset();
   for_each_index<Laws::pool_count>([&](auto p) {
     const auto& pool = laws.template pool<p>();
     auto& out = rows.template pool<p>();
     using Pool = std::remove_cvref_t<decltype(out)>;
+    out.reset(pool.count());
     for (Index i = 0; i < pool.count(); ++i) {
-      pool.law.linearize(pool.item(i), world, RowWriter<World, Pool>(world, out));
+      pool.law.linearize(pool.item(i), world, RowWriter<World, Pool>(world, out, i));
       out.close();
     }
   });
