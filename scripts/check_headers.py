@@ -21,7 +21,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 INCLUDE = re.compile(r"^\s*#\s*include\s*<(delassus/[^>]+)>", re.MULTILINE)
-FLAGS = ["-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-missing-field-initializers"]
+# The warnings of cmake/programs.cmake, as errors: a user may compile with all of them.
+FLAGS = ["-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wnon-virtual-dtor",
+         "-Woverloaded-virtual", "-Werror", "-Wno-missing-field-initializers"]
 
 
 def closure(include, header, seen):

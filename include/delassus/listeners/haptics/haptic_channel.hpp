@@ -138,10 +138,10 @@ class BasicHapticChannel<Solver, C>::Channel {
   }
 
   HapticForce limit(HapticForce out) {
-    const ForceOutput& output = parameters_.output;
+    const ForceOutput& limits = parameters_.output;
     if (!is_finite(out.force) || !is_finite(out.torque)) out.solve.status = Status::quarantined;
-    out.force = output(out.force, output.max_force, filtered_force_);
-    out.torque = output(out.torque, output.max_torque, filtered_torque_);
+    out.force = limits(out.force, limits.max_force, filtered_force_);
+    out.torque = limits(out.torque, limits.max_torque, filtered_torque_);
     return out;
   }
 
