@@ -1,8 +1,8 @@
 /// Penalty contact: a spring and a damper along the normal in place of a rigid surface.
 #pragma once
 
-#include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/math/linear.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,7 @@ namespace delassus {
 /// a force of the free motion at the start of the step, with no row and no solve: stable for h √(k/m) < 2 only.
 template <class Law>
 struct Penalty {
+  using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
 
@@ -36,11 +37,6 @@ struct Penalty {
   }
 
   Parameters parameters() const { return law.parameters(); }
-  static void set_friction(Parameters& p, double friction)
-    requires requires { Law::set_friction(p, friction); }
-  {
-    Law::set_friction(p, friction);
-  }
 
   /// The normal row becomes a spring. The damper waits until the bodies touch.
   void soften(auto& row, double gap) const { row.soft(0, stiffness, gap < 0 ? damping : 0.0); }
@@ -60,32 +56,6 @@ struct Penalty {
       }
     }
     return f;
-  }
-
-  template <class T>
-  using Memory = inner::memory_of_t<Law, T>;
-
-  template <class T>
-  void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
-    inner::prepare(law, W, memory);
-  }
-  template <class T>
-  void project(const Parameters& p, Local<rows, T>& c, Memory<T>& memory) const {
-    inner::project(law, p, c, memory);
-  }
-  template <class T>
-  Vec<rows, T> natural_map(const Parameters& p, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
-    return law.natural_map(p, lambda, u, scale);
-  }
-  template <class T>
-  void clamp(const Parameters& p, Vec<rows, T>& lambda) const {
-    law.clamp(p, lambda);
-  }
-  template <class T>
-  bool is_sliding(const Parameters& p, const Vec<rows, T>& lambda) const
-    requires requires { law.is_sliding(p, lambda); }
-  {
-    return law.is_sliding(p, lambda);
   }
 };
 
