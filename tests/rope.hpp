@@ -20,5 +20,7 @@ struct Rope {
     row.end(item.b, b).along(0, -e);
     row.phi(0, (a - b).norm() - item.length);
   }
-  void project(const Item&, delassus::Local<1>& c) const { c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0)); }
+  void project(const Item&, delassus::Local<1>& c) const {
+    c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0));
+  }
 };

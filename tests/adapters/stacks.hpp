@@ -14,8 +14,8 @@ auto stack_loop_on() {
                        AcceleratedGaussSeidel{.tolerance = 1e-6}};
 }
 
-/// Ten bodies of unit height for a minute. The bounds are those of tests/loop/standing.cpp: they are the solver's, not the
-/// backend's.
+/// Ten bodies of unit height for a minute. The bounds are those of tests/loop/standing.cpp: they are the
+/// solver's, not the backend's.
 template <class Backend>
 void check_ten_stand(const Shape& shape) {
   auto loop = stack_loop_on<Backend>();
