@@ -115,8 +115,8 @@ template <class T>
     result.mass = *body.mass;
   }
   if (body.inertia) result.inertia = *body.inertia;
-  check_inertia(result.inertia, who);
   DELASSUS_EXPECT(has_inverse<T>(result.mass), who + ": mass " + without_inverse<T>(text(result.mass), "kg"));
+  check_inertia(result.inertia, who);
   const Vec3 moments = result.inertia.diagonal(), inverses = inverse_of_inertia(result.inertia).diagonal();
   for (int k = 0; k < 3; ++k)
     DELASSUS_EXPECT(has_inverse<T>(moments[k]) && has_inverse<T>(inverses[k]),

@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/rows/soft.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,8 @@ struct Penalty {
                     "Penalty: stiffness " + inner::text(stiffness) + " N/m must be finite and > 0");
     DELASSUS_EXPECT(std::isfinite(damping) && damping >= 0,
                     "Penalty: damping " + inner::text(damping) + " N·s/m must be finite and >= 0");
+    inner::check_soft_number(stiffness, "Penalty: stiffness", "N/m");
+    inner::check_soft_number(damping, "Penalty: damping", "N·s/m");
   }
 
   Parameters parameters() const { return law.parameters(); }
