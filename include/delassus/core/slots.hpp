@@ -50,6 +50,10 @@ class Slots {
     return active_;
   }
 
+  static void each_array(auto& self, auto&& f) {
+    f(self.generation_), f(self.alive_), f(self.free_), f(self.active_);
+  }
+
   /// What outlives a step.
   void memory(auto& archive) {
     archive(generation_, alive_, free_);

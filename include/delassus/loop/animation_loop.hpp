@@ -135,6 +135,12 @@ class AnimationLoop {
     to.h = h_;
   }
 
+  /// f(part) for the parts of that problem that hold arrays, where they are.
+  template <class F>
+  void each_problem_part(F&& f) const {
+    f(laws()), f(work_.rows), f(work_.W), f(work_.islands);
+  }
+
   /// The policy of a role, its default included.
   template <class Role>
   auto& part() {

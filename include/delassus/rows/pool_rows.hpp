@@ -20,6 +20,7 @@ struct SetBlocks {
   std::vector<Mat<R, w, T>> H;
   std::vector<Mat<w, R, T>> G;
 
+  static void each_array(auto& self, auto&& f) { f(self.offset), f(self.block), f(self.H), f(self.G); }
   void reset() {
     offset.assign(1, 0);
     block.clear();
@@ -44,6 +45,14 @@ struct PoolRows {
   void reset() {
     std::apply([](auto&... s) { (s.reset(), ...); }, sets);
     for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) array->clear();
+  }
+
+  /// f(array) for all arrays, whose room somebody wants to know or to make.
+  static void each_array(auto& self, auto&& f) {
+    std::apply([&](auto&... s) { (s.each_array(s, f), ...); }, self.sets);
+    for (auto* array : {&self.phi, &self.stiffness, &self.damping, &self.bias, &self.compliance, &self.softness, &self.d,
+                        &self.lambda})
+      f(*array);
   }
 
   /// Opens the rows of one more item, all zero.
