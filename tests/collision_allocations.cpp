@@ -2,22 +2,9 @@
 #include "catch.hpp"
 #include "collision/samples.hpp"
 #include "collision/scene.hpp"
+#include "count_allocations.hpp"
 
-#include <cstdlib>
-#include <new>
 #include <vector>
-
-namespace {
-long allocations = 0;
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc{};
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace delassus;
 using namespace scenes;

@@ -8,11 +8,13 @@ namespace {
 /// A tool that stirs a heap of balls in a box of walls, so that contacts come and go.
 struct Stirring {
   AnimationLoop<World<RigidBodies>, Constraints<Contact<Coulomb>, VirtualCoupling>, NativeCollision, DoubleBuffer, HapticChannel>
-      loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.3}}, VirtualCoupling{}},
-           NativeCollision{.margin = 0.02}, DoubleBuffer{}, HapticChannel{.output{.cutoff = 200, .max_force = 10}}};
+      loop;
   RigidBodies::Handle proxy{};
 
-  Stirring() {
+  explicit Stirring(std::size_t reserve = 0)
+      : loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.3}}, VirtualCoupling{}},
+             NativeCollision{.margin = 0.02}, DoubleBuffer{.reserve = reserve},
+             HapticChannel{.output{.cutoff = 200, .max_force = 10}, .reserve = reserve}} {
     auto& set = rigid_bodies(loop);
     set.add_fixed(HalfSpace{});
     for (int wall = 0; wall < 4; ++wall) {
@@ -71,4 +73,50 @@ TEST_CASE("a warm step that publishes allocates nothing") {
     if (n % 3 == 0) buffer.fetch();
   }
   REQUIRE(in_steps == 0);
+}
+
+TEST_CASE("channels with room for the largest problem publish without an allocation from the first step on") {
+  Stirring scene(4096);
+  auto& haptics = scene.loop.channel<HapticChannel>();
+  auto& buffer = scene.loop.channel<DoubleBuffer>();
+  long in_publishing = 0;
+  Index most = 0;
+  for (int n = 0; n < 300; ++n) {
+    scene.step(0.01 * n);
+    most = std::max(most, scene.loop.report().contacts);
+    const long before = allocations;
+    Eigen::internal::set_is_malloc_allowed(false);
+    buffer.publish(scene.loop);  // once more than the step did: the slots go round
+    haptics.publish(scene.loop);
+    haptics.tick({.position = Stirring::place(0.01 * n)});
+    buffer.fetch();
+    Eigen::internal::set_is_malloc_allowed(true);
+    in_publishing += allocations - before;
+  }
+  REQUIRE(in_publishing == 0);
+  REQUIRE(most > 50);
+  REQUIRE(buffer.skipped() == 0);
+  REQUIRE(haptics.skipped() == 0);
+  REQUIRE(buffer.needed() > std::size_t(most));  // the blocks of W: a contact meets more than one other
+  REQUIRE(buffer.needed() <= 4096);
+}
+
+TEST_CASE("problems without room are passed over and counted, and allocate nothing") {
+  Stirring scene(100);
+  auto& haptics = scene.loop.channel<HapticChannel>();
+  auto& buffer = scene.loop.channel<DoubleBuffer>();
+  long in_publishing = 0;
+  for (int n = 1; n <= 100; ++n) {
+    scene.step(0.01 * n);
+    const long before = allocations;
+    buffer.publish(scene.loop);
+    haptics.publish(scene.loop);
+    in_publishing += allocations - before;
+    REQUIRE_FALSE(buffer.fetch());
+    REQUIRE(haptics.tick({.position = Stirring::place(0.01 * n)}).force == Vec3::Zero());
+  }
+  REQUIRE(in_publishing == 0);
+  REQUIRE(buffer.needed() > 100);
+  REQUIRE(buffer.skipped() == 200);  // the step published too
+  REQUIRE(haptics.skipped() == 200);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "stages.hpp"
 
 using namespace delassus;
 
@@ -77,24 +78,11 @@ auto ring(unsigned seed, Solver solver, Integrator integrator) {
   return loop;
 }
 
-template <class Loop>
-void correct_once(Loop& loop, double h) {
-  loop.begin(h);
-  loop.detect();
-  loop.linearize();
-  loop.free_motion();
-  loop.find_islands();
-  loop.make_bias();
-  loop.build();
-  loop.solve();
-  loop.correct();
-}
-
 template <class Solver, class Integrator>
 void check_momentum(Solver solver, Integrator integrator) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     auto loop = ring(seed, solver, integrator);
-    correct_once(loop, 0.01);
+    solve_by_stages(loop, 0.01);
     const auto before = momenta(
         loop.world(), [](const auto& set) -> const auto& { return set.v_free; });
     const auto after = momenta(

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "catch.hpp"
+#include "rope.hpp"
 
 using namespace scenes;
 
@@ -31,19 +32,6 @@ void require_same_bits(double h, const Fresh& fresh, const Fill& fill) {
     }
   }
 }
-
-struct Rope {
-  static constexpr int rows = 1;
-  static constexpr std::array kinds{RowKind::upper};
-  struct Item { Anchor a, b; double length; };
-  void linearize(const Item& item, const auto& world, auto row) const {
-    const Vec3 xa = world.point(item.a), xb = world.point(item.b), e = (xa - xb).normalized();
-    row.end(item.a, xa).along(0, e);
-    row.end(item.b, xb).along(0, -e);
-    row.phi(0, (xa - xb).norm() - item.length);
-  }
-  void project(const Item&, Local<1>& c) const { c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0)); }
-};
 
 auto stack_loop() {
   return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}},

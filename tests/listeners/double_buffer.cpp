@@ -75,6 +75,32 @@ TEST_CASE("what the reader writes in its snapshot reaches neither the loop nor t
   }
 }
 
+// A box on the ground is four contacts, each of which meets the other three: 12 blocks of W. Two boxes on each other are
+// eight contacts, and more than 20 blocks.
+TEST_CASE("a problem without room is passed over and counted; the reader keeps the one before, and gets the next that fits") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.3}}}, DoubleBuffer{.reserve = 20}};
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  auto& channel = loop.channel<DoubleBuffer>();
+  rigid.add_fixed(HalfSpace{});
+  rigid.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  loop.step(1e-2);
+  REQUIRE(channel.fetch());
+  REQUIRE(channel.needed() == 12);
+  const auto upper = rigid.add({.position = {0, 0, 1.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  for (int n = 1; n <= 3; ++n) {
+    loop.step(1e-2);
+    REQUIRE_FALSE(channel.fetch());
+    REQUIRE(channel.skipped() == std::uint64_t(n));
+    REQUIRE(channel.front().problem.rows.pool<0>().items() == 4);
+  }
+  REQUIRE(channel.needed() > 20);
+  loop.remove(upper);
+  loop.step(1e-2);
+  REQUIRE(channel.fetch());
+  REQUIRE(channel.front().sequence == 5);
+  REQUIRE(channel.skipped() == 3);
+}
+
 TEST_CASE("the channel stays where it is when its loop moves") {
   auto loop = scene(DoubleBuffer{});
   auto& channel = loop.template channel<DoubleBuffer>();
@@ -90,7 +116,7 @@ TEST_CASE("a loop without a double buffer has no room for one") {
     using plays = role::Listener;
     using listens = Listens<>;
   };
-  // A listener of one byte and a pointer to the channel, both aligned to a pointer.
+  // A listener of one number and a pointer to the channel.
   static_assert(sizeof(decltype(scene(DoubleBuffer{}))) <= sizeof(Without) + 2 * sizeof(void*));
   static_assert(sizeof(decltype(scene(Deaf{}))) <= sizeof(decltype(scene(DoubleBuffer{}))) - sizeof(void*));
   SUCCEED();

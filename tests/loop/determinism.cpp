@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include "catch.hpp"
+#include "stages.hpp"
 
 using namespace scenes;
 
@@ -96,16 +97,7 @@ TEST_CASE("the stages called one by one give the bits of a step") {
   const auto a = add_pile(whole, Vec3::Zero(), hull), b = add_pile(parts, Vec3::Zero(), hull);
   for (int n = 0; n < 300; ++n) {
     const StepReport report = whole.step(h);
-    parts.begin(h);
-    parts.detect();
-    parts.linearize();
-    parts.free_motion();
-    parts.find_islands();
-    parts.make_bias();
-    parts.build();
-    parts.solve();
-    parts.correct();
-    parts.advance();
+    step_by_stages(parts, h);
     REQUIRE(hash(rigid_bodies(whole), a) == hash(rigid_bodies(parts), b));
     REQUIRE(parts.report().sweeps == report.sweeps);
     REQUIRE(parts.report().residual == report.residual);

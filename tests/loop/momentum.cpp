@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include "catch.hpp"
+#include "stages.hpp"
 
 using namespace scenes;
 
@@ -44,11 +45,7 @@ TEST_CASE("contacts and joints keep momentum and angular momentum after any numb
       for (int k = 0; k < 4; ++k)
         loop.add(BallJoint::Item{anchor(set, set.handle(k), Vec3(0.1, 0.2, k)),
                                  anchor(set, set.handle(k + 5), Vec3(1, 0, 0))});
-      loop.begin(0.01);
-      for (const auto stage : {&decltype(loop)::detect, &decltype(loop)::linearize, &decltype(loop)::free_motion,
-                               &decltype(loop)::find_islands, &decltype(loop)::make_bias, &decltype(loop)::build,
-                               &decltype(loop)::solve, &decltype(loop)::correct})
-        (loop.*stage)();
+      solve_by_stages(loop, 0.01);
       const Change c = change(set);
       CAPTURE(seed, sweeps);
       REQUIRE(c.momentum_size > 0.1);

@@ -1,25 +1,11 @@
 #include "catch.hpp"
+#include "stages.hpp"
 
 #include <delassus/delassus.hpp>
 
 using namespace delassus;
 
 namespace {
-
-/// One pass after the other, as a host calls them that interleaves its own work.
-template <class Loop>
-void step_by_stages(Loop& loop, double h) {
-  loop.begin(h);
-  loop.detect();
-  loop.linearize();
-  loop.free_motion();
-  loop.find_islands();
-  loop.make_bias();
-  loop.build();
-  loop.solve();
-  loop.correct();
-  loop.advance();
-}
 
 /// Bodies of every motion, a hole where one was removed, loads, a path; particles that are free and fixed.
 template <class Loop>

@@ -104,3 +104,52 @@ TEST_CASE("each island has its own sweeps and its own status") {
   REQUIRE(report.status == Status::max_iterations);
   REQUIRE(report.residual == islands[1].measure.residual);
 }
+
+// 1e308 m/s for ten seconds is no place; the body keeps its last one, and its own company is not disturbed.
+TEST_CASE("a body that would leave the range of its numbers stays where it was, and is counted") {
+  const auto check = [](auto integrator) {
+    AnimationLoop loop{World{RigidBodies{}, Particles{}}, integrator};
+    auto& set = rigid_bodies(loop);
+    auto& points = bodies<Particles>(loop.world());
+    for (auto* gravity : {&set.gravity, &points.gravity}) gravity->setZero();
+    const auto fast = set.add({.position = {1, 2, 3}, .velocity = {1e308, 0, 0}, .mass = 1.0, .shape = Sphere{1}});
+    const auto spun = set.add({.position = {4, 5, 6}, .angular_velocity = {0, 1e308, 0}, .mass = 1.0, .shape = Box{1, 2, 3}});
+    const auto lift = set.add({.position = {7, 8, 9}, .velocity = {0, 0, 1e308}, .shape = Sphere{1}, .motion = Motion::kinematic});
+    const auto well = set.add({.velocity = {1, 0, 0}, .mass = 1.0, .shape = Sphere{1}});
+    const auto grain = points.add({.position = {1, 1, 1}, .velocity = {0, 1e308, 0}, .mass = 1.0});
+    for (int n = 1; n <= 3; ++n) {
+      const StepReport report = loop.step(10);
+      REQUIRE(report.status == Status::quarantined);
+      REQUIRE(report.quarantined == 4);
+      REQUIRE(set.position(fast) == Vec3(1, 2, 3));
+      REQUIRE(set.velocity(fast) == Vec3(1e308, 0, 0));
+      REQUIRE(set.position(spun) == Vec3(4, 5, 6));
+      REQUIRE(set.orientation(spun).coeffs() == Quat::Identity().coeffs());
+      REQUIRE(set.angular_velocity(spun) == Vec3(0, 1e308, 0));
+      REQUIRE(set.position(lift) == Vec3(7, 8, 9));
+      REQUIRE(points.position(grain) == Vec3(1, 1, 1));
+      REQUIRE(set.position(well) == Vec3(10.0 * n, 0, 0));
+    }
+    set.set_velocity(fast, {1, 0, 0});
+    loop.step(10);
+    REQUIRE(set.position(fast) == Vec3(11, 2, 3));
+  };
+  check(SymplecticEuler{});
+  check(ImplicitMidpoint{});
+}
+
+TEST_CASE("a policy whose number was made invalid is refused at the next step, and nothing has moved") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, GaussSeidel{}};
+  auto& set = rigid_bodies(loop);
+  const auto ball = set.add({.position = {0, 0, 5}, .mass = 1.0, .shape = Sphere{1}});
+  for (const double bad : {0.0, 2.0, -1.0, not_a_number}) {
+    loop.get<GaussSeidel>().relaxation = bad;
+    REQUIRE_THROWS_WITH(loop.step(0.01), Catch::Contains("GaussSeidel: relaxation") && Catch::Contains("must lie in (0, 2)"));
+  }
+  loop.get<GaussSeidel>().relaxation = 1.5;
+  loop.part<role::Stabilisation>().rate = -1;  // a default nobody named
+  REQUIRE_THROWS_WITH(loop.step(0.01), Catch::Contains("Baumgarte: rate"));
+  REQUIRE(set.position(ball) == Vec3(0, 0, 5));
+  loop.part<role::Stabilisation>().rate = 0.2;
+  REQUIRE(loop.step(0.01).status == Status::converged);
+}

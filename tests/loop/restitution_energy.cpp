@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include "catch.hpp"
+#include "stages.hpp"
 
 using namespace scenes;
 
@@ -31,15 +32,7 @@ Impact impact(unsigned seed, double restitution, double friction, Solver solver)
   auto& set = rigid_bodies(loop);
   const int bodies = 2 + int(seed % 7);
   loop.template get<GivenContacts>().points = add_cluster(set, bodies, bodies + int(seed % 11), seed, 0, seed % 2 == 0);
-  loop.begin(0.01);
-  loop.detect();
-  loop.linearize();
-  loop.free_motion();
-  loop.find_islands();
-  loop.make_bias();
-  loop.build();
-  loop.solve();
-  loop.correct();
+  solve_by_stages(loop, 0.01);
   return {energy(set, set.velocity()), energy(set, set.v_next), loop.report().status};
 }
 

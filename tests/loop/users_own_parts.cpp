@@ -2,27 +2,11 @@
 #include <delassus/delassus.hpp>
 
 #include "catch.hpp"
+#include "rope.hpp"
 
 using namespace delassus;
 
 namespace {
-
-/// A rope pulls and never pushes: φ = |x_a − x_b| − L ≤ 0, λ ≤ 0.
-struct Rope {
-  static constexpr int rows = 1;
-  static constexpr std::array kinds{RowKind::upper};
-  struct Item {
-    Anchor a, b;
-    double length;
-  };
-  void linearize(const Item& item, const auto& world, auto row) const {
-    const Vec3 a = world.point(item.a), b = world.point(item.b), e = (a - b).normalized();
-    row.end(item.a, a).along(0, e);
-    row.end(item.b, b).along(0, -e);
-    row.phi(0, (a - b).norm() - item.length);
-  }
-  void project(const Item&, Local<1>& c) const { c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0)); }
-};
 
 /// Symplectic Euler in a medium that takes the share `drag` of the velocity per second.
 struct DraggedEuler {

@@ -6,35 +6,20 @@
 Every instruction of a program has a line in its debug information (-g1), inlined ones too: the rooms those lines come from
 are the rooms whose code is in the program. A list of names would rot; this needs none.
 """
-import argparse
-import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
+from programs import arguments, build, run, verdict
+
 ABSENT = ("collision", "constraints", "compliance", "solvers", "stabilisation")
-
-
-def run(*words):
-    done = subprocess.run([str(w) for w in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          env={"LC_ALL": "C", "PATH": "/usr/local/bin:/usr/bin:/bin"})
-    if done.returncode != 0:
-        sys.exit(f"{' '.join(str(w) for w in words)}\nfailed:\n{done.stdout}{done.stderr}")
-    return done.stdout
-
-
-def build(arguments, source, program):
-    include = [word for directory in arguments.system for word in ("-isystem", directory)]
-    run(arguments.compiler, "-std=c++20", "-O2", "-g1", "-DNDEBUG", "-I", arguments.root / "include", *include, source,
-        "-o", program)
 
 
 def rooms_in(program):
     """Room -> headers of it that put an instruction into the program."""
     found = {}
     for room, header in re.findall(r"include/delassus/(\w+)/([\w/]+\.hpp)",
-                                   run("objdump", "--dwarf=decodedline", program)):
+                                   run("objdump", "--dwarf=decodedline", program).stdout):
         found.setdefault(room, set()).add(header)
     return found
 
@@ -42,7 +27,7 @@ def rooms_in(program):
 def calls_from(program, start):
     """Names of library functions that `start` can reach by calls, through any function of ours."""
     body, name = {}, None
-    for line in run("objdump", "-d", "-C", "--no-show-raw-insn", program).splitlines():
+    for line in run("objdump", "-d", "-C", "--no-show-raw-insn", program).stdout.splitlines():
         head = re.match(r"^[0-9a-f]+ <(.+)>:$", line)
         if head:
             name = head.group(1)
@@ -68,17 +53,10 @@ def calls_from(program, start):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("root", type=pathlib.Path)
-    parser.add_argument("--compiler", default="g++")
-    parser.add_argument("--system", nargs="*", default=[])
-    arguments = parser.parse_args()
-    here = arguments.root / "tests" / "zero_cost"
+    given = arguments(__doc__)
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
-        program = pathlib.Path(folder) / "program"
-
-        build(arguments, here / "falling_box.cpp", program)
+        program = build(given, "falling_box", folder, "-O2", "-g1")
         found = rooms_in(program)
         for room in ABSENT:
             if room in found:
@@ -86,7 +64,7 @@ def main():
         print("a falling box is made of", ", ".join(sorted(found)))
         run(program)
 
-        build(arguments, here / "sweep.cpp", program)
+        program = build(given, "sweep", folder, "-O2", "-g1")
         found = rooms_in(program)
         for room in ABSENT:  # else the look into the falling box would prove nothing
             if room not in found:
@@ -97,9 +75,7 @@ def main():
         if calls:
             wrong.append(f"a sweep of Coulomb contacts calls {', '.join(sorted(calls))}")
         run(program)
-    for sentence in wrong:
-        print(sentence)
-    return 1 if wrong else 0
+    return verdict(wrong)
 
 
 if __name__ == "__main__":

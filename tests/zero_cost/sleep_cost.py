@@ -5,38 +5,25 @@
 
 Exit status 77: valgrind is not here.
 """
-import argparse
-import pathlib
-import re
-import shutil
 import sys
 import tempfile
 
-from step_cost import run
+from programs import NO_VALGRIND, arguments, build, has_valgrind, instructions, verdict
 
 LIMIT = 0.01  # of an awake step
 
 
 def count(program, how, steps):
-    done = run("valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, how, steps)
-    pairs, rows, asleep = (int(word) for word in done.stdout.split())
-    return int(re.search(r"refs:\s*([\d,]+)", done.stderr).group(1).replace(",", "")), pairs, rows, asleep
+    total, printed = instructions(program, how, steps)
+    return total, *(int(word) for word in printed.split())
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("root", type=pathlib.Path)
-    parser.add_argument("--compiler", default="g++")
-    parser.add_argument("--system", nargs="*", default=[])
-    arguments = parser.parse_args()
-    if not shutil.which("valgrind"):
-        print("valgrind is not here (apt-get install valgrind): nothing was counted")
-        return 77
+    given = arguments(__doc__)
+    if not has_valgrind():
+        return NO_VALGRIND
     with tempfile.TemporaryDirectory() as folder:
-        program = pathlib.Path(folder) / "sleep_cost"
-        include = [word for directory in arguments.system for word in ("-isystem", directory)]
-        run(arguments.compiler, "-std=c++20", "-O3", "-DNDEBUG", "-I", arguments.root / "include", *include,
-            arguments.root / "tests" / "zero_cost" / "sleep_cost.cpp", "-o", program)
+        program = build(given, "sleep_cost", folder, "-O3")
         awake = count(program, "awake", 2)[0] - count(program, "awake", 1)[0]
         wrong = []
         print(f"awake    {awake:>12} instructions a step")
@@ -48,9 +35,7 @@ def main():
                 wrong.append(f"{how}: {asleep} sleep, {pairs} pairs, {rows} rows")
             if step > LIMIT * awake:
                 wrong.append(f"{how}: {step / awake:.2%} of an awake step, the limit is {LIMIT:.0%}")
-    for sentence in wrong:
-        print(sentence)
-    return 1 if wrong else 0
+    return verdict(wrong)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/inertia.hpp>
 #include <delassus/geometry/shape.hpp>
+#include <delassus/math/fits.hpp>
 #include <delassus/math/rotation.hpp>
 
 #include <algorithm>
@@ -44,6 +45,17 @@ inline bool is_positive_definite(const Mat3& m) {
   return a > 0 && a * b - d * d > 0 && a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
 }
 
+/// The power of two next to the largest moment: products of three scaled moments neither overflow nor vanish.
+inline double scale_of(const Mat3& inertia) {
+  return std::exp2(std::ilogb(std::max({inertia(0, 0), inertia(1, 1), inertia(2, 2)})));
+}
+
+/// I⁻¹, kg⁻¹·m⁻², for every size of body.
+inline Mat3 inverse_of_inertia(const Mat3& inertia) {
+  const double scale = scale_of(inertia);
+  return 1 / scale * inverse(Mat3(1 / scale * inertia));
+}
+
 /// Refuses an inertia that no distribution of mass has: not finite, not symmetric positive, or λ₃ > λ₁ + λ₂.
 inline void check_inertia(const Mat3& inertia, const std::string& who) {
   double scale = 0, skewness = 0, sum = 0;
@@ -56,7 +68,8 @@ inline void check_inertia(const Mat3& inertia, const std::string& who) {
   }
   DELASSUS_EXPECT(sum == 0, who + ": inertia is not finite; give a 3×3 matrix in kg·m²");
   DELASSUS_EXPECT(skewness <= 1e-9 * scale, who + ": inertia is not symmetric; give the matrix about the centre of mass");
-  DELASSUS_EXPECT(is_positive_definite(inertia),
+  const double to_unit = 1 / scale_of(inertia);
+  DELASSUS_EXPECT(is_positive_definite(to_unit * inertia),
                   who + ": inertia is not positive definite; every principal moment must be > 0 kg·m²");
   // The triangle inequality of the principal moments says: ½ tr(I) 1 − I, the second moment of mass, is positive; it is
   // zero in one direction for a flat body, so rounding's share is granted.
@@ -64,7 +77,7 @@ inline void check_inertia(const Mat3& inertia, const std::string& who) {
   Mat3 second_moment;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) second_moment(i, j) = (i == j ? half : 0) - inertia(i, j);
-  DELASSUS_EXPECT(is_positive_definite(second_moment),
+  DELASSUS_EXPECT(is_positive_definite(to_unit * second_moment),
                   who + ": inertia with diagonal (" + text(inertia(0, 0)) + ", " + text(inertia(1, 1)) + ", " +
                       text(inertia(2, 2)) + ") violates the triangle inequality I1 + I2 >= I3 of the principal " +
                       "moments; was it given about another point or in other units?");
@@ -81,8 +94,9 @@ inline Quat check_state(const RigidBody& body, const std::string& who) {
   return unit(body.orientation);
 }
 
-/// Mass (kg) and inertia (kg·m²) of a dynamic body from what the user gave.
-inline MassProperties check_mass(const RigidBody& body, const std::string& who) {
+/// Mass (kg) and inertia (kg·m²) of a dynamic body from what the user gave, for a set of scalar T.
+template <class T>
+ MassProperties check_mass(const RigidBody& body, const std::string& who) {
   DELASSUS_EXPECT(body.mass || body.density, who + ": give mass (kg) or density (kg/m³)");
   DELASSUS_EXPECT(!(body.mass && body.density), who + ": give mass or density, not both");
   const double given = body.mass ? *body.mass : *body.density;
@@ -101,7 +115,12 @@ inline MassProperties check_mass(const RigidBody& body, const std::string& who) 
     result.mass = *body.mass;
   }
   if (body.inertia) result.inertia = *body.inertia;
+  DELASSUS_EXPECT(has_inverse<T>(result.mass), who + ": mass " + without_inverse<T>(text(result.mass), "kg"));
   check_inertia(result.inertia, who);
+  const Vec3 moments = result.inertia.diagonal(), inverses = inverse_of_inertia(result.inertia).diagonal();
+  for (int k = 0; k < 3; ++k)
+    DELASSUS_EXPECT(has_inverse<T>(moments[k]) && has_inverse<T>(inverses[k]),
+                    who + ": inertia with diagonal " + without_inverse<T>(text(moments), "kg·m²"));
   return result;
 }
 

@@ -1,11 +1,11 @@
 /// Point masses as a structure of arrays, with springs between them and to points of the world.
 #pragma once
 
+#include <delassus/bodies/inner/places.hpp>
 #include <delassus/bodies/springs.hpp>
 #include <delassus/core/expect.hpp>
-#include <delassus/core/handle.hpp>
-#include <delassus/core/slots.hpp>
 #include <delassus/geometry/shape.hpp>
+#include <delassus/math/fits.hpp>
 #include <delassus/math/pose.hpp>
 #include <delassus/rows/body_set.hpp>
 
@@ -29,15 +29,14 @@ struct Particle {
 
 /// q = x, v = ẋ. f = m g + loads + springs; A = mass M + damping D + stiffness K of the springs (`Springs`).
 template <class T>
-class BasicParticles {
- public:
-  using Scalar = T;
-  using Body = Particle;
-  using Handle = delassus::Handle<BasicParticles>;
-  using Velocity = Vec<3, T>;
-  static constexpr int width = 3;
+class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
+  using Places = inner::Places<BasicParticles, T, 3>;
 
-  Vec3 gravity{0, 0, -9.81};
+ public:
+  using Body = Particle;
+  using typename Places::Handle, typename Places::Velocity;
+  using Places::gravity, Places::v_free, Places::v_next, Places::who;
+  static constexpr const char* kind = "particle";
 
   // --- editing -------------------------------------------------------------------------------------------------
 
@@ -69,40 +68,28 @@ class BasicParticles {
   void apply_force(Handle particle, const Vec3& force) { load_[checked(particle)] += force.template cast<T>(); }
 
   void set_velocity(Handle particle, const Vec3& velocity) {
-    DELASSUS_EXPECT(is_finite(velocity), who(particle.index) + ": velocity is not finite");
-    v_[checked(particle)] = velocity.template cast<T>();
+    const Index b = checked(particle);
+    check_velocity(velocity, b);
+    DELASSUS_EXPECT(mass_[b] > T(0), who(b) + ": a fixed particle has no velocity");
+    v_[b] = velocity.template cast<T>();
   }
   void place(Handle particle, const Vec3& position) {
-    DELASSUS_EXPECT(is_finite(position), who(particle.index) + ": position is not finite");
-    x_[checked(particle)] = position.template cast<T>();
+    const Index b = checked(particle);
+    check_position(position, b);
+    x_[b] = position.template cast<T>();
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
 
   Vec3 position(Handle particle) const { return x_[checked(particle)].template cast<double>(); }
+  using Places::velocity;
   Vec3 velocity(Handle particle) const { return v_[checked(particle)].template cast<double>(); }
-  bool contains(Handle particle) const {
-    return particle.owner == owner_ && slots_.is_current(particle.index, particle.generation);
-  }
-  Handle handle(Index block) const { return {block, slots_.generation(block), owner_}; }
-  const std::vector<Index>& active() const { return slots_.active(); }
   T mass(Index b) const { return mass_[b]; }
   double spring_energy() const { return springs_.energy(x_); }
 
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
 
-  Index blocks() const { return slots_.size(); }
-  bool is_alive(Index b) const { return slots_.is_alive(b); }
-  bool is_awake(Index b) const { return slots_.is_awake(b); }
   bool moves(Index b) const { return inverse_mass_[b] > T(0); }
-  const Velocity& load(Index b) const { return load_[b]; }
-  /// Puts a particle to sleep where it is: it is in no list of `active`, and its velocity reads zero.
-  void lull(Index b) {
-    slots_.set_awake(b, false);
-    v_[b].setZero();
-    v_free[b] = v_next[b] = v_[b];
-  }
-  void rouse(Index b) { slots_.set_awake(b, true); }
   /// Takes a particle's answer to impulses away (A⁻¹ = 0), or gives it back.
   void hold(Index b, bool is_held) { inverse_mass_[b] = is_held || !(mass_[b] > T(0)) ? T(0) : T(1) / mass_[b]; }
   /// Springs tie particles together outside of every island: while there are any, none sleeps.
@@ -146,7 +133,7 @@ class BasicParticles {
   Vec3 point(const Anchor& a) const { return x_[a.block].template cast<double>(); }
 
   void begin_step(double) {}
-  /// x₊ = x + h v_next. A particle whose v_next is not finite stays where it is.
+  /// x₊ = x + h v_next. A particle whose x₊ is not finite stays where it is.
   void advance(double h) { advance_with(h, T(0)); }
   /// x₊ = x + h (v + v_next)/2.
   void advance_midpoint(double h) { advance_with(h, T(0.5)); }
@@ -169,11 +156,12 @@ class BasicParticles {
       const bool is_moving = moves(b);
       load[b].setZero();
       if (!is_moving) return;
-      if (!is_finite(next)) {
+      const Velocity moved = x[b] + T(h) * inner::mean(v[b], next, old_share);
+      if (!is_finite(moved)) {
         ++*held;
         return;
       }
-      x[b] += T(h) * inner::mean(v[b], next, old_share);
+      x[b] = moved;
       v[b] = next;
     }
   };
@@ -191,14 +179,11 @@ class BasicParticles {
   /// True when no spring joins anything: every particle moves by itself.
   bool is_separable() const { return springs_.is_empty(); }
 
-  /// How many particles the last advance left where they were.
-  Index held() const { return held_; }
   /// Moves particle b by a small displacement (m) without touching its velocity.
-  void displace(Index b, const Velocity& by) { x_[b] += by; }
-
-  const std::vector<Velocity>& velocity() const { return v_; }
-  std::vector<Velocity>& velocity() { return v_; }
-  std::vector<Velocity> v_free, v_next;
+  void displace(Index b, const Velocity& by) {
+    const Velocity moved = x_[b] + by;
+    if (is_finite(moved)) x_[b] = moved;
+  }
 
   void shift(double h) {
     shifted_x_ = x_;
@@ -207,44 +192,35 @@ class BasicParticles {
   }
   void restore() { x_ = shifted_x_; }
 
-  Index collider_count() const { return blocks(); }
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
   Shape shape(Index b) const { return Sphere{radius_[b]}; }
   Pose pose(Index b) const { return {x_[b].template cast<double>(), Mat3::Identity()}; }
-  Index material(Index b) const { return material_[b]; }
-  std::uint32_t group(Index b) const { return group_[b]; }
-  std::uint32_t collides_with(Index b) const { return collides_with_[b]; }
-
-  std::uint32_t owner() const { return owner_; }
-  std::string who(Index b) const { return "particle #" + std::to_string(b); }
 
   /// What outlives a step; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    archive(gravity, slots_, springs_, x_, shifted_x_, v_, load_, mass_, inverse_mass_, radius_, material_, group_,
-            collides_with_, v_free, v_next);
+    Places::memory(archive);
+    archive(springs_, x_, mass_, inverse_mass_, radius_);
   }
 
  private:
-  Index checked(Handle particle) const {
-    DELASSUS_EXPECT(particle.owner == owner_, "this particle handle belongs to another world");
-    DELASSUS_EXPECT(slots_.is_current(particle.index, particle.generation),
-                    who(particle.index) + " was removed; its handle is stale");
-    return particle.index;
+  void check_position(const Vec3& position, Index b) const {
+    DELASSUS_EXPECT(is_finite(position), who(b) + ": position is not finite");
+    DELASSUS_EXPECT(inner::fits<T>(position), who(b) + ": position " + inner::beyond<T>(position, "m"));
+  }
+  void check_velocity(const Vec3& velocity, Index b) const {
+    DELASSUS_EXPECT(is_finite(velocity), who(b) + ": velocity is not finite");
+    DELASSUS_EXPECT(inner::fits<T>(velocity), who(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));
   }
   void advance_with(double h, T old_share) {
     const Blocks blocks = by_block();
     for (const Index b : slots_.active()) blocks.advance(b, v_next[b], h, old_share);
   }
 
-  Slots slots_;
-  std::uint32_t owner_ = inner::next_owner();
+  using Places::checked, Places::slots_, Places::held_, Places::v_, Places::load_;
   Springs<T> springs_;
-  Index held_ = 0;
-  std::vector<Velocity> x_, shifted_x_, v_, load_;
+  std::vector<Velocity> x_, shifted_x_;
   std::vector<T> mass_, inverse_mass_;
   std::vector<double> radius_;
-  std::vector<Index> material_;
-  std::vector<std::uint32_t> group_, collides_with_;
 };
 
 using Particles = BasicParticles<double>;
@@ -252,34 +228,29 @@ using ParticlesF = BasicParticles<float>;
 
 template <class T>
 typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& particle) {
-  const std::string name = who(slots_.size());
-  DELASSUS_EXPECT(is_finite(particle.position), name + ": position is not finite");
-  DELASSUS_EXPECT(is_finite(particle.velocity), name + ": velocity is not finite");
+  const Index next = slots_.size();
+  const std::string name = who(next);
+  check_position(particle.position, next);
+  check_velocity(particle.velocity, next);
   DELASSUS_EXPECT(particle.is_fixed || particle.mass, name + ": give mass (kg), or is_fixed");
-  if (particle.mass)
-    DELASSUS_EXPECT(std::isfinite(*particle.mass) && *particle.mass > 0,
-                    name + ": mass " + inner::text(*particle.mass) + " must be finite and > 0");
+  if (particle.mass) {
+    const double mass = *particle.mass;
+    DELASSUS_EXPECT(std::isfinite(mass) && mass > 0, name + ": mass " + inner::text(mass) + " must be finite and > 0");
+    DELASSUS_EXPECT(inner::has_inverse<T>(mass), name + ": mass " + inner::without_inverse<T>(inner::text(mass), "kg"));
+  }
   DELASSUS_EXPECT(std::isfinite(particle.radius) && particle.radius >= 0,
                   name + ": radius " + inner::text(particle.radius) + " must be finite and >= 0");
-  const Index b = slots_.take();
+  const Index b = Places::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
+                                                           : Velocity(particle.velocity.template cast<T>()));
   const std::size_t n = std::size_t(slots_.size());
-  for (auto* array : {&x_, &shifted_x_, &v_, &load_, &v_free, &v_next}) array->resize(n);
+  for (auto* array : {&x_, &shifted_x_}) array->resize(n);
   for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
   radius_.resize(n);
-  material_.resize(n);
-  group_.resize(n);
-  collides_with_.resize(n);
   x_[b] = particle.position.template cast<T>();
-  v_[b] = particle.is_fixed ? Velocity(Velocity::Zero()) : Velocity(particle.velocity.template cast<T>());
-  load_[b].setZero();
-  v_free[b] = v_next[b] = v_[b];
   mass_[b] = particle.is_fixed ? T(0) : T(*particle.mass);
   inverse_mass_[b] = particle.is_fixed ? T(0) : T(1 / *particle.mass);
   radius_[b] = particle.radius;
-  material_[b] = particle.material;
-  group_[b] = particle.group;
-  collides_with_[b] = particle.collides_with;
-  return handle(b);
+  return this->handle(b);
 }
 
 }  // namespace delassus

@@ -4,6 +4,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/linear/block_cholesky.hpp>
 #include <delassus/rows/body_set.hpp>
+#include <delassus/rows/soft.hpp>
 
 #include <string>
 #include <utility>
@@ -37,6 +38,9 @@ class Springs {
                     who + ": spring damping " + inner::text(spring.damping) + " must be finite and >= 0 N·s/m");
     DELASSUS_EXPECT(std::isfinite(spring.rest) && spring.rest >= 0,
                     who + ": rest length " + inner::text(spring.rest) + " must be finite and >= 0 m");
+    DELASSUS_EXPECT(spring.rest <= 1e20, who + ": rest length " + inner::text(spring.rest) + " must be <= 1e20 m");
+    inner::check_soft_number(spring.stiffness, (who + ": spring stiffness").c_str(), "N/m");
+    inner::check_soft_number(spring.damping, (who + ": spring damping").c_str(), "N·s/m");
     DELASSUS_EXPECT(is_finite(spring.point), who + ": the spring's point is not finite");
     DELASSUS_EXPECT(spring.a != spring.b, who + ": a spring needs two different ends");
     springs_.push_back(spring);

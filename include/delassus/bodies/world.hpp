@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/math/fits.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <array>
@@ -98,6 +99,8 @@ class World {
     if (a.owner == 0) {
       DELASSUS_EXPECT(is_finite(a.local) && is_finite(a.frame.coeffs()),
                       std::string(what) + ": the world anchor's point or frame is not finite");
+      DELASSUS_EXPECT(inner::fits<Scalar>(a.local),
+                      std::string(what) + ": the world anchor's point " + inner::beyond<Scalar>(a.local, "m"));
       a.set = -1;
       return;
     }
@@ -143,6 +146,8 @@ Anchor anchor(const S& set, typename S::Handle body, const Vec3& local = Vec3::Z
               const Quat& frame = Quat::Identity()) {
   DELASSUS_EXPECT(set.contains(body), "anchor: the handle of " + set.who(body.index) + " is stale or of another world");
   DELASSUS_EXPECT(is_finite(local), "anchor: the point on " + set.who(body.index) + " is not finite");
+  DELASSUS_EXPECT(inner::fits<typename S::Scalar>(local), "anchor: the point on " + set.who(body.index) + ", " +
+                                                              inner::beyond<typename S::Scalar>(local, "m"));
   DELASSUS_EXPECT(std::abs(frame.coeffs().norm() - 1) < 1e-6,
                   "anchor: the frame on " + set.who(body.index) + " is not a unit quaternion");
   return {.block = body.index,

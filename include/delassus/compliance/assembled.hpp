@@ -18,6 +18,7 @@ struct BlockRows {
   std::vector<Index> start, column;
   std::vector<Mat<Ra, Rb, S>> block;
 
+  static void each_array(auto& self, auto&& f) { f(self.start), f(self.column), f(self.block); }
   /// No block yet in any of `rows` rows.
   void reset(Index rows) {
     start.assign(rows + 1, 0);
@@ -97,6 +98,13 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   void copy_matrix(const Operator& from) {
     blocks_ = from.blocks_;
     diagonal_ = from.diagonal_;
+  }
+
+  /// The arrays of the matrix.
+  static void each_array(auto& self, auto&& f) {
+    const auto row_of = [&](auto& row) { std::apply([&](auto&... b) { (b.each_array(b, f), ...); }, row); };
+    std::apply([&](auto&... row) { (row_of(row), ...); }, self.blocks_);
+    std::apply([&](auto&... diagonal) { (f(diagonal), ...); }, self.diagonal_);
   }
 
   /// The off-diagonal blocks between pools a and b, for export and tests.

@@ -40,6 +40,10 @@ class Constraints {
     return std::get<Pool<Law>>(pools_);
   }
 
+  static void each_array(auto& self, auto&& f) {
+    std::apply([&](auto&... p) { (p.each_array(p, f), ...); }, self.pools_);
+  }
+
   /// The law whose items are of this type, or void.
   template <class Item>
   struct law_of {

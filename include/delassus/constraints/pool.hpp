@@ -67,6 +67,10 @@ struct Pool {
       }
   }
 
+  static void each_array(auto& self, auto&& f) {
+    f(self.items), f(self.impulse), f(self.starts_cold);
+    self.slots.each_array(self.slots, f);
+  }
   void memory(auto& archive) { archive(items, impulse, starts_cold, slots); }
 
   /// The item behind the i-th rows of this step.
@@ -99,6 +103,7 @@ struct Pool<Law> {
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}
 
+  static void each_array(auto& self, auto&& f) { f(self.items); }
   const Item& item(Index i) const { return items[i]; }
   Index count() const { return Index(items.size()); }
 };

@@ -46,13 +46,12 @@ class Slots {
   }
   std::uint32_t generation(Index place) const { return generation_[place]; }
   const std::vector<Index>& active() const {
-    if (stale_) {
-      active_.clear();
-      for (Index i = 0; i < size(); ++i)
-        if (alive_[i] == 1) active_.push_back(i);
-      stale_ = false;
-    }
+    if (stale_) [[unlikely]] gather();
     return active_;
+  }
+
+  static void each_array(auto& self, auto&& f) {
+    f(self.generation_), f(self.alive_), f(self.free_), f(self.active_);
   }
 
   /// What outlives a step.
@@ -63,6 +62,13 @@ class Slots {
 
  private:
   void list() { stale_ = true; }
+  /// Apart from `active`, so that asking for a list that is there stays a look at one flag.
+  [[gnu::noinline]] void gather() const {
+    active_.clear();
+    for (Index i = 0; i < size(); ++i)
+      if (alive_[i] == 1) active_.push_back(i);
+    stale_ = false;
+  }
 
   std::vector<std::uint32_t> generation_;
   std::vector<char> alive_;  ///< 0 free, 1 awake, 2 asleep

@@ -7,6 +7,9 @@
 #include <delassus/loop/channels.hpp>
 #include <delassus/loop/stage.hpp>
 
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -27,6 +30,42 @@ namespace inner {
 template <class Operator>
 concept AssembledOperator = requires(const Operator& W) { W.template blocks<0, 0>(); };
 
+/// How long an array of a snapshot may become, and what was too long for it.
+class Room {
+ public:
+  explicit Room(std::size_t reserve) : reserve_(reserve) {}
+
+  /// Makes it in the arrays of one problem.
+  template <class Problem>
+  void make_in(Problem& problem) const {
+    const auto reserve = [&](auto& array) { array.reserve(reserve_); };
+    problem.laws.each_array(problem.laws, reserve);
+    problem.rows.each_array(problem.rows, reserve);
+    problem.W.each_array(problem.W, reserve);
+    problem.islands.each_array(problem.islands, reserve);
+  }
+
+  /// Whether the problem of the loop's last step has room; counted when it has not.
+  template <class Loop>
+  bool takes(const Loop& loop) {
+    std::size_t longest = 0;
+    loop.each_problem_part(
+        [&](const auto& part) { part.each_array(part, [&](const auto& a) { longest = std::max(longest, a.size()); }); });
+    if (longest > needed()) needed_.store(longest, std::memory_order_relaxed);
+    if (reserve_ == 0 || longest <= reserve_) return true;
+    skipped_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+
+  std::uint64_t skipped() const { return skipped_.load(std::memory_order_relaxed); }
+  std::size_t needed() const { return needed_.load(std::memory_order_relaxed); }
+
+ private:
+  std::size_t reserve_;
+  std::atomic<std::uint64_t> skipped_{0};
+  std::atomic<std::size_t> needed_{0};
+};
+
 /// Sequence numbers, and the copy of a loop's problem.
 template <class Loop, class Problem>
 void take_snapshot(const Loop& loop, std::uint64_t sequence, Snapshot<Problem>& to) {
@@ -43,17 +82,26 @@ void take_snapshot(const Loop& loop, std::uint64_t sequence, Snapshot<Problem>& 
 ///     auto& channel = loop.channel<DoubleBuffer>();     // before the threads start
 ///     if (channel.fetch()) look_at(channel.front());    // in the reader's thread, whenever it likes
 ///
-/// What the front holds is the reader's own until it fetches again: it may change λ and d there and solve anew. Arrays keep
-/// their capacity: after the largest problem has passed through the three slots, publishing allocates nothing.
+/// What the front holds is the reader's own until it fetches again: it may change λ and d there and solve anew. With
+/// `DoubleBuffer{.reserve = 4096}` each array of a snapshot has room for so many elements from the start, and publishing
+/// allocates nothing, ever: a problem that is larger is passed over, and counted in `skipped`. Without, arrays grow and keep
+/// their capacity.
 /// (Two slots would do only if one thread could wait for the other.)
 struct DoubleBuffer {
   using plays = role::Listener;
   using listens = Listens<stage::Solve>;
+  std::size_t reserve = 0;  ///< elements of an array; the longest are the blocks of W between two laws. 0: as it comes
 
   template <class Problem>
   class Channel {
    public:
-    explicit Channel(const DoubleBuffer&) {}
+    explicit Channel(const DoubleBuffer& parameters) : room_(parameters.reserve) {
+      snapshots_.each([&](auto& snapshot) { room_.make_in(snapshot.problem); });
+    }
+
+    /// How many problems were passed over for want of room, and the longest array of all so far. Any thread may ask.
+    std::uint64_t skipped() const { return room_.skipped(); }
+    std::size_t needed() const { return room_.needed(); }
 
     /// The reader: takes the newest snapshot, true if it was not taken before.
     bool fetch() { return snapshots_.fetch(); }
@@ -61,11 +109,14 @@ struct DoubleBuffer {
 
     /// The loop's thread.
     void publish(const auto& loop) {
-      inner::take_snapshot(loop, ++sequence_, snapshots_.back());
+      ++sequence_;
+      if (!room_.takes(loop)) return;
+      inner::take_snapshot(loop, sequence_, snapshots_.back());
       snapshots_.publish();
     }
 
    private:
+    inner::Room room_;
     TripleBuffer<Snapshot<Problem>> snapshots_;
     std::uint64_t sequence_ = 0;
   };

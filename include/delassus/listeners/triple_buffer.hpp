@@ -24,6 +24,11 @@ namespace delassus {
 template <class T>
 class TripleBuffer {
  public:
+  /// f(slot) for all three, before there are two threads.
+  void each(auto&& f) {
+    for (T& slot : slots_) f(slot);
+  }
+
   /// The writer's slot: some older value, to be written over.
   T& back() { return slots_[back_]; }
 

@@ -39,7 +39,8 @@ class AnimationLoop {
 
   explicit AnimationLoop(Policies... policies);
 
-  /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0; never for what happens inside.
+  /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0, or a number of a policy was made
+  /// invalid; never for what happens inside.
   StepReport step(double h);
 
   WorldType& world() { return part<role::World>(); }
@@ -132,6 +133,12 @@ class AnimationLoop {
     to.W.copy_matrix(work_.W);
     to.islands = work_.islands;
     to.h = h_;
+  }
+
+  /// f(part) for the parts of that problem that hold arrays, where they are.
+  template <class F>
+  void each_problem_part(F&& f) const {
+    f(laws()), f(work_.rows), f(work_.W), f(work_.islands);
   }
 
   /// The policy of a role, its default included.
@@ -298,6 +305,7 @@ void AnimationLoop<Policies...>::check_policies() const {
     if constexpr (requires { part.check(); }) part.check();
   };
   std::apply([&](const auto&... part) { (check(part), ...); }, policies_);
+  std::apply([&](const auto&... part) { (check(part), ...); }, defaults_);
   for_each_index<Laws::pool_count>([&](auto p) { check(laws().template pool<p>().law); });
 }
 
@@ -305,6 +313,7 @@ template <class... Policies>
 StepReport AnimationLoop<Policies...>::step(double h) {
   if constexpr (sound)
     if constexpr (inner::scheme_runs<typename Parts::Scheme, AnimationLoop>()) {
+      check_policies();  // their numbers may have been edited since
       begin(h);
       part<role::Scheme>().run(*this);
       tell<stage::Step>();

@@ -5,6 +5,7 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/loop/dormant.hpp>
 #include <delassus/loop/stages/detect.hpp>
+#include <delassus/loop/supports.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -52,6 +53,8 @@ struct Sleeping {
 /// Who sleeps, and since when the others are quiet.
 template <class World, class Laws>
 class Sleepers {
+  using Supports = inner::Supports<World, Laws>;
+
  public:
   const Dormant<World, Laws>& dormant() const { return dormant_; }
 
@@ -69,8 +72,14 @@ class Sleepers {
   void begin(World& world, Laws& laws, double h) {
     called_.assign(std::size_t(called_.size()), 0);
     called_any_ = false;
-    look_at_gravity(world);
-    look_at_supports(world, h);
+    supports_.look_at_gravity(world, [&](Index set) {
+      for (const auto& body : dormant_.bodies())
+        if (body.set == set) call(body.group);
+    });
+    supports_.look(world, h, [&](const Aabb& near) {
+      for (const auto& body : dormant_.bodies())
+        if (near.isEmpty() || body.box.isEmpty() || near.intersects(body.box)) call(body.group);
+    });
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
       world.each([&](const auto& set, auto s) {
@@ -130,7 +139,7 @@ class Sleepers {
     world.each([&](auto& set, auto s) {
       auto& quiet = quiet_[s];
       quiet.resize(set.blocks(), 0);
-      const double gravity = gravity_of(set).norm();
+      const double gravity = Supports::gravity_of(set).norm();
       bool may_sleep = true;
       if constexpr (requires { set.may_sleep(); }) may_sleep = set.may_sleep();
       for (const Index b : set.active()) {
@@ -179,17 +188,9 @@ class Sleepers {
         for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, g); });
   }
 
-  void memory(auto& archive) { archive(dormant_, quiet_, gravity_, supports_); }
+  void memory(auto& archive) { archive(dormant_, quiet_, supports_); }
 
  private:
-  /// A fixed or kinematic body with a shape, as it was when the step began.
-  struct Support {
-    Index set, block;
-    std::uint32_t generation;
-    Pose pose;
-    Aabb box;  ///< empty for a half-space
-  };
-
   Index group_of(const Collider& c) const {
     return dormant_.group_of(Index(c.key >> 28), Index(c.key & ((1u << 28) - 1)));
   }
@@ -215,61 +216,10 @@ class Sleepers {
            now.position != body.pose.position || now.rotation != body.pose.rotation;
   }
 
-  template <class Set>
-  static Vec3 gravity_of(const Set& set) {
-    if constexpr (requires { set.gravity; }) return set.gravity;
-    else return Vec3::Zero();
-  }
   static double strongest_gravity(const World& world) {
     double most = 0;
-    world.each([&](const auto& set, auto) { most = std::max(most, gravity_of(set).norm()); });
+    world.each([&](const auto& set, auto) { most = std::max(most, Supports::gravity_of(set).norm()); });
     return most;
-  }
-  void look_at_gravity(const World& world) {
-    world.each([&](const auto& set, auto s) {
-      const Vec3 now = gravity_of(set);
-      if (now != gravity_[s])
-        for (const auto& body : dormant_.bodies())
-          if (body.set == s) call(body.group);
-      gravity_[s] = now;
-    });
-  }
-
-  /// Compares the bodies that do not answer with what they were a step ago, and asks where they will be after this one; both
-  /// lists ascend by set and block.
-  void look_at_supports(const World& world, double h) {
-    now_.clear();
-    world.each([&](const auto& set, auto s) {
-      for (const Index b : set.active())
-        if (!set.moves(b) && set.has_collider(b)) {
-          const Pose pose = set.pose(b);
-          now_.push_back({s, b, set.handle(b).generation, pose, Dormant<World, Laws>::box_of(set, b, pose)});
-          const auto& v = set.velocity()[b];
-          if (v.isZero(0)) continue;
-          Aabb box = now_.back().box;
-          call_near(box.isEmpty() ? box : box.extend(Aabb(box).translate(h * v.template head<3>().template cast<double>())));
-        }
-    });
-    const auto before = [](const Support& x, const Support& y) {
-      return x.set != y.set ? x.set < y.set : x.block != y.block ? x.block < y.block : x.generation < y.generation;
-    };
-    auto then = supports_.begin();
-    for (const Support& s : now_) {
-      for (; then != supports_.end() && before(*then, s); ++then) call_near(then->box);
-      const bool is_same = then != supports_.end() && !before(s, *then);
-      if (is_same && s.pose.position == then->pose.position && s.pose.rotation == then->pose.rotation) {
-        ++then;
-        continue;
-      }
-      call_near(s.box);
-      if (is_same) call_near((then++)->box);
-    }
-    for (; then != supports_.end(); ++then) call_near(then->box);
-    supports_.swap(now_);
-  }
-  void call_near(const Aabb& box) {
-    for (const auto& body : dormant_.bodies())
-      if (box.isEmpty() || body.box.isEmpty() || box.intersects(body.box)) call(body.group);
   }
 
   void look_at_items(const Laws& laws) {
@@ -317,10 +267,9 @@ class Sleepers {
 
   Dormant<World, Laws> dormant_;
   std::array<std::vector<double>, World::set_count> quiet_;  ///< s
-  std::array<Vec3, World::set_count> gravity_{};
+  Supports supports_;
   std::vector<double> island_quiet_;
   std::vector<Index> island_group_, falling_asleep_;
-  std::vector<Support> supports_, now_;
   std::vector<char> called_;
   bool called_any_ = false;
 };

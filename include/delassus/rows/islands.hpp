@@ -41,6 +41,12 @@ class Islands {
     for_each_index<Rows::pool_count>([&](auto p) { sort(p); });
   }
 
+  static void each_array(auto& self, auto&& f) {
+    f(self.parent_), f(self.island_), f(self.next_);
+    for (auto* arrays : {&self.lowest_, &self.items_, &self.start_})
+      for (auto& array : *arrays) f(array);
+  }
+
  private:
   template <class Pool, class Moves>
   void join(const Pool& pool, Index item, std::span<const Index> first_block, const Moves& moves, Index& seen) {

@@ -20,6 +20,7 @@ struct SetBlocks {
   std::vector<Mat<R, w, T>> H;
   std::vector<Mat<w, R, T>> G;
 
+  static void each_array(auto& self, auto&& f) { f(self.offset), f(self.block), f(self.H), f(self.G); }
   void reset() {
     offset.resize(1);
     block.clear();
@@ -48,6 +49,14 @@ struct PoolRows {
       array->resize(items);
       for (auto& x : *array) x.setZero();
     }
+  }
+
+  /// f(array) for all arrays, whose room somebody wants to know or to make.
+  static void each_array(auto& self, auto&& f) {
+    std::apply([&](auto&... s) { (s.each_array(s, f), ...); }, self.sets);
+    for (auto* array : {&self.phi, &self.stiffness, &self.damping, &self.bias, &self.compliance, &self.softness, &self.d,
+                        &self.lambda})
+      f(*array);
   }
 
   /// The entries of the next item end here in every set.

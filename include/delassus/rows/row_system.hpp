@@ -46,6 +46,10 @@ struct RowSystem<T, Widths<w...>, R...> {
     std::apply([](auto&... p) { (p.reset(0), ...); }, pools);
   }
 
+  static void each_array(auto& self, auto&& f) {
+    std::apply([&](auto&... p) { (p.each_array(p, f), ...); }, self.pools);
+  }
+
   Index row_count() const {
     return std::apply([](const auto&... p) { return (Index(0) + ... + (p.items() * p.rows)); }, pools);
   }

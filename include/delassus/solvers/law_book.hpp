@@ -21,6 +21,11 @@ class LawBook<Constraints<Laws...>, T> {
   /// The constraints may have moved with their loop.
   void attach(const Constraints<Laws...>& constraints) { constraints_ = &constraints; }
 
+  /// Room for `items` of each law: `prepare` allocates nothing up to there.
+  void reserve(std::size_t items) {
+    std::apply([&](auto&... memory) { (memory.reserve(items), ...); }, memory_);
+  }
+
   template <class Operator, class Rows>
   void prepare(const Operator& W, const Rows& rows) {
     for_each_index<sizeof...(Laws)>([&](auto p) {

@@ -21,6 +21,8 @@ struct RigidState {
   std::vector<Eigen::Quaternion<T>> q;
   std::vector<Matrix> R, inertia, inverse_inertia, inverse_inertia_world;  ///< the last is R I⁻¹ Rᵀ
   std::vector<T> mass, inverse_mass;
+  std::vector<Vector> kept_x;
+  std::vector<Eigen::Quaternion<T>> kept_q;
 
   void resize(std::size_t n) {
     x.resize(n);
@@ -66,21 +68,46 @@ struct RigidState {
     return Y;
   }
 
-  /// x + step, and the axes turned by the vector `turn_by`, rad.
-  void displace(Index b, const Vector& step, const Vector& turn_by) {
-    x[b] += step;
-    q[b] = unit(exponential<T>(turn_by) * q[b]);
+  void place(Index b, const Vec3& position, const Quat& orientation) {
+    x[b] = position.template cast<T>();
+    q[b] = orientation.template cast<T>();
     turn(b);
   }
 
-  /// q of one dynamic body after a step from its velocity before and after the impulses; returns the one it
-  /// ends with. `old_share` of the old velocity in the mean that moves it: 0 for kick and drift, ½ for the
-  /// midpoint rule.
-  Velocity drift(Index b, const Velocity& before, const Velocity& next, T h, T old_share) {
-    x[b] += h * mean<Vector>(linear_part(before), linear_part(next), old_share);
+  /// Sets all poses aside, and takes those of these blocks back.
+  void keep_poses() {
+    kept_x = x;
+    kept_q = q;
+  }
+  void take_poses_back(const std::vector<Index>& blocks) {
+    for (const Index b : blocks) {
+      x[b] = kept_x[b];
+      q[b] = kept_q[b];
+      turn(b);
+    }
+  }
+
+  /// x + step, and the axes turned by the vector `turn_by`, rad. False when that is not finite: then nothing moves.
+  bool displace(Index b, const Vector& step, const Vector& turn_by) {
+    const Vector moved = x[b] + step;
+    const Eigen::Quaternion<T> turned = unit(exponential<T>(turn_by) * q[b]);
+    if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
+    x[b] = moved;
+    q[b] = turned;
+    turn(b);
+    return true;
+  }
+
+  /// q and v of one dynamic body after a step from its velocity before and after the impulses; v is the one it ends
+  /// with. `old_share` of the old velocity in the mean that moves it: 0 for kick and drift, ½ for the midpoint rule.
+  /// False when q or v is not finite: then both stay.
+  bool drift(Index b, Velocity& v, const Velocity& next, T h, T old_share) {
+    const Vector old_x = x[b];
+    const Eigen::Quaternion<T> old_q = q[b];
+    x[b] += h * mean<Vector>(linear_part(v), linear_part(next), old_share);
     // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
     const Vector kicked = R[b].transpose() * angular_part(next);
-    const Vector start = old_share > T(0) ? R[b].transpose() * angular_part(before) : kicked;
+    const Vector start = old_share > T(0) ? R[b].transpose() * angular_part(v) : kicked;
     const Vector impulse = inertia[b] * kicked;
     const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
     const Vector spatial = R[b] * impulse;
@@ -88,8 +115,19 @@ struct RigidState {
     turn(b);
     // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
     // ones.
-    return twist<T>(linear_part(next), R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial)));
+    const Vector rate = R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial));
+    // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
+    if (!is_finite(twist<T>(x[b], rate))) [[unlikely]] {
+      x[b] = old_x;
+      q[b] = old_q;
+      turn(b);
+      return false;
+    }
+    v = twist<T>(linear_part(next), rate);
+    return true;
   }
+
+  void memory(auto& archive) { archive(x, q, R, inertia, inverse_inertia, inverse_inertia_world, mass, inverse_mass); }
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// A contact point between two bodies, under a contact law.
 #pragma once
 
+#include <delassus/constraints/contact/wrapped_law.hpp>
 #include <delassus/constraints/law.hpp>
 #include <delassus/rows/contact_record.hpp>
 
@@ -53,30 +54,32 @@ struct Contact {
     if constexpr (requires { law.soften(row, item.record.gap); }) law.soften(row, item.record.gap);
   }
 
+  /// The law that is solved: restitution and penalty wrap one.
+  const auto& local() const { return inner::innermost(law); }
   template <class T>
-  using Memory = inner::memory_of_t<Law, T>;
+  using Memory = inner::memory_of_t<inner::innermost_t<Law>, T>;
 
   template <class T>
   void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
-    inner::prepare(law, W, memory);
+    inner::prepare(local(), W, memory);
   }
   template <class T>
   void project(const Item& item, Local<rows, T>& c, Memory<T>& memory) const {
-    inner::project(law, item.parameters, c, memory);
+    inner::project(local(), item.parameters, c, memory);
   }
   template <class T>
   Vec<rows, T> natural_map(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
-    return law.natural_map(item.parameters, lambda, u, scale);
+    return local().natural_map(item.parameters, lambda, u, scale);
   }
   template <class T>
   void clamp(const Item& item, Vec<rows, T>& lambda) const {
-    law.clamp(item.parameters, lambda);
+    local().clamp(item.parameters, lambda);
   }
   template <class T>
   bool is_sliding(const Item& item, const Vec<rows, T>& lambda) const
-    requires requires { law.is_sliding(item.parameters, lambda); }
+    requires requires { local().is_sliding(item.parameters, lambda); }
   {
-    return law.is_sliding(item.parameters, lambda);
+    return local().is_sliding(item.parameters, lambda);
   }
   /// e of this contact, where the law has one.
   double restitution(const Item& item) const

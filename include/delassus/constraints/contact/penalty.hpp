@@ -1,8 +1,9 @@
 /// Penalty contact: a spring and a damper along the normal in place of a rigid surface.
 #pragma once
 
-#include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/rows/soft.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@ namespace delassus {
 /// a force of the free motion at the start of the step, with no row and no solve: stable for h √(k/m) < 2 only.
 template <class Law>
 struct Penalty {
+  using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
 
@@ -33,14 +35,11 @@ struct Penalty {
                     "Penalty: stiffness " + inner::text(stiffness) + " N/m must be finite and > 0");
     DELASSUS_EXPECT(std::isfinite(damping) && damping >= 0,
                     "Penalty: damping " + inner::text(damping) + " N·s/m must be finite and >= 0");
+    inner::check_soft_number(stiffness, "Penalty: stiffness", "N/m");
+    inner::check_soft_number(damping, "Penalty: damping", "N·s/m");
   }
 
   Parameters parameters() const { return law.parameters(); }
-  static void set_friction(Parameters& p, double friction)
-    requires requires { Law::set_friction(p, friction); }
-  {
-    Law::set_friction(p, friction);
-  }
 
   /// The normal row becomes a spring. The damper waits until the bodies touch.
   void soften(auto& row, double gap) const { row.soft(0, stiffness, gap < 0 ? damping : 0.0); }
@@ -60,32 +59,6 @@ struct Penalty {
       }
     }
     return f;
-  }
-
-  template <class T>
-  using Memory = inner::memory_of_t<Law, T>;
-
-  template <class T>
-  void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
-    inner::prepare(law, W, memory);
-  }
-  template <class T>
-  void project(const Parameters& p, Local<rows, T>& c, Memory<T>& memory) const {
-    inner::project(law, p, c, memory);
-  }
-  template <class T>
-  Vec<rows, T> natural_map(const Parameters& p, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
-    return law.natural_map(p, lambda, u, scale);
-  }
-  template <class T>
-  void clamp(const Parameters& p, Vec<rows, T>& lambda) const {
-    law.clamp(p, lambda);
-  }
-  template <class T>
-  bool is_sliding(const Parameters& p, const Vec<rows, T>& lambda) const
-    requires requires { law.is_sliding(p, lambda); }
-  {
-    return law.is_sliding(p, lambda);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/rows/anchor.hpp>
+#include <delassus/rows/soft.hpp>
 
 #include <cmath>
 
@@ -28,6 +29,9 @@ struct DistanceJoint : Bilateral<1> {
                     "DistanceJoint: stiffness " + inner::text(item.stiffness) + " must be finite and >= 0 N/m");
     DELASSUS_EXPECT(std::isfinite(item.damping) && item.damping >= 0,
                     "DistanceJoint: damping " + inner::text(item.damping) + " must be finite and >= 0 N·s/m");
+    DELASSUS_EXPECT(item.length <= 1e20, "DistanceJoint: length " + inner::text(item.length) + " must be <= 1e20 m");
+    inner::check_soft_number(item.stiffness, "DistanceJoint: stiffness", "N/m");
+    inner::check_soft_number(item.damping, "DistanceJoint: damping", "N·s/m");
   }
 
   void linearize(const Item& item, const auto& world, auto row) const {

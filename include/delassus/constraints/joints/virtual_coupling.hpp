@@ -5,6 +5,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/rows/anchor.hpp>
+#include <delassus/rows/soft.hpp>
 
 #include <cmath>
 
@@ -42,6 +43,10 @@ struct VirtualCoupling : Bilateral<6> {
     DELASSUS_EXPECT(is_not_negative(item.angular_damping), "VirtualCoupling: angular_damping " +
                                                                inner::text(item.angular_damping) +
                                                                " must be finite and >= 0 N·m·s/rad");
+    inner::check_soft_number(item.stiffness, "VirtualCoupling: stiffness", "N/m");
+    inner::check_soft_number(item.damping, "VirtualCoupling: damping", "N·s/m");
+    inner::check_soft_number(item.angular_stiffness, "VirtualCoupling: angular_stiffness", "N·m/rad");
+    inner::check_soft_number(item.angular_damping, "VirtualCoupling: angular_damping", "N·m·s/rad");
   }
 
   void linearize(const Item& item, const auto& world, auto row) const {

@@ -14,6 +14,7 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/with_deadline.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -44,6 +45,7 @@ struct BasicHapticChannel {
   double budget = 80e-6;                                    ///< s a tick may solve, looked at after each sweep
   C clock{};
   ForceOutput output{};
+  std::size_t reserve = 0;  ///< elements of an array of a snapshot, as in `DoubleBuffer`; 0: as it comes
 
   void check() const {
     solver.check();
@@ -70,7 +72,22 @@ class BasicHapticChannel<Solver, C>::Channel {
 
  public:
   /// The parameters are taken here, once: the loop's copy of them may change without a race.
-  explicit Channel(const BasicHapticChannel& parameters) : parameters_(parameters) {}
+  explicit Channel(const BasicHapticChannel& parameters) : parameters_(parameters), room_(parameters.reserve) {
+    slots_.each([&](Slot& slot) {
+      auto& problem = slot.snapshot.problem;
+      room_.make_in(problem);
+      slot.tool.reserve(parameters.reserve);
+      slot.book.reserve(parameters.reserve);
+      // A workspace takes its sizes from rows: once from the largest there can be.
+      Rows largest;
+      for_each_index<Rows::pool_count>([&](auto p) { largest.template pool<p>().phi.resize(parameters.reserve); });
+      slot.workspace.reset(largest);
+    });
+  }
+
+  /// How many problems were passed over for want of room, and the longest array of all so far. Any thread may ask.
+  std::uint64_t skipped() const { return room_.skipped(); }
+  std::size_t needed() const { return room_.needed(); }
 
   // --- the loop's thread -----------------------------------------------------------------------------------------
 
@@ -86,8 +103,10 @@ class BasicHapticChannel<Solver, C>::Channel {
   /// The problem of the step that was just solved; one that is not finite is kept back, and the last good one stays.
   void publish(const auto& loop) {
     if (loop.report().status == Status::quarantined) return;
+    ++sequence_;
+    if (!room_.takes(loop)) return;
     Slot& slot = slots_.back();
-    inner::take_snapshot(loop, ++sequence_, slot.snapshot);
+    inner::take_snapshot(loop, sequence_, slot.snapshot);
     auto& problem = slot.snapshot.problem;
     if (!slot.tool.take(loop.world(), problem, coupling_)) return;
     slot.book.prepare(problem.W, problem.rows);
@@ -146,6 +165,7 @@ class BasicHapticChannel<Solver, C>::Channel {
   }
 
   const BasicHapticChannel parameters_;
+  inner::Room room_;
   TripleBuffer<Slot> slots_;           // loop → device
   TripleBuffer<DeviceState> devices_;  // device → loop
   ConstraintHandle<VirtualCoupling> coupling_{};

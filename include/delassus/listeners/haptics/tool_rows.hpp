@@ -69,6 +69,12 @@ class ToolRows {
   static constexpr int pools = Rows::pool_count;
 
  public:
+  /// Room for `items` of each law.
+  void reserve(std::size_t items) {
+    std::apply([&](auto&... rows) { (rows.reserve(items), ...); }, coupled_);
+    for (auto& place : place_) place.reserve(items);
+  }
+
   bool is_there() const { return island_ >= 0; }
   Index island() const { return island_; }
 

@@ -165,8 +165,8 @@ Index route_contacts(Laws& laws, const ContactBook& book, const Materials& mater
         auto parameters = pool.law.law.parameters();
         if (!materials.empty())
           if (const auto pair = materials.between(record.material_a, record.material_b)) {
-            if constexpr (requires { pool.law.law.set_friction(parameters, 0.0); })
-              pool.law.law.set_friction(parameters, pair->friction);
+            if constexpr (requires { pool.law.local().set_friction(parameters, 0.0); })
+              pool.law.local().set_friction(parameters, pair->friction);
             if constexpr (requires { pool.law.law.set_restitution(parameters, 0.0); })
               pool.law.law.set_restitution(parameters, pair->restitution);
           }

@@ -1,0 +1,100 @@
+/// What every set keeps of a body besides its state: its place, its velocities and load, and whom it meets.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/handle.hpp>
+#include <delassus/core/slots.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace delassus::inner {
+
+/// A set of bodies derives from it. `Set` is that set: it types the handles, and `Set::kind` is the word for
+/// its bodies.
+template <class Set, class T, int width_>
+class Places {
+ public:
+  using Scalar = T;
+  using Handle = delassus::Handle<Set>;
+  using Velocity = Vec<width_, T>;
+  static constexpr int width = width_;
+
+  Vec3 gravity{0, 0, -9.81};
+  std::vector<Velocity> v_free, v_next;
+
+  bool contains(Handle body) const {
+    return body.owner == owner_ && slots_.is_current(body.index, body.generation);
+  }
+  Handle handle(Index block) const { return {block, slots_.generation(block), owner_}; }
+  std::uint32_t owner() const { return owner_; }
+  std::string who(Index b) const { return std::string(Set::kind) + " #" + std::to_string(b); }
+
+  Index blocks() const { return slots_.size(); }
+  const std::vector<Index>& active() const { return slots_.active(); }
+  bool is_alive(Index b) const { return slots_.is_alive(b); }
+  bool is_awake(Index b) const { return slots_.is_awake(b); }
+  /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
+  void lull(Index b) {
+    slots_.set_awake(b, false);
+    v_[b].setZero();
+    v_free[b] = v_next[b] = v_[b];
+  }
+  void rouse(Index b) { slots_.set_awake(b, true); }
+
+  const Velocity& load(Index b) const { return load_[b]; }
+  /// At the start of the step, and of kinematic bodies for this one.
+  const std::vector<Velocity>& velocity() const { return v_; }
+  std::vector<Velocity>& velocity() { return v_; }
+  /// How many bodies the last advance left where they were.
+  Index held() const { return held_; }
+
+  Index collider_count() const { return blocks(); }
+  Index material(Index b) const { return material_[b]; }
+  std::uint32_t group(Index b) const { return group_[b]; }
+  std::uint32_t collides_with(Index b) const { return collides_with_[b]; }
+
+ protected:
+  Index checked(Handle body) const {
+    DELASSUS_EXPECT(body.owner == owner_,
+                    std::string("this ") + Set::kind + " handle belongs to another world");
+    DELASSUS_EXPECT(slots_.is_current(body.index, body.generation),
+                    who(body.index) + " was removed; its handle is stale");
+    return body.index;
+  }
+
+  /// A place for a body as the user gave it, with this velocity; the arrays of the state are the set's to fit
+  /// to `blocks()`.
+  Index take(const auto& body, const Velocity& velocity) {
+    const Index b = slots_.take();
+    const std::size_t n = std::size_t(slots_.size());
+    for (auto* array : {&v_, &load_, &v_free, &v_next}) array->resize(n);
+    material_.resize(n);
+    for (auto* array : {&group_, &collides_with_}) array->resize(n);
+    v_[b] = v_free[b] = v_next[b] = velocity;
+    load_[b].setZero();
+    material_[b] = body.material;
+    group_[b] = body.group;
+    collides_with_[b] = body.collides_with;
+    return b;
+  }
+
+  /// What outlives a step; handles of the set that wrote it stay with that set.
+  void memory(auto& archive) {
+    archive(gravity, slots_, v_, load_, v_free, v_next, material_, group_, collides_with_);
+  }
+
+  Slots slots_;
+  Index held_ = 0;
+  std::vector<Velocity> v_, load_;
+
+ private:
+  std::uint32_t owner_ = next_owner();
+  std::vector<Index> material_;
+  std::vector<std::uint32_t> group_, collides_with_;
+};
+
+}  // namespace delassus::inner

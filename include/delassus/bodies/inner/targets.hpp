@@ -1,0 +1,56 @@
+/// Where kinematic bodies shall be at the end of the step.
+#pragma once
+
+#include <delassus/bodies/inner/rigid_state.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace delassus::inner {
+
+class Targets {
+ public:
+  void resize(std::size_t n) { targets_.resize(n); }
+  void set(Index b, const Vec3& position, const Quat& orientation) {
+    targets_[b] = {position, unit(orientation), true};
+    are_any_ = true;
+  }
+  void drop(Index b) { targets_[b].is_set = false; }
+
+  /// f(b, velocity) for the bodies of `active` that have one: (q(t+h) ⊖ q(t)) / h from the present state.
+  template <class T, class F>
+  void each_velocity(const std::vector<Index>& active, const RigidState<T>& state, double h, F&& f) {
+    if (!are_any_) return;
+    are_any_ = false;
+    for (const Index b : active) {
+      if (!targets_[b].is_set) continue;
+      are_any_ = true;
+      const Quat now = state.q[b].template cast<double>();
+      const Vec3 way = targets_[b].position - state.x[b].template cast<double>(),
+                 turn = logarithm<double>(targets_[b].orientation * now.conjugate());
+      f(b, twist<T>((way / h).template cast<T>(), (turn / h).template cast<T>()));
+    }
+  }
+
+  /// Puts the body where it was told, exactly, and forgets that it was; false when it was not told.
+  template <class T>
+  bool reach(Index b, RigidState<T>& state) {
+    if (!targets_[b].is_set) return false;
+    state.place(b, targets_[b].position, targets_[b].orientation);
+    drop(b);
+    return true;
+  }
+
+  void memory(auto& archive) { archive(targets_, are_any_); }
+
+ private:
+  struct Target {
+    Vec3 position = Vec3::Zero();
+    Quat orientation = Quat::Identity();
+    bool is_set = false;
+  };
+  std::vector<Target> targets_;
+  bool are_any_ = false;  ///< one is set and the step that goes there is not over
+};
+
+}  // namespace delassus::inner

@@ -1,0 +1,26 @@
+/// A law that the library does not know.
+#pragma once
+
+#include <delassus/delassus.hpp>
+
+#include <algorithm>
+#include <array>
+
+/// A rope pulls and never pushes: φ = |x_a − x_b| − L ≤ 0, λ ≤ 0.
+struct Rope {
+  static constexpr int rows = 1;
+  static constexpr std::array kinds{delassus::RowKind::upper};
+  struct Item {
+    delassus::Anchor a, b;
+    double length;
+  };
+  void linearize(const Item& item, const auto& world, auto row) const {
+    const delassus::Vec3 a = world.point(item.a), b = world.point(item.b), e = (a - b).normalized();
+    row.end(item.a, a).along(0, e);
+    row.end(item.b, b).along(0, -e);
+    row.phi(0, (a - b).norm() - item.length);
+  }
+  void project(const Item&, delassus::Local<1>& c) const {
+    c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0));
+  }
+};
