@@ -2,9 +2,8 @@
 #pragma once
 
 #include <delassus/collision/broad_phase.hpp>
-#include <delassus/collision/certificate.hpp>
+#include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/collider.hpp>
-#include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/reduce.hpp>
@@ -119,15 +118,11 @@ class CollisionEngine {
       return half_space_patch(b.shape, b_in_a, inner::plane_of(a.shape, Pose{}), true, reach, scale, patch_);
     if (is_half_space(b))
       return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
-    PairCache cache{.guess = a.pose.rotation.transpose() * last.normal};
-    SignedPair r = kernel_.pair(a.shape, b.shape, b_in_a, reach, cache);
-    if (!certify(a.shape, b.shape, b_in_a, reach, scale, r) ||
-        is_beaten(a.shape, b.shape, b_in_a, cache.guess, scale, r)) {
-      ++report_.rejects;
-      r = GjkEpa{}.pair(a.shape, b.shape, b_in_a, reach, cache);
-      if (!certify(a.shape, b.shape, b_in_a, reach, scale, r))
-        r = coarse_pair(a.shape, b.shape, b_in_a, cache.guess);
-    }
+    const Vec3 guess = a.pose.rotation.transpose() * last.normal;
+    const auto [answer, is_rejected] =
+        certified_pair(kernel_, a.shape, b.shape, b_in_a, reach, scale, guess);
+    report_.rejects += is_rejected ? 1 : 0;
+    SignedPair r = answer;
     if (r.status == PairStatus::near)
       now.owner = inner::settle_normal(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
