@@ -66,7 +66,7 @@ class CollisionEngine {
       if (!is_bounded) half_spaces_.push_back(i);
       boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
     }
-    broad_.find(boxes_, pairs_);
+    find_candidates(colliders);
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j);
     for (const Index plane : half_spaces_)
       for (Index i = 0; i < Index(colliders.size()); ++i)
@@ -74,6 +74,16 @@ class CollisionEngine {
           add_job(colliders, plane, i);
     std::sort(jobs_.begin(), jobs_.end());
     report_.pairs = Index(jobs_.size());
+  }
+
+  void find_candidates(std::span<const Collider> colliders) {
+    if constexpr (TaggedBroadPhase<Broad>) {
+      tags_.clear();
+      for (const Collider& c : colliders) tags_.push_back({.key = c.key, .is_movable = c.is_movable});
+      broad_.find(boxes_, tags_, pairs_);
+    } else {
+      broad_.find(boxes_, pairs_);
+    }
   }
 
   void add_job(std::span<const Collider> colliders, Index a, Index b) {
@@ -160,6 +170,7 @@ class CollisionEngine {
   CollisionReport report_;
   Patch patch_;
   std::vector<Aabb> boxes_;
+  std::vector<BoxTag> tags_;
   std::vector<Index> half_spaces_;
   std::vector<CandidatePair> pairs_;
   std::vector<Job> jobs_;
