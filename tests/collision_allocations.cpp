@@ -13,8 +13,9 @@ TEST_CASE("a warm detect() allocates nothing") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const ConvexHull hull = samples::ball_hull(20, 7, 0.5);
-  const std::vector<Shape> shapes{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8},
-                                  hull};
+  const std::vector<Shape> shapes{Sphere{0.4},         Box{1, 0.6, 0.8}, Capsule{0.25, 0.8},
+                                  Cylinder{0.35, 0.8}, hull,             Cone{0.4, 0.9},
+                                  Ellipsoid{0.5, 0.3, 0.4}};
   Scene scene;
   scene.add(HalfSpace{}, {0, 0, -1}, Mat3::Identity(), false);
   for (std::size_t i = 0; i < 60; ++i)

@@ -76,8 +76,9 @@ TEST_CASE(
 TEST_CASE("the answer of last resort always separates") {
   std::mt19937 random(1);
   const ConvexHull hull = ball_hull(20, 7, 0.5);
-  const std::vector<Shape> shapes{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8},
-                                  hull};
+  const std::vector<Shape> shapes{Sphere{0.4},         Box{1, 0.6, 0.8}, Capsule{0.25, 0.8},
+                                  Cylinder{0.35, 0.8}, hull,             Cone{0.4, 0.9},
+                                  Ellipsoid{0.5, 0.3, 0.4}};
   for (const Shape& a : shapes)
     for (const Shape& b : shapes) {
       double apart = 0;

@@ -23,8 +23,9 @@ void fill(Scene& scene, const ConvexHull& hull, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   scene.add(HalfSpace{}, {0, 0, -1}, Mat3::Identity(), false);
-  const std::vector<Shape> shapes{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8},
-                                  hull};
+  const std::vector<Shape> shapes{Sphere{0.4},         Box{1, 0.6, 0.8}, Capsule{0.25, 0.8},
+                                  Cylinder{0.35, 0.8}, hull,             Cone{0.4, 0.9},
+                                  Ellipsoid{0.5, 0.3, 0.4}};
   for (int i = 0; i < count; ++i) {
     const Vec3 position = 1.5 * Vec3(uniform(random), uniform(random), uniform(random));
     scene.add(shapes[std::size_t(i) % shapes.size()], position, samples::any_rotation(random), i % 7 != 0);

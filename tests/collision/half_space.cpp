@@ -46,6 +46,10 @@ TEST_CASE("on a half-space every corner of the lowest face is a contact at the p
                               {Cylinder{0.4, 1}, Mat3::Identity(), 4},
                               {Cylinder{0.4, 1}, lying, 2},
                               {Capsule{0.3, 1}, lying, 2},
+                              {Cone{0.3, 0.4}, Mat3::Identity(), 4},
+                              {Cone{0.3, 0.4}, turn(std::acos(-1.0), Vec3::UnitX()), 1},
+                              {Cone{0.3, 0.4}, turn(std::acos(0.0) + std::atan2(0.3, 0.4), Vec3::UnitX()), 2},
+                              {Ellipsoid{0.5, 0.3, 0.4}, turn(0.7, Vec3(1, 2, 3)), 1},
                               {Capsule{0.3, 1}, Mat3::Identity(), 1}};
   for (const Row& row : rows)
     for (const bool plane_is_first : {true, false})

@@ -49,6 +49,10 @@ TEST_CASE("each way of resting has its number of contacts, touching, sunk in and
       {"cylinder on its rim", Cylinder{0.4, 1}, turn(0.5, Vec3::UnitX()), 1},
       {"lying capsule", Capsule{0.3, 1}, lying, 2},
       {"standing capsule", Capsule{0.3, 1}, upright, 1},
+      {"standing cone", Cone{0.3, 0.4}, upright, 8},
+      {"cone on its tip", Cone{0.3, 0.4}, turn(half_turn, Vec3::UnitX()), 1},
+      {"lying cone", Cone{0.3, 0.4}, turn(half_turn / 2 + std::atan2(0.3, 0.4), Vec3::UnitX()), 2},
+      {"ellipsoid", Ellipsoid{0.5, 0.3, 0.4}, turn(0.7, Vec3(1, 2, 3)), 1},
   };
   for (const Row& row : rows)
     for (const double gap : {0.0, -1e-4, 1e-4, 1e-12, -1e-12}) {

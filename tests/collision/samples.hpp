@@ -39,9 +39,12 @@ inline Mat3 any_rotation(std::mt19937& random) {
 inline double thickness(const Shape& s) {
   switch (s.kind) {
     case ShapeKind::box:
+    case ShapeKind::ellipsoid:
       return std::min({s.size[0], s.size[1], s.size[2]});
     case ShapeKind::cylinder:
       return std::min(s.size[0], s.size[1]);
+    case ShapeKind::cone:  // the radius of the ball inside
+      return 2 * s.size[0] * s.size[1] / (s.size[0] + std::hypot(s.size[0], 2 * s.size[1]));
     case ShapeKind::convex_hull:
       return s.hull->inner_radius();
     default:
@@ -57,6 +60,7 @@ inline void features(const Shape& s, const Mat3& R, std::vector<Vec3>& normals, 
       edges.push_back(R.col(k));
     }
   if (s.kind == ShapeKind::cylinder) normals.insert(normals.end(), {R.col(2), -R.col(2)});
+  if (s.kind == ShapeKind::cone) normals.push_back(-R.col(2));
   if (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::capsule) edges.push_back(R.col(2));
   if (s.kind != ShapeKind::convex_hull) return;
   for (Index f = 0; f < s.hull->face_count(); ++f) {

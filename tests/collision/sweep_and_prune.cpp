@@ -1,4 +1,5 @@
 #include "catch.hpp"
+#include "collision/boxes.hpp"
 
 #include <delassus/collision/sweep_and_prune.hpp>
 
@@ -7,17 +8,9 @@
 #include <vector>
 
 using namespace delassus;
+using samples::brute_force;
 
 namespace {
-
-std::vector<CandidatePair> brute_force(const std::vector<Aabb>& boxes) {
-  std::vector<CandidatePair> pairs;
-  for (Index i = 0; i < Index(boxes.size()); ++i)
-    for (Index j = i + 1; j < Index(boxes.size()); ++j)
-      if (!boxes[i].isEmpty() && !boxes[j].isEmpty() && boxes[i].intersects(boxes[j]))
-        pairs.push_back({i, j});
-  return pairs;
-}
 
 std::vector<CandidatePair> sorted(std::vector<CandidatePair> pairs) {
   std::sort(pairs.begin(), pairs.end());

@@ -54,6 +54,23 @@ TEST_CASE("round solids have the inertia of their slices") {
               1e-8);
 }
 
+TEST_CASE("a cone has the inertia of its slices about its own centre") {
+  // revolve() slices about the middle of [−half, half]; the cone's centre lies h/4 above its base, h/4 below the middle.
+  const double r = 0.7, h = 1.8;
+  MassProperties slices = revolve(h / 2, [&](double z) { return r * (0.5 - z / h); });
+  slices.inertia(0, 0) -= slices.mass * h * h / 16;
+  slices.inertia(1, 1) = slices.inertia(0, 0);
+  check_equal(mass_properties(Cone{r, h}, 1), slices, 1e-8);
+}
+
+TEST_CASE("an ellipsoid is a ball in other units along each axis") {
+  // ∫ x² dV of the unit ball is 4π/15; stretched by (a, b, c) it is a² · abc · 4π/15.
+  const double a = 0.5, b = 0.3, c = 0.4, share = 4 * pi / 15 * a * b * c;
+  const MassProperties m = mass_properties(Ellipsoid{a, b, c}, 7);
+  CHECK(m.mass == Approx(7 * 4 * pi / 3 * a * b * c).epsilon(1e-14));
+  CHECK(m.inertia.diagonal().isApprox(7 * share * Vec3(b * b + c * c, c * c + a * a, a * a + b * b), 1e-14));
+}
+
 TEST_CASE("a box has m/12 (y² + z²) about x") {
   const MassProperties m = mass_properties(Box{1, 2, 3}, 5);
   CHECK(m.mass == Approx(30));

@@ -33,6 +33,9 @@ TEST_CASE("a shape that cannot exist is refused by name") {
   CHECK_THROWS_WITH(check(Box{1, 1, inf}, "x"), Contains("box edge z inf m"));
   CHECK_THROWS_WITH(check(Capsule{1, 0}, "x"), Contains("capsule height 0 m"));
   CHECK_THROWS_WITH(check(Cylinder{-2, 1}, "x"), Contains("cylinder radius -2 m"));
+  CHECK_THROWS_WITH(check(Cone{0, 1}, "x"), Contains("cone radius 0 m"));
+  CHECK_THROWS_WITH(check(Cone{1, inf}, "x"), Contains("cone height inf m"));
+  CHECK_THROWS_WITH(check(Ellipsoid{1, -1, 1}, "x"), Contains("ellipsoid semi-axis b -1 m"));
   CHECK_THROWS_WITH(check(HalfSpace{Vec3::Zero(), 0}, "x"), Contains("half-space normal"));
   CHECK_THROWS_WITH(check(HalfSpace{{0, 0, 1}, nan}, "x"), Contains("half-space offset"));
   CHECK_THROWS_AS(check(Sphere{-1}, "x"), InvalidArgument);
@@ -40,7 +43,8 @@ TEST_CASE("a shape that cannot exist is refused by name") {
 
 TEST_CASE("a good shape, and none at all, pass") {
   for (const Shape& s :
-       std::vector<Shape>{Sphere{1}, Box{1e-9, 1, 1e9}, Capsule{1, 2}, Cylinder{1, 2}, HalfSpace{}, Shape{}})
+       std::vector<Shape>{Sphere{1}, Box{1e-9, 1, 1e9}, Capsule{1, 2}, Cylinder{1, 2}, Cone{1, 2}, Ellipsoid{1, 2, 3},
+                          HalfSpace{}, Shape{}})
     CHECK_NOTHROW(check(s, "x"));
 }
 

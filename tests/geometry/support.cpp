@@ -13,7 +13,8 @@ namespace {
 
 struct Shapes {
   ConvexHull hull{std::vector<Vec3>{{1, 0, -1}, {-1, 1, -1}, {-1, -1, -1}, {0.2, 0.1, 2}, {0.5, 0.6, 0.4}}};
-  std::vector<Shape> all{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8}, hull};
+  std::vector<Shape> all{
+      Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8}, hull, Cone{0.4, 0.9}, Ellipsoid{0.5, 0.3, 0.4}};
 };
 
 Vec3 direction(std::mt19937& random) {
@@ -73,7 +74,8 @@ TEST_CASE("a face holds the support point, looks outward and lies in its plane")
       }
       // A cap is an octagon in its rim: it may miss the rim by r (1 − cos 22.5°) < 0.0762 r.
       CHECK(highest <= d.dot(reach) + 1e-15);
-      CHECK(highest >= d.dot(reach) - (s.kind == ShapeKind::cylinder ? 0.0762 * s.size[0] : 1e-15));
+      const bool is_round = s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone;
+      CHECK(highest >= d.dot(reach) - (is_round ? 0.0762 * s.size[0] : 1e-15));
     }
 }
 
@@ -95,6 +97,31 @@ TEST_CASE("a capsule offers a line only when it lies, a cylinder a cap or a line
   CHECK(face_towards(Cylinder{0.2, 1}, Vec3::UnitZ()).count == 8);
   CHECK(face_towards(Cylinder{0.2, 1}, Vec3::UnitX()).count == 2);
   CHECK(face_towards(Sphere{1}, Vec3::UnitX()).count == 0);
+  CHECK(face_towards(Ellipsoid{1, 2, 3}, Vec3::UnitX()).count == 0);
+}
+
+TEST_CASE("a cone stands on its base, lies on a line of its mantle, and is sharp at its tip") {
+  const Shape cone = Cone{0.3, 0.4};  // the mantle's slant is 0.5, its normal (0.8, 0, 0.6)
+  CHECK(face_towards(cone, -Vec3::UnitZ()).count == 8);
+  CHECK(face_towards(cone, Vec3::UnitZ()).count == 0);
+  const Face line = face_towards(cone, Vec3(0.8, 0, 0.6));
+  REQUIRE(line.count == 2);
+  CHECK((line.point[0] - Vec3(0, 0, 0.3)).norm() < 1e-15);
+  CHECK((line.point[1] - Vec3(0.3, 0, -0.1)).norm() < 1e-15);
+  CHECK((support(cone, Vec3(0.79, 0, 0.62)) - Vec3(0, 0, 0.3)).norm() < 1e-15);
+  CHECK((support(cone, Vec3(0.81, 0, 0.58)) - Vec3(0.3, 0, -0.1)).norm() < 1e-15);
+  CHECK(outer_radius(cone) == Approx(std::hypot(0.3, 0.1)));
+  CHECK(outer_radius(Cone{0.3, 1.2}) == Approx(0.9));
+}
+
+TEST_CASE("an ellipsoid's support point has its tangent plane normal to the direction") {
+  std::mt19937 random(5);
+  const Vec3 axes(0.5, 0.3, 0.4);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 n = direction(random), p = support(Ellipsoid{0.5, 0.3, 0.4}, n);
+    CHECK(p.cwiseQuotient(axes).norm() == Approx(1).epsilon(1e-14));
+    CHECK((p.cwiseQuotient(axes.cwiseAbs2()).normalized() - n).norm() < 1e-14);
+  }
 }
 
 TEST_CASE("a face of a hull with more than sixteen corners is sampled evenly") {

@@ -155,6 +155,14 @@ TEST_CASE("what does not hold together is refused, by name") {
   REQUIRE_THROWS_WITH(replay_page("", std::array{scene}), "delassus: recording 'spirals' has no frame");
 }
 
+TEST_CASE("a cone is written by radius and height, an ellipsoid by its semi-axes") {
+  RecordedBody body;
+  body.shape = Cone{0.5, 2};
+  CHECK(inner::shape_json(body) == R"({"kind":"cone","size":[0.5,2]})");
+  body.shape = Ellipsoid{1, 2, 3};
+  CHECK(inner::shape_json(body) == R"({"kind":"ellipsoid","size":[1,2,3]})");
+}
+
 TEST_CASE("the page is written whole, or the path is named") {
   const std::string path = "replay_page_test.html";
   const std::vector<Recording> scenes{spirals(3, 0.5, 2)};

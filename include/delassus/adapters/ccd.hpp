@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/adapters/ccd_kernel.hpp>
+#include <delassus/collision/box_tree.hpp>
 #include <delassus/collision/engine.hpp>
-#include <delassus/collision/sweep_and_prune.hpp>
 #include <delassus/core/roles.hpp>
 
 namespace delassus {
 
-/// Sweep and prune, and libccd's penetrations, each certified; a refused one is computed by GjkEpa and
+/// Our trees of boxes, and libccd's penetrations, each certified; a refused one is computed by GjkEpa and
 /// counted as a reject. Nothing is allocated in a warm step, by us or by libccd.
 struct CcdCollision {
   using plays = role::Collision;
@@ -16,7 +16,7 @@ struct CcdCollision {
   double margin = -1;  ///< contacts up to this gap, m; negative: by size and speed (CollisionSettings)
   double contact_distance = 0;  ///< thickness between the bodies, m
   int max_points = 4;           ///< of one pair
-  CollisionEngine<CcdKernel, SweepAndPrune> engine{};
+  CollisionEngine<CcdKernel, BoxTree> engine{};
 
   void check() const { CollisionSettings{margin, contact_distance, max_points}.check("CcdCollision"); }
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {

@@ -6,8 +6,10 @@
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision_request.h>
 #include <fcl/narrowphase/collision_result.h>
@@ -102,9 +104,11 @@ class FclKernel {
                   PairCache& cache) noexcept {
     try {
       const double scale = std::ldexp(1.0, -std::ilogb(std::min(length_scale(a), length_scale(b))));
+      // FCL's frame of A is ours, moved to the middle of A.
+      const Vec3 middle_a = scale * fcl_middle(a);
       fcl::Transform3d pose = fcl::Transform3d::Identity();
       pose.linear() = b_in_a.rotation;
-      pose.translation() = scale * b_in_a.position;
+      pose.translation() = scale * b_in_a.to_world(fcl_middle(b)) - middle_a;
       SignedPair r;
       with_geometry(a, scale, [&](const Geometry& ga) {
         with_geometry(b, scale, [&](const Geometry& gb) {
@@ -115,8 +119,8 @@ class FclKernel {
         });
       });
       r.distance /= scale;
-      r.point_a /= scale;
-      r.point_b /= scale;
+      r.point_a = (r.point_a + middle_a) / scale;
+      r.point_b = (r.point_b + middle_a) / scale;
       if (r.status == PairStatus::near && r.distance > margin) r.status = PairStatus::far;
       return r;
     } catch (...) {
@@ -126,6 +130,11 @@ class FclKernel {
 
  private:
   using Geometry = fcl::CollisionGeometryd;
+
+  /// Where FCL has the origin of a shape: a cone's is half way up, ours at the centre of mass.
+  static Vec3 fcl_middle(const Shape& s) {
+    return s.kind == ShapeKind::cone ? Vec3(0.5 * s.size[1] * unit_axis(2)) : Vec3::Zero();
+  }
 
   template <class F>
   void with_geometry(const Shape& s, double scale, const F& f) {
@@ -138,6 +147,10 @@ class FclKernel {
         return f(fcl::Capsuled(scale * s.size[0], 2 * scale * s.size[1]));
       case ShapeKind::cylinder:
         return f(fcl::Cylinderd(scale * s.size[0], 2 * scale * s.size[1]));
+      case ShapeKind::cone:
+        return f(fcl::Coned(scale * s.size[0], 2 * scale * s.size[1]));
+      case ShapeKind::ellipsoid:
+        return f(fcl::Ellipsoidd(scale * s.size[0], scale * s.size[1], scale * s.size[2]));
       case ShapeKind::convex_hull:
         return f(hulls_.at(*s.hull, scale));
       default:

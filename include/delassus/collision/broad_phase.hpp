@@ -5,6 +5,7 @@
 #include <delassus/geometry/support.hpp>
 
 #include <compare>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,20 @@ struct CandidatePair {
 template <class B>
 concept BroadPhase = requires(B& b, std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
   b.find(boxes, pairs);  // appends to `pairs`
+};
+
+/// What a box is called from step to step, and whether it moves.
+struct BoxTag {
+  std::uint32_t key = 0;
+  bool is_movable = true;
+};
+
+/// A broad phase that also takes names: boxes may then stand in another order, come and go, and still be recognised. Two
+/// boxes that do not move may be left out.
+template <class B>
+concept TaggedBroadPhase = BroadPhase<B> && requires(B& b, std::span<const Aabb> boxes, std::span<const BoxTag> tags,
+                                                     std::vector<CandidatePair>& pairs) {
+  b.find(boxes, tags, pairs);  // one tag a box, unique keys
 };
 
 }  // namespace delassus

@@ -1,4 +1,4 @@
-/// Pairs whose distance has a formula: a sphere with a sphere, box, capsule or cylinder, and two capsules.
+/// Pairs whose distance has a formula: a sphere with any shape but a hull, and two capsules.
 #pragma once
 
 #include <delassus/collision/inner/nearest.hpp>
@@ -54,8 +54,7 @@ inline SignedPair two_capsules(const Shape& a, const Shape& b, const Pose& b_in_
 }
 
 inline bool is_simple(const Shape& s) {
-  return s.kind == ShapeKind::sphere || s.kind == ShapeKind::box || s.kind == ShapeKind::capsule ||
-         s.kind == ShapeKind::cylinder;
+  return s.has_volume() && s.kind != ShapeKind::convex_hull;
 }
 
 /// Turns an answer for (B, A) in the frame of B into one for (A, B) in the frame of A.

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <delassus/collision/broad_phase.hpp>
-#include <delassus/collision/certificate.hpp>
+#include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/collider.hpp>
-#include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/reduce.hpp>
@@ -67,7 +66,7 @@ class CollisionEngine {
       if (!is_bounded) half_spaces_.push_back(i);
       boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
     }
-    broad_.find(boxes_, pairs_);
+    find_candidates(colliders);
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j);
     for (const Index plane : half_spaces_)
       for (Index i = 0; i < Index(colliders.size()); ++i)
@@ -75,6 +74,16 @@ class CollisionEngine {
           add_job(colliders, plane, i);
     std::sort(jobs_.begin(), jobs_.end());
     report_.pairs = Index(jobs_.size());
+  }
+
+  void find_candidates(std::span<const Collider> colliders) {
+    if constexpr (TaggedBroadPhase<Broad>) {
+      tags_.clear();
+      for (const Collider& c : colliders) tags_.push_back({.key = c.key, .is_movable = c.is_movable});
+      broad_.find(boxes_, tags_, pairs_);
+    } else {
+      broad_.find(boxes_, pairs_);
+    }
   }
 
   void add_job(std::span<const Collider> colliders, Index a, Index b) {
@@ -119,15 +128,11 @@ class CollisionEngine {
       return half_space_patch(b.shape, b_in_a, inner::plane_of(a.shape, Pose{}), true, reach, scale, patch_);
     if (is_half_space(b))
       return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
-    PairCache cache{.guess = a.pose.rotation.transpose() * last.normal};
-    SignedPair r = kernel_.pair(a.shape, b.shape, b_in_a, reach, cache);
-    if (!certify(a.shape, b.shape, b_in_a, reach, scale, r) ||
-        is_beaten(a.shape, b.shape, b_in_a, cache.guess, scale, r)) {
-      ++report_.rejects;
-      r = GjkEpa{}.pair(a.shape, b.shape, b_in_a, reach, cache);
-      if (!certify(a.shape, b.shape, b_in_a, reach, scale, r))
-        r = coarse_pair(a.shape, b.shape, b_in_a, cache.guess);
-    }
+    const Vec3 guess = a.pose.rotation.transpose() * last.normal;
+    const auto [answer, is_rejected] =
+        certified_pair(kernel_, a.shape, b.shape, b_in_a, reach, scale, guess);
+    report_.rejects += is_rejected ? 1 : 0;
+    SignedPair r = answer;
     if (r.status == PairStatus::near)
       now.owner = inner::settle_normal(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
@@ -165,6 +170,7 @@ class CollisionEngine {
   CollisionReport report_;
   Patch patch_;
   std::vector<Aabb> boxes_;
+  std::vector<BoxTag> tags_;
   std::vector<Index> half_spaces_;
   std::vector<CandidatePair> pairs_;
   std::vector<Job> jobs_;

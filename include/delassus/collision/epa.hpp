@@ -1,6 +1,7 @@
 /// EPA: the depth of two overlapping or touching cores, from the simplex where GJK stopped.
 #pragma once
 
+#include <delassus/collision/inner/descend.hpp>
 #include <delassus/collision/inner/polytope.hpp>
 
 #include <algorithm>
@@ -95,8 +96,9 @@ inline int independent(const Simplex& s, double size, std::array<DifferencePoint
 /// min over unit n of h(n), by outer approximation: the nearest face of the polytope bounds it below, the
 /// support plane in that face's direction above. Every h(n) met is a valid depth, and the least of them is
 /// the answer, so rounding in the polytope cannot make it wrong, only less than minimal. Ends when the bounds
-/// meet to 1e-8 of the size. The origin may lie a little outside: then h < 0 is minus the distance. Source:
-/// [VanDenBergen2001].
+/// meet to 3e-10 of the size; when the points are spent before (round bodies about one axis or centre), it
+/// descends from the best normal. The origin may lie a little outside: then h < 0 is minus the distance.
+/// Source: [VanDenBergen2001].
 template <class D>
 EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
   double size = 0, size_a = 0, size_b = 0;
@@ -111,29 +113,34 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
   while (count < 4)
     if (!grow(difference, corner, count, size)) return flat_depth(difference, corner, count, guess);
 
-  const double tolerance = std::max(1e-8 * std::min(size_a, size_b), 1e-14 * size);
+  const double tolerance = std::max(3e-10 * std::min(size_a, size_b), 1e-14 * size);
   Polytope polytope(corner);
   EpaResult best;
-  Polytope::Face best_face{};
+  std::array<DifferencePoint, 3> best_face;
+  const auto consider = [&](const std::array<DifferencePoint, 3>& face, const Vec3& normal,
+                            const DifferencePoint& q) {
+    const double h = normal.dot(q.w);
+    if (!(h < best.h)) return;
+    best.h = h;
+    best.normal = normal;
+    best_face = face;
+  };
   for (;;) {
     const int f = polytope.nearest_face();
     if (f < 0) break;
-    const Polytope::Face face = polytope.face(f);
+    const Polytope::Face& face = polytope.face(f);
     if (best.h - face.offset <= tolerance) break;
     const DifferencePoint q = difference.core(face.normal);
-    const double h = face.normal.dot(q.w);
-    if (h < best.h) {
-      best.h = h;
-      best.normal = face.normal;
-      best_face = face;
+    consider(polytope.corners(f), face.normal, q);
+    if (face.normal.dot(q.w) - face.offset <= tolerance) break;
+    if (polytope.is_full()) {
+      descend(difference, best.normal, pierced_face(polytope, best.normal), tolerance, consider);
+      break;
     }
-    if (h - face.offset <= tolerance || polytope.is_full()) break;
     if (!polytope.extend(q, 1e-14 * size)) polytope.retire(f);
   }
   if (best.h == std::numeric_limits<double>::infinity()) return best;
-  Simplex carrier{
-      .p = {polytope.point(best_face.v[0]), polytope.point(best_face.v[1]), polytope.point(best_face.v[2])},
-      .count = 3};
+  Simplex carrier{.p = {best_face[0], best_face[1], best_face[2]}, .count = 3};
   nearest_on_triangle(carrier);
   best.point_a = carrier.mix(&DifferencePoint::a);
   best.point_b = carrier.mix(&DifferencePoint::b);

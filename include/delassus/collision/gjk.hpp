@@ -31,32 +31,37 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
   r.simplex.add(difference.core(direction));
   r.simplex.weight[0] = 1;
   Vec3 v = r.simplex.p[0].w;
-  double size = v.norm();
-  for (int iteration = 0; iteration < 128; ++iteration) {
-    const double length = v.norm();
-    if (length <= 1e-10 * size) return r;
-    const Vec3 n = -v / length;
+  double size = v.norm(), length = size;
+  const auto prove = [&](const Vec3& n) {
     const DifferencePoint q = difference.core(n);
     size = std::max(size, q.w.norm());
     const double separation = -n.dot(q.w);
     if (separation > r.separation) r.separation = separation, r.normal = n;
     r.is_apart = r.separation > 1e-10 * size;
-    if (r.separation > margin || length - separation <= 1e-10 * length) return r;
+    return q;
+  };
+  for (int iteration = 0; iteration < 128 && length > 1e-10 * size; ++iteration) {
+    const Vec3 n = -v / length;
+    const DifferencePoint q = prove(n);
+    if (r.separation > margin || length + n.dot(q.w) <= 1e-10 * length) return r;
     for (int i = 0; i < r.simplex.count; ++i)
       if ((q.w - r.simplex.p[i].w).squaredNorm() <= 1e-28 * size * size) return r;
     const Simplex before = r.simplex;
     r.simplex.add(q);
     bool is_inside = false;
-    const Vec3 next = nearest(r.simplex, is_inside);
+    v = nearest(r.simplex, is_inside);
     if (is_inside) {
       r.is_apart = false;
       return r;
     }
-    if (next.squaredNorm() >= length * length) {
+    const double next = v.norm();
+    if (next >= length) {
+      // As short as can be seen, but of flat faces the direction may still be the better one.
       r.simplex = before;
+      prove(-v / next);
       return r;
     }
-    v = next;
+    length = next;
   }
   return r;
 }

@@ -7,7 +7,7 @@
 
 namespace delassus {
 
-/// Exact to 1e-8 of the size for any convex pair, apart, touching or deep. Scale free: no absolute length
+/// Exact to 1e-9 of the size for any convex pair, apart, touching or deep. Scale free: no absolute length
 /// enters.
 struct GjkEpa {
   SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin,

@@ -41,6 +41,10 @@ inline void reverse(Face& face) {
   std::reverse(face.corner.begin(), face.corner.begin() + face.count);
 }
 
+inline bool is_cap(const Shape& s, const Face& face) {
+  return (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone) && face.count == 8;
+}
+
 /// Of two round caps, turns the octagon of one so that its corners look where the other's do: the caps have
 /// no corners of their own, and equal caps one on the other shall overlap in an octagon, however they are
 /// turned.
@@ -141,8 +145,7 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
     inner::overlap_of_lines(face_a, face_b, n, margin, scale, patch);
   } else if (face_a.count >= 2 && face_b.count >= 2 && std::max(slope_a, slope_b) > steepest) {
     const bool clip_is_a = slope_a >= slope_b;
-    if (a.kind == ShapeKind::cylinder && b.kind == ShapeKind::cylinder && face_a.count == 8 &&
-        face_b.count == 8)
+    if (inner::is_cap(a, face_a) && inner::is_cap(b, face_b))
       clip_is_a ? inner::align_octagons(face_b, face_a) : inner::align_octagons(face_a, face_b);
     inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
                             slack, patch);

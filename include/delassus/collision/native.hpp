@@ -1,8 +1,8 @@
 /// The collision backend that needs nothing else: our own broad phase and our own kernel.
 #pragma once
 
+#include <delassus/collision/box_tree.hpp>
 #include <delassus/collision/engine.hpp>
-#include <delassus/collision/sweep_and_prune.hpp>
 #include <delassus/core/roles.hpp>
 
 namespace delassus {
@@ -23,7 +23,7 @@ struct NativeDetection {
   }
 };
 
-/// Sweep and prune, then formulas, GJK and EPA.
-using NativeCollision = NativeDetection<GjkEpa, SweepAndPrune>;
+/// Trees of boxes, then formulas, GJK and EPA.
+using NativeCollision = NativeDetection<GjkEpa, BoxTree>;
 
 }  // namespace delassus

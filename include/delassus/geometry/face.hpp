@@ -50,18 +50,31 @@ inline void mantle_line(double radius, double half, const Vec3& d, int name, Fac
   face.add({x, y, -half}, name + 1);
 }
 
-/// The cap as an octagon turned with the body (corners 0–7 above, 8–15 below), or a line of the mantle (16,
-/// 17).
+/// The disc of radius r at height z as an octagon turned with the body, counter-clockwise seen from `side`.
+inline void octagon(double r, double z, int side, int name, Face& face) {
+  face.normal = side * unit_axis(2);
+  constexpr double c = 0.70710678118654752440;
+  constexpr double corners[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
+  for (int k = 0; k < 8; ++k) face.add({r * corners[k][0], side * r * corners[k][1], z}, name + k);
+}
+
+/// A cap (corners 0–7 above, 8–15 below), or a line of the mantle (16, 17).
 inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
   const double across = std::hypot(d[0], d[1]);
   if (across > std::abs(d[2])) return mantle_line(s.size[0], s.size[1], d, 16, face);
   const int side = d[2] < 0 ? -1 : 1;
-  face.normal = side * unit_axis(2);
-  constexpr double c = 0.70710678118654752440;
-  constexpr double octagon[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
-  for (int k = 0; k < 8; ++k)
-    face.add({s.size[0] * octagon[k][0], side * s.size[0] * octagon[k][1], side * s.size[1]},
-             side > 0 ? k : 8 + k);
+  octagon(s.size[0], side * s.size[1], side, side > 0 ? 0 : 8, face);
+}
+
+/// The base (corners 8–15), or the line of the mantle from the tip (16) to the rim (17), up to 45° off its
+/// normal m = (2 half, r) / slant in the plane of d.
+inline void cone_face(const Shape& s, const Vec3& d, Face& face) {
+  const double radius = s.size[0], half = s.size[1], slant = std::hypot(radius, 2 * half);
+  const double across = std::hypot(d[0], d[1]), along_mantle = (2 * half * across + radius * d[2]) / slant;
+  if (-d[2] >= along_mantle) return octagon(radius, -0.5 * half, -1, 8, face);
+  if (!(along_mantle > 0.7 && across > 0)) return;
+  face.add({0, 0, 1.5 * half}, 16);
+  face.add({d[0] / across * radius, d[1] / across * radius, -0.5 * half}, 17);
 }
 
 /// Among the faces around the support vertex the one most nearly normal to d; of more than 16 corners an even
@@ -91,6 +104,9 @@ inline Face face_towards(const Shape& s, const Vec3& d) {
       break;
     case ShapeKind::cylinder:
       inner::cylinder_face(s, d, face);
+      break;
+    case ShapeKind::cone:
+      inner::cone_face(s, d, face);
       break;
     case ShapeKind::convex_hull:
       inner::hull_face(*s.hull, d, face);

@@ -49,6 +49,18 @@ inline MassProperties unit_solid(const Capsule& c) {
   return solid(rod.mass + ball.mass, across, across, rod.inertia(2, 2) + ball.inertia(2, 2));
 }
 
+/// About its centre, a quarter of the height above the base.
+inline MassProperties unit_solid(const Cone& c) {
+  const double r2 = c.radius * c.radius, m = pi * r2 * c.height / 3,
+               across = 3.0 / 80 * m * (4 * r2 + c.height * c.height);
+  return solid(m, across, across, 0.3 * m * r2);
+}
+
+inline MassProperties unit_solid(const Ellipsoid& e) {
+  const double m = 4.0 / 3 * pi * e.a * e.b * e.c, a = e.a * e.a, b = e.b * e.b, c = e.c * e.c;
+  return solid(m, m / 5 * (b + c), m / 5 * (c + a), m / 5 * (a + b));
+}
+
 /// I = tr(S) 1 − S with the second moment S.
 inline MassProperties unit_solid(const ConvexHull& h) {
   const Mat3& S = h.second_moment();
@@ -68,6 +80,10 @@ inline MassProperties unit_solid(const Shape& s) {
       return unit_solid(Capsule{s.size[0], 2 * s.size[1]});
     case ShapeKind::cylinder:
       return unit_solid(Cylinder{s.size[0], 2 * s.size[1]});
+    case ShapeKind::cone:
+      return unit_solid(Cone{s.size[0], 2 * s.size[1]});
+    case ShapeKind::ellipsoid:
+      return unit_solid(Ellipsoid{s.size[0], s.size[1], s.size[2]});
     case ShapeKind::convex_hull:
       return unit_solid(*s.hull);
     default:

@@ -1,4 +1,4 @@
-/// The shapes a body can have: six kinds, in one plain tagged struct.
+/// The shapes a body can have: eight kinds, in one plain tagged struct.
 #pragma once
 
 #include <delassus/core/expect.hpp>
@@ -44,6 +44,17 @@ struct Cylinder {
   double radius = 0, height = 0;
 };
 
+/// Solid cone along z, its tip above: the base lies at z = −height/4 and the tip at z = 3/4 height, so that the
+/// origin is the centre of mass. `radius` is that of the base, m.
+struct Cone {
+  double radius = 0, height = 0;
+};
+
+/// All points with (x/a)² + (y/b)² + (z/c)² ≤ 1: `a`, `b`, `c` are the semi-axes, m.
+struct Ellipsoid {
+  double a = 0, b = 0, c = 0;
+};
+
 /// Everything on one side of a plane, in the body's frame: the solid is normal · x ≤ offset.
 /// `normal` points out of the solid and need not be given as a unit vector; `offset` is in m along the unit
 /// normal.
@@ -52,10 +63,21 @@ struct HalfSpace {
   double offset = 0;
 };
 
-enum class ShapeKind : std::uint8_t { none, sphere, box, capsule, cylinder, half_space, convex_hull };
+enum class ShapeKind : std::uint8_t {
+  none,
+  sphere,
+  box,
+  capsule,
+  cylinder,
+  half_space,
+  convex_hull,
+  cone,
+  ellipsoid
+};
 
 /// Any of the shapes above, or none. Trivially copyable. `size` holds half lengths:
-/// sphere (r) · box (x/2, y/2, z/2) · capsule and cylinder (r, height/2) · half-space (unit normal, offset).
+/// sphere (r) · box (x/2, y/2, z/2) · capsule and cylinder (r, height/2) · half-space (unit normal, offset) ·
+/// cone (r, height/2) · ellipsoid (a, b, c).
 /// A hull is pointed at, not owned: it must outlive the shape. Sets of bodies copy it when a body is added.
 struct Shape {
   ShapeKind kind = ShapeKind::none;
@@ -67,6 +89,8 @@ struct Shape {
   constexpr Shape(const Box& b) : kind(ShapeKind::box), size{0.5 * b.x, 0.5 * b.y, 0.5 * b.z} {}
   constexpr Shape(const Capsule& c) : kind(ShapeKind::capsule), size{c.radius, 0.5 * c.height} {}
   constexpr Shape(const Cylinder& c) : kind(ShapeKind::cylinder), size{c.radius, 0.5 * c.height} {}
+  constexpr Shape(const Cone& c) : kind(ShapeKind::cone), size{c.radius, 0.5 * c.height} {}
+  constexpr Shape(const Ellipsoid& e) : kind(ShapeKind::ellipsoid), size{e.a, e.b, e.c} {}
   Shape(const HalfSpace& h) : kind(ShapeKind::half_space) {
     const Vec3 n = inner::direction_of(h.normal);
     size = {n[0], n[1], n[2], h.offset};
@@ -86,8 +110,8 @@ inline void check_length(double value, const char* what, const std::string& wher
 }  // namespace inner
 
 constexpr const char* name(ShapeKind kind) {
-  constexpr const char* names[] = {"no shape", "sphere",     "box",        "capsule",
-                                   "cylinder", "half-space", "convex hull"};
+  constexpr const char* names[] = {"no shape",   "sphere",      "box",  "capsule",  "cylinder",
+                                   "half-space", "convex hull", "cone", "ellipsoid"};
   return names[int(kind)];
 }
 
@@ -95,13 +119,16 @@ constexpr const char* name(ShapeKind kind) {
 /// made.
 inline void check(const Shape& s, const std::string& where) {
   using enum ShapeKind;
-  if (s.kind == sphere || s.kind == capsule || s.kind == cylinder)
+  if (s.kind == sphere || s.kind == capsule || s.kind == cylinder || s.kind == cone)
     inner::check_length(s.size[0], (std::string(name(s.kind)) + " radius").c_str(), where);
-  if (s.kind == capsule || s.kind == cylinder)
+  if (s.kind == capsule || s.kind == cylinder || s.kind == cone)
     inner::check_length(2 * s.size[1], (std::string(name(s.kind)) + " height").c_str(), where);
   if (s.kind == box)
     for (int i = 0; i < 3; ++i)
       inner::check_length(2 * s.size[i], (std::string("box edge ") + "xyz"[i]).c_str(), where);
+  if (s.kind == ellipsoid)
+    for (int i = 0; i < 3; ++i)
+      inner::check_length(s.size[i], (std::string("ellipsoid semi-axis ") + "abc"[i]).c_str(), where);
   if (s.kind == half_space) {
     const Vec3 n(s.size[0], s.size[1], s.size[2]);
     DELASSUS_EXPECT(is_finite(n) && n.squaredNorm() > 0.5,

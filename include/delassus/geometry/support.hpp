@@ -33,6 +33,22 @@ inline Vec3 cylinder_support(double radius, double half, const Vec3& d) {
   return {d[0] / across * radius, d[1] / across * radius, z};
 }
 
+/// The tip, or the point of the base's rim; `half` is half the height.
+inline Vec3 cone_support(double radius, double half, const Vec3& d) {
+  const double across = std::hypot(d[0], d[1]);
+  if (2 * half * d[2] >= radius * across && d[2] > 0) return {0, 0, 1.5 * half};
+  if (!(across > 0)) return {0, 0, -0.5 * half};
+  return {d[0] / across * radius, d[1] / across * radius, -0.5 * half};
+}
+
+/// D² d / |D d| with the semi-axes D: where the tangent plane is normal to d.
+inline Vec3 ellipsoid_support(const Vec3& axes, const Vec3& d) {
+  const Vec3 stretched = axes.cwiseProduct(d);
+  const double length = stretched.norm();
+  if (!(length > 0)) return {0, 0, axes[2]};
+  return axes.cwiseProduct(stretched / length);
+}
+
 inline Index support_vertex(const ConvexHull& h, const Vec3& d) {
   const std::span<const Vec3> vertices = h.vertices();
   Index best = 0;
@@ -56,6 +72,10 @@ inline Vec3 core_support(const Shape& s, const Vec3& d) {
               inner::with_sign(s.size[2], d[2])};
     case ShapeKind::cylinder:
       return inner::cylinder_support(s.size[0], s.size[1], d);
+    case ShapeKind::cone:
+      return inner::cone_support(s.size[0], s.size[1], d);
+    case ShapeKind::ellipsoid:
+      return inner::ellipsoid_support({s.size[0], s.size[1], s.size[2]}, d);
     case ShapeKind::convex_hull:
       return s.hull->vertices()[inner::support_vertex(*s.hull, d)];
     default:
@@ -86,6 +106,10 @@ inline double outer_radius(const Shape& s) {
       return s.size[0] + s.size[1];
     case ShapeKind::cylinder:
       return std::hypot(s.size[0], s.size[1]);
+    case ShapeKind::cone:
+      return std::max(1.5 * s.size[1], std::hypot(s.size[0], 0.5 * s.size[1]));
+    case ShapeKind::ellipsoid:
+      return std::max({s.size[0], s.size[1], s.size[2]});
     case ShapeKind::convex_hull:
       return s.hull->centroid().norm() + s.hull->outer_radius();
     default:
@@ -99,6 +123,7 @@ inline double length_scale(const Shape& s) {
     case ShapeKind::box:
       return std::max({s.size[0], s.size[1], s.size[2]});
     case ShapeKind::cylinder:
+    case ShapeKind::cone:
       return std::max(s.size[0], s.size[1]);
     case ShapeKind::convex_hull:
       return s.hull->outer_radius();
@@ -126,9 +151,23 @@ inline double half_width(const Shape& s, const Mat3& R, int k) {
       return along * s.size[1] + s.size[0];
     case ShapeKind::cylinder:
       return along * s.size[1] + std::hypot(R(k, 0), R(k, 1)) * s.size[0];
+    case ShapeKind::ellipsoid:
+      return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm();
     default:
       return std::numeric_limits<double>::infinity();
   }
+}
+
+/// Of the tip and the disc of the base.
+inline Aabb cone_box(const Shape& s, const Pose& pose) {
+  Vec3 low, high;
+  for (int k = 0; k < 3; ++k) {
+    const double axis = pose.rotation(k, 2) * s.size[1], tip = 1.5 * axis, base = -0.5 * axis;
+    const double rim = std::hypot(pose.rotation(k, 0), pose.rotation(k, 1)) * s.size[0];
+    low[k] = pose.position[k] + std::min(tip, base - rim);
+    high[k] = pose.position[k] + std::max(tip, base + rim);
+  }
+  return Aabb(low, high);
 }
 
 inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
@@ -150,6 +189,7 @@ inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
 inline Aabb tight_box(const Shape& s, const Pose& pose) {
   if (s.kind == ShapeKind::none) return Aabb();
   if (s.kind == ShapeKind::convex_hull) return inner::hull_box(*s.hull, pose);
+  if (s.kind == ShapeKind::cone) return inner::cone_box(s, pose);
   Vec3 low, high;
   for (int k = 0; k < 3; ++k) {
     const double reach = inner::half_width(s, pose.rotation, k);

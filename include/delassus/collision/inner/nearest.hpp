@@ -3,16 +3,10 @@
 #pragma once
 
 #include <delassus/collision/epa.hpp>
+#include <delassus/collision/inner/nearest_ellipsoid.hpp>
 #include <delassus/geometry/shape.hpp>
 
 namespace delassus::inner {
-
-/// `distance` < 0 inside; `normal` is the unit outward direction from the surface to the point (or out, when
-/// inside).
-struct NearestSurface {
-  Vec3 normal;
-  double distance;
-};
 
 /// Where the shape offers no direction (its centre, its axis), the one nearest to `wish` is taken.
 inline NearestSurface nearest_surface_of_ball(double radius, const Vec3& p, const Vec3& wish) {
@@ -55,6 +49,24 @@ inline NearestSurface nearest_surface_of_cylinder(double radius, double half, co
   return side > cap ? NearestSurface{outward, side} : NearestSurface{along, cap};
 }
 
+/// In the half-plane of the axis and p, with ρ the distance from the axis and z the height above the base: a right
+/// triangle with the corners (0, 0), the rim (r, 0) and the tip (0, height).
+inline NearestSurface nearest_surface_of_cone(double radius, double height, const Vec3& p, const Vec3& wish) {
+  const double rho = std::hypot(p[0], p[1]), z = p[2] + 0.25 * height, slant = std::hypot(radius, height);
+  const Vec3 outward = rho > 0 ? Vec3(p[0] / rho, p[1] / rho, 0) : perpendicular(unit_axis(2), wish);
+  const Vec3 up = unit_axis(2), mantle = (height * outward + radius * up) / slant;
+  const double above_mantle = (height * (rho - radius) + radius * z) / slant;
+  const double up_mantle = (height * z - radius * (rho - radius)) / slant;
+  if (above_mantle <= 0 && z >= 0)
+    return above_mantle > -z ? NearestSurface{mantle, above_mantle} : NearestSurface{-up, -z};
+  if (z < 0 && rho <= radius) return {-up, -z};
+  if (up_mantle > 0 && up_mantle < slant) return {mantle, above_mantle};
+  const Vec3 from_corner = up_mantle > 0 ? Vec3(rho * outward + (z - height) * up)
+                                         : Vec3((rho - radius) * outward + z * up);
+  const double length = from_corner.norm();
+  return length > 0 ? NearestSurface{from_corner / length, length} : NearestSurface{mantle, 0};
+}
+
 inline NearestSurface nearest_surface(const Shape& s, const Vec3& p, const Vec3& wish) {
   switch (s.kind) {
     case ShapeKind::box:
@@ -63,6 +75,10 @@ inline NearestSurface nearest_surface(const Shape& s, const Vec3& p, const Vec3&
       return nearest_surface_of_capsule(s.size[0], s.size[1], p, wish);
     case ShapeKind::cylinder:
       return nearest_surface_of_cylinder(s.size[0], s.size[1], p, wish);
+    case ShapeKind::cone:
+      return nearest_surface_of_cone(s.size[0], 2 * s.size[1], p, wish);
+    case ShapeKind::ellipsoid:
+      return nearest_surface_of_ellipsoid({s.size[0], s.size[1], s.size[2]}, p, wish);
     default:
       return nearest_surface_of_ball(s.size[0], p, wish);
   }

@@ -28,8 +28,12 @@ class Polytope {
     for (const auto& [i, j, k] : {std::array{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}) add_face(i, j, k);
   }
 
-  const DifferencePoint& point(int i) const { return points_[i]; }
   const Face& face(int f) const { return faces_[f]; }
+  int face_count() const { return faces_count_; }
+  std::array<DifferencePoint, 3> corners(int f) const {
+    const auto& v = faces_[f].v;
+    return {points_[v[0]], points_[v[1]], points_[v[2]]};
+  }
   bool is_full() const { return points_count_ == max_points || faces_count_ + 64 > max_faces; }
   void retire(int f) { faces_[f].offset = std::numeric_limits<double>::infinity(); }
 

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/inner/difference.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -50,10 +51,23 @@ inline Vec3 nearest_on_segment(Simplex& s) {
   return s.mix(&DifferencePoint::w);
 }
 
+/// Begins the triangle at the vertex opposite its longest edge: of a needle, only the product of the two shorter edges
+/// is a normal that holds its digits.
+inline void begin_with_short_edges(Simplex& s) {
+  int first = 0;
+  double longest = -1;
+  for (int i = 0; i < 3; ++i) {
+    const double length2 = (s.p[(i + 1) % 3].w - s.p[(i + 2) % 3].w).squaredNorm();
+    if (length2 > longest) longest = length2, first = i;
+  }
+  std::rotate(s.p.begin(), s.p.begin() + first, s.p.begin() + 3);
+}
+
 /// Nearest point of the triangle (p₀, p₁, p₂) by its Voronoi regions. Source: [Ericson2005], §5.1.5.
 /// Inside, the point is taken along the triangle's normal, so that its direction keeps all digits when it is
 /// short.
 inline Vec3 nearest_on_triangle(Simplex& s) {
+  begin_with_short_edges(s);
   const Vec3 a = s.p[0].w, b = s.p[1].w, c = s.p[2].w, ab = b - a, ac = c - a;
   const double d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c),
                d6 = -ac.dot(c);

@@ -24,11 +24,11 @@ void append_numbers(std::string& out, const Numbers& numbers) {
   out += ']';
 }
 
-/// {"kind":…, "size":[…]}: full edge lengths; radius and height; unit normal and offset; or vertices and
-/// faces.
+/// {"kind":…, "size":[…]}: full edge lengths; radius and height; semi-axes; unit normal and offset; or
+/// vertices and faces.
 inline std::string shape_json(const RecordedBody& body) {
-  static constexpr const char* kinds[] = {"none",     "sphere",     "box", "capsule",
-                                          "cylinder", "half_space", "hull"};
+  static constexpr const char* kinds[] = {"none",       "sphere", "box",  "capsule",  "cylinder",
+                                          "half_space", "hull",   "cone", "ellipsoid"};
   const auto& s = body.shape.size;
   std::string out =
       std::string("{\"kind\":\"") + (body.is_particle ? "particle" : kinds[int(body.shape.kind)]) + '"';
@@ -39,7 +39,11 @@ inline std::string shape_json(const RecordedBody& body) {
       break;
     case ShapeKind::capsule:
     case ShapeKind::cylinder:
+    case ShapeKind::cone:
       append_numbers(out, std::array{s[0], 2 * s[1]});
+      break;
+    case ShapeKind::ellipsoid:
+      append_numbers(out, std::array{s[0], s[1], s[2]});
       break;
     case ShapeKind::half_space:
       append_numbers(out, s);

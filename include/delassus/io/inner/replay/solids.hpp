@@ -92,6 +92,8 @@ function radiusOf(shape) {
     case 'box': return Math.hypot(a, b, c) / 2;
     case 'capsule': return a + b / 2;
     case 'cylinder': return Math.hypot(a, b / 2);
+    case 'cone': return Math.max(0.75 * b, Math.hypot(a, b / 4));
+    case 'ellipsoid': return Math.max(a, b, c);
     case 'hull': {
       let r = 0;
       for (let i = 0; i < shape.vertices.length; i += 3)

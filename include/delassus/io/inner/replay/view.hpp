@@ -26,6 +26,7 @@ class View extends Graphics {
       line: this.program(lineVertex, lineFragment),
     };
     this.solids = {box: this.solid(boxSolid()), cylinder: this.solid(coneSolid(-1, 1, 1, 1, 36)),
+                   cone: this.solid(coneSolid(-0.25, 1, 0.75, 0, 36)),
                    ball: this.solid(sphereSolid(24)), plainBall: this.solid(sphereSolid(12)),
                    drop: this.solid(sphereSolid(7))};
     this.arrows = this.mesh(arrowSolid(), [3, 3], [3, 3, 4]);
@@ -78,6 +79,8 @@ class View extends Graphics {
       else if (kind === 'sphere') put(ball, p, size[0], size[0], size[0], 2);
       else if (kind === 'particle') put(this.solids.drop, p, size[0], size[0], size[0], 0);
       else if (kind === 'cylinder') put(this.solids.cylinder, p, size[0], size[0], size[1] / 2, 3);
+      else if (kind === 'cone') put(this.solids.cone, p, size[0], size[0], size[1], 3);
+      else if (kind === 'ellipsoid') put(ball, p, size[0], size[1], size[2], 2);
       else if (kind === 'hull') put(solid, p, 1, 1, 1, 0);
       else if (kind === 'half_space') planes.push(this.planeOf(body));
       else if (kind === 'capsule') {

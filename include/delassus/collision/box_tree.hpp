@@ -1,0 +1,190 @@
+/// Broad phase by two trees of fattened boxes and a list of pairs that is kept from step to step.
+#pragma once
+
+#include <delassus/collision/broad_phase.hpp>
+#include <delassus/collision/inner/dynamic_tree.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace delassus {
+
+/// Each box has a leaf that is a little larger, and longer where it is heading: only when the box leaves its
+/// leaf are its pairs looked up anew. So what rests costs one look at its box and one at each of its pairs.
+/// Boxes that do not move are in a tree of their own and are no pairs of each other. Pairs come sorted; they
+/// are those of the boxes themselves, whatever the leaves.
+class BoxTree {
+ public:
+  double margin =
+      0.05;         ///< a leaf is wider than its box by this share of the box's largest edge, on each side
+  double lead = 4;  ///< and longer by this many steps of its last motion
+
+  /// Boxes that are told apart by their place in the array, all of them moving.
+  void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+    places_.resize(boxes.size());
+    for (Index i = 0; i < Index(boxes.size()); ++i)
+      places_[i] = {.key = std::uint32_t(i), .is_movable = true};
+    find(boxes, places_, pairs);
+  }
+
+  /// Boxes that are told apart by their keys, wherever they stand in the array.
+  void find(std::span<const Aabb> boxes, std::span<const BoxTag> tags, std::vector<CandidatePair>& pairs) {
+    recognise(tags);
+    moved_.clear();
+    for (Index i = 0; i < Index(boxes.size()); ++i) follow(leaf_of_[i], boxes[i], tags[i].is_movable);
+    for (inner::DynamicTree& tree : trees_) tree.balance();
+    if (!moved_.empty()) renew_pairs();
+    report(boxes, pairs);
+  }
+
+ private:
+  struct Leaf {
+    std::uint32_t key = 0;
+    bool is_movable = true, has_moved = false;
+    Index node = -1;             ///< in its tree; −1 while its box is empty
+    Index place = -1;            ///< in this call's array; −1 when it is not there
+    Aabb box;                    ///< the fattened one
+    Vec3 middle = Vec3::Zero();  ///< of the box itself, last step
+  };
+
+  /// Which leaf each box has. Usually the boxes stand as they stood; else the leaves are found by their keys.
+  void recognise(std::span<const BoxTag> tags) {
+    bool is_same = tags.size() == leaf_of_.size();
+    for (std::size_t i = 0; is_same && i < tags.size(); ++i) is_same = leaf_[leaf_of_[i]].key == tags[i].key;
+    if (is_same) return;
+    for (Leaf& leaf : leaf_) leaf.place = -1;
+    leaf_of_.resize(tags.size());
+    const auto by_key = [&](Index l, std::uint32_t key) { return leaf_[l].key < key; };
+    const Index known = Index(sorted_.size());
+    for (Index i = 0; i < Index(tags.size()); ++i) {
+      const auto end = sorted_.begin() + known,
+                 at = std::lower_bound(sorted_.begin(), end, tags[i].key, by_key);
+      if (at != end && leaf_[*at].key == tags[i].key) {
+        leaf_of_[i] = *at;
+      } else {
+        leaf_of_[i] = take_leaf(tags[i].key);
+        sorted_.push_back(leaf_of_[i]);
+      }
+      leaf_[leaf_of_[i]].place = i;
+    }
+    const auto is_gone = [&](Index l) {
+      if (leaf_[l].place >= 0) return false;
+      leave(leaf_[l]);
+      free_.push_back(l);
+      return true;
+    };
+    moved_.clear();
+    sorted_.erase(std::remove_if(sorted_.begin(), sorted_.end(), is_gone), sorted_.end());
+    if (!moved_.empty()) renew_pairs();
+    std::sort(sorted_.begin(), sorted_.end(), [&](Index x, Index y) { return leaf_[x].key < leaf_[y].key; });
+  }
+
+  Index take_leaf(std::uint32_t key) {
+    if (free_.empty()) {
+      leaf_.emplace_back();
+      free_.push_back(Index(leaf_.size()) - 1);
+    }
+    const Index l = free_.back();
+    free_.pop_back();
+    leaf_[l] = Leaf{};
+    leaf_[l].key = key;
+    return l;
+  }
+
+  inner::DynamicTree& tree_of(const Leaf& leaf) { return trees_[leaf.is_movable ? 1 : 0]; }
+
+  void leave(Leaf& leaf) {
+    if (leaf.node < 0) return;
+    tree_of(leaf).erase(leaf.node);
+    leaf.node = -1;
+    mark(leaf);
+  }
+  void mark(Leaf& leaf) {
+    leaf.has_moved = true;
+    moved_.push_back(Index(&leaf - leaf_.data()));
+  }
+
+  /// Puts the box of a leaf where it is now.
+  void follow(Index l, const Aabb& box, bool is_movable) {
+    Leaf& leaf = leaf_[l];
+    if (box.isEmpty() || leaf.is_movable != is_movable) leave(leaf);
+    leaf.is_movable = is_movable;
+    if (box.isEmpty()) return;
+    const Vec3 middle = (box.min() + box.max()) / 2;
+    const Vec3 motion = leaf.node >= 0 ? Vec3(middle - leaf.middle) : Vec3::Zero();
+    leaf.middle = middle;
+    const double edge = (box.max() - box.min()).maxCoeff();
+    if (leaf.node >= 0 && leaf.box.contains(box) && !is_slack(leaf.box, box, edge)) return;
+    leaf.box = fattened(box, margin * edge, lead * motion, 2 * edge);
+    if (leaf.node >= 0)
+      tree_of(leaf).move(leaf.node, leaf.box);
+    else
+      leaf.node = tree_of(leaf).insert(leaf.box, l);
+    if (!leaf.has_moved) mark(leaf);
+  }
+
+  /// True when the leaf is far larger than its box has use for: the box was fast, or has shrunk.
+  bool is_slack(const Aabb& leaf, const Aabb& box, double edge) const {
+    const Vec3 spare = (leaf.max() - leaf.min()) - (box.max() - box.min());
+    return spare.maxCoeff() > (6 * margin + 1) * edge;
+  }
+
+  static Aabb fattened(const Aabb& box, double more, const Vec3& ahead, double limit) {
+    Vec3 low = box.min(), high = box.max();
+    for (int k = 0; k < 3; ++k) {
+      low[k] += std::max(std::min(ahead[k], 0.0), -limit) - more;
+      high[k] += std::min(std::max(ahead[k], 0.0), limit) + more;
+    }
+    return Aabb(low, high);
+  }
+
+  /// Drops the pairs of the leaves that moved and looks them up again. Two that both moved are found by the
+  /// lower one.
+  void renew_pairs() {
+    std::erase_if(kept_, [&](std::uint64_t pair) {
+      return leaf_[Index(pair >> 32)].has_moved || leaf_[Index(pair & 0xffffffffu)].has_moved;
+    });
+    fresh_.clear();
+    for (const Index l : moved_) {
+      const Leaf& leaf = leaf_[l];
+      if (leaf.node < 0) continue;
+      const auto meets = [&](const Aabb& box) { return box.intersects(leaf.box); };
+      const auto add = [&](Index other) {
+        if (other == l || (leaf_[other].has_moved && other < l)) return;
+        fresh_.push_back(std::uint64_t(std::min(l, other)) << 32 | std::uint64_t(std::max(l, other)));
+      };
+      trees_[1].visit(meets, add);
+      if (leaf.is_movable) trees_[0].visit(meets, add);
+    }
+    for (const Index l : moved_) leaf_[l].has_moved = false;
+    moved_.clear();
+    std::sort(fresh_.begin(), fresh_.end());
+    merged_.resize(kept_.size() + fresh_.size());
+    std::merge(kept_.begin(), kept_.end(), fresh_.begin(), fresh_.end(), merged_.begin());
+    kept_.swap(merged_);
+  }
+
+  void report(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) const {
+    const std::size_t first = pairs.size();
+    bool is_sorted = true;
+    for (const std::uint64_t pair : kept_) {
+      const Index i = leaf_[Index(pair >> 32)].place, j = leaf_[Index(pair & 0xffffffffu)].place;
+      if (!boxes[i].intersects(boxes[j])) continue;
+      const CandidatePair found{std::min(i, j), std::max(i, j)};
+      is_sorted = is_sorted && (pairs.size() == first || pairs.back() < found);
+      pairs.push_back(found);
+    }
+    if (!is_sorted) std::sort(pairs.begin() + std::ptrdiff_t(first), pairs.end());
+  }
+
+  std::vector<Leaf> leaf_;
+  std::vector<Index> leaf_of_, sorted_, free_, moved_;
+  std::vector<std::uint64_t> kept_, fresh_, merged_;
+  std::vector<BoxTag> places_;
+  inner::DynamicTree trees_[2];  ///< of what does not move, of what does
+};
+static_assert(BroadPhase<BoxTree> && TaggedBroadPhase<BoxTree>);
+
+}  // namespace delassus

@@ -1,0 +1,59 @@
+/// A lower depth near a direction that is nearly least: what EPA ends with when its points are spent.
+#pragma once
+
+#include <delassus/collision/inner/polytope.hpp>
+
+namespace delassus::inner {
+
+/// Three points of A − B whose triangle the ray from the origin along `d` pierces: the face of the polytope
+/// with the least offset / (normal · d).
+inline std::array<DifferencePoint, 3> pierced_face(const Polytope& polytope, const Vec3& d) {
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int f = 0; f < polytope.face_count(); ++f) {
+    const Polytope::Face& face = polytope.face(f);
+    const double slope = face.normal.dot(d);
+    if (slope > 0 && face.offset / slope < least) least = face.offset / slope, best = f;
+  }
+  return polytope.corners(best);
+}
+
+/// Of the triangles that q makes with the sides of `portal`, keeps the one that the ray along d pierces.
+/// Sides run counter-clockwise about d. False when there is none.
+inline bool narrow(const DifferencePoint& q, const Vec3& d, std::array<DifferencePoint, 3>& portal) {
+  std::array<double, 3> side;
+  for (int k = 0; k < 3; ++k) side[k] = d.dot(q.w.cross(portal[k].w));
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    if (side[k] < 0 || side[next] > 0) continue;
+    portal[(k + 2) % 3] = q;
+    return true;
+  }
+  return false;
+}
+
+/// Takes the ray along d to where it leaves A − B, and d to the normal found there, again and again: with the
+/// depth h and a surface of radius r ≥ h this brings d to the least depth nearby by the factor h/r each time.
+/// Calls visit(triangle, normal, q) for every plane it meets; q is the support point of the normal.
+template <class D, class Visit>
+void descend(const D& difference, Vec3 d, std::array<DifferencePoint, 3> portal, double tolerance,
+             const Visit& visit) {
+  for (int turn = 0; turn < 12; ++turn) {
+    Vec3 normal = d;
+    for (int iteration = 0; iteration < 40; ++iteration) {
+      const Vec3 across = (portal[1].w - portal[0].w).cross(portal[2].w - portal[0].w);
+      const double area2 = across.norm();
+      const double edge2 =
+          std::max((portal[1].w - portal[0].w).squaredNorm(), (portal[2].w - portal[0].w).squaredNorm());
+      if (!(area2 > 1e-12 * edge2)) break;
+      normal = across.dot(d) < 0 ? Vec3(-across / area2) : Vec3(across / area2);
+      const DifferencePoint q = difference.core(normal);
+      visit(portal, normal, q);
+      if (normal.dot(q.w - portal[0].w) <= tolerance || !narrow(q, d, portal)) break;
+    }
+    if ((normal - d).squaredNorm() < 1e-20) return;
+    d = normal;
+  }
+}
+
+}  // namespace delassus::inner
