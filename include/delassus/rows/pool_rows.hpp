@@ -1,9 +1,11 @@
-/// The waist: the rows of one pool of constraints as flat arrays, blocks of fixed size, no law and no body in sight.
+/// The waist: the rows of one pool of constraints as flat arrays, blocks of fixed size, no law and no body in
+/// sight.
 #pragma once
 
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
+#include <array>
 #include <tuple>
 #include <vector>
 
@@ -30,8 +32,8 @@ struct SetBlocks {
 
 /// All rows of one pool: R per item. Units: phi m or rad, bias, d m/s or rad/s, lambda N·s or N·m·s.
 ///
-/// A row with stiffness or damping > 0 is soft. `compliance` (1/kg) and `softness` (in units of the row's own W_kk)
-/// join W's diagonal.
+/// A row with stiffness or damping > 0 is soft. `compliance` (1/kg) and `softness` (in units of the row's own
+/// W_kk) join W's diagonal.
 template <int R, class T, int... widths>
 struct PoolRows {
   static constexpr int rows = R;
@@ -45,7 +47,7 @@ struct PoolRows {
   /// The rows of `items` items, all zero and without entries. The items are closed one by one, in order.
   void reset(Index items) {
     std::apply([](auto&... s) { (s.reset(), ...); }, sets);
-    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) {
+    for (auto* array : fields(*this)) {
       array->resize(items);
       for (auto& x : *array) x.setZero();
     }
@@ -54,14 +56,19 @@ struct PoolRows {
   /// f(array) for all arrays, whose room somebody wants to know or to make.
   static void each_array(auto& self, auto&& f) {
     std::apply([&](auto&... s) { (s.each_array(s, f), ...); }, self.sets);
-    for (auto* array : {&self.phi, &self.stiffness, &self.damping, &self.bias, &self.compliance, &self.softness, &self.d,
-                        &self.lambda})
-      f(*array);
+    for (auto* array : fields(self)) f(*array);
   }
 
   /// The entries of the next item end here in every set.
   void close() {
     std::apply([](auto&... s) { (s.offset.push_back(Index(s.block.size())), ...); }, sets);
+  }
+
+ private:
+  /// The arrays with one entry an item.
+  static auto fields(auto& self) {
+    return std::array{&self.phi,        &self.stiffness, &self.damping, &self.bias,
+                      &self.compliance, &self.softness,  &self.d,       &self.lambda};
   }
 };
 
