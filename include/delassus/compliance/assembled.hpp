@@ -69,6 +69,15 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
 
   void reset(const Rows&) {}
 
+  /// No block yet, and a diagonal for every item: for who writes W into it.
+  void resize_like(const Rows& rows) {
+    for_each_index<pools>([&](auto a) {
+      const Index items = rows.template pool<a>().items();
+      std::get<a>(diagonal_).resize(items);
+      for_each_index<pools>([&](auto b) { std::get<b>(std::get<a>(blocks_)).reset(items); });
+    });
+  }
+
   template <int p>
   const auto& diagonal(Index i) const {
     return std::get<p>(diagonal_)[i];
