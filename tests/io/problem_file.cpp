@@ -139,7 +139,7 @@ TEST_CASE("bad problem files are refused with file, line and reason") {
           std::string::npos);
   REQUIRE(refusal(with(two, "1 0 0.1", "1 1 0.1")) ==
           at + "9: the diagonal block of contact 1 is given twice");
-  REQUIRE(refusal(with(two, "1 1 5", "1 0 5")).find("line 8") != std::string::npos);
+  REQUIRE(refusal(with(two, "1 1 5", "1 0 5")).find("line 9: the diagonal block of contact 1 is missing") != std::string::npos);
   REQUIRE(refusal(with(two, "1 1 5", "1 1 0")) == at + "7: W_00 of contact 1 is 0 and must be > 0");
   REQUIRE(refusal(with(two, " 0.9\n", "\n")) ==
           at + "9: the file ends where an entry of a block should stand");

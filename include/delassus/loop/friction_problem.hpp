@@ -26,6 +26,10 @@ struct GivenContact : Coulomb {
     Coulomb::project(item.parameters, c, memory);
   }
   template <class T>
+  Vec<3, T> meet(const Item& item, const Vec<3, T>& b, Memory<T>& memory) const {
+    return Coulomb::meet(item.parameters, b, memory);
+  }
+  template <class T>
   Vec<3, T> natural_map(const Item& item, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
     return Coulomb::natural_map(item.parameters, lambda, u, scale);
   }

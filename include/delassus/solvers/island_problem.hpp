@@ -127,20 +127,32 @@ class IslandProblem {
     W_.template commit<p>(rows_, i, change);
   }
 
+  /// The impulse that meets the law of item i while the others stand still.
+  template <int p>
+  Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
+    constexpr int R = Rows::template rows_of<p>;
+    if constexpr (Book::template meets<p>() && requires { W_.template free_velocity<p>(rows_, i); }) {
+      return book_.template meet<p>(i, W_.template free_velocity<p>(rows_, i));
+    } else {
+      Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
+      book_.template project<p>(i, c);
+      return c.lambda;
+    }
+  }
+
   template <int p>
   void visit(Index i, T relaxation, T& energy, T& displacement, T& most) {
     constexpr int R = Rows::template rows_of<p>;
     auto& lambda = rows_.template pool<p>().lambda[i];
-    Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
-    book_.template project<p>(i, c);
+    Vec<R, T> next = answer<p>(i, lambda);
     if (relaxation != T(1)) {
-      c.lambda = lambda + relaxation * (c.lambda - lambda);
-      book_.template clamp<p>(i, c.lambda);
+      next = lambda + relaxation * (next - lambda);
+      book_.template clamp<p>(i, next);
     }
-    const Vec<R, T> change = c.lambda - lambda;
-    lambda = c.lambda;
+    const Vec<R, T> change = next - lambda;
+    lambda = next;
     W_.template commit<p>(rows_, i, change);
-    const T weight = c.W.trace() / T(R), square = change.squaredNorm();
+    const T weight = W_.template diagonal<p>(i).trace() / T(R), square = change.squaredNorm();
     energy += weight * square;
     const T share = weight * std::sqrt(square);
     displacement += share;

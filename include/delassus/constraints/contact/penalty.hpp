@@ -74,6 +74,12 @@ struct Penalty {
     inner::project(law, p, c, memory);
   }
   template <class T>
+  Vec<rows, T> meet(const Parameters& p, const Vec<rows, T>& b, Memory<T>& memory) const
+    requires requires { law.meet(p, b, memory); }
+  {
+    return law.meet(p, b, memory);
+  }
+  template <class T>
   Vec<rows, T> natural_map(const Parameters& p, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
     return law.natural_map(p, lambda, u, scale);
   }

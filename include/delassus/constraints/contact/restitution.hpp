@@ -49,6 +49,12 @@ struct Restitution {
     inner::project(law, p.law, c, memory);
   }
   template <class T>
+  Vec<rows, T> meet(const Parameters& p, const Vec<rows, T>& b, Memory<T>& memory) const
+    requires requires { law.meet(p.law, b, memory); }
+  {
+    return law.meet(p.law, b, memory);
+  }
+  template <class T>
   Vec<rows, T> natural_map(const Parameters& p, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
     return law.natural_map(p.law, lambda, u, scale);
   }
