@@ -91,3 +91,14 @@ TEST_CASE("without constraints there is no island, twice in a row") {
   g.find();
   CHECK(g.islands.count() == 0);
 }
+
+TEST_CASE("all items can be taken as one island, whatever they act on") {
+  Graph g;
+  g.item<0>({1, 2});
+  g.item<1>({7, 8});
+  g.item<0>({4, 3});
+  g.islands.take_all(g.rows);
+  REQUIRE(g.islands.count() == 1);
+  CHECK(g.items(0, 0) == std::vector<Index>{0, 1});
+  CHECK(g.items(1, 0) == std::vector<Index>{0});
+}

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/compliance/inner/block_row.hpp>
 #include <delassus/compliance/inner/incidence.hpp>
 
 #include <tuple>
@@ -32,8 +33,8 @@ struct WholeInverse {
   static constexpr bool is_whole = true;
 };
 
-/// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. `Storage` is the type W is
-/// kept in; sums run in double. `Inverse` says what is taken of an A that couples blocks.
+/// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. `Storage` is the
+/// type W is kept in; sums run in double. `Inverse` says what is taken of an A that couples blocks.
 template <class Storage = void, class Inverse = WholeInverse>
 struct BasicAssembledCompliance {
   using plays = role::Compliance;
@@ -58,8 +59,10 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
       if constexpr (couples<decltype(set)>)
         if (set.is_coupled()) return columns_.template prepare<s>(set, rows);
       if constexpr (!Inverse::is_whole && inner::may_couple<std::remove_cvref_t<decltype(set)>>) {
-        if (set.is_coupled()) inner::apply_mass_inverse(set, rows, s);
-        else inner::apply_inverse(set, rows, s);
+        if (set.is_coupled())
+          inner::apply_mass_inverse(set, rows, s);
+        else
+          inner::apply_inverse(set, rows, s);
       } else {
         inner::apply_inverse(set, rows, s);
       }
@@ -70,25 +73,33 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
 
   void reset(const Rows&) {}
 
+  /// No block yet, and a diagonal for every item: for who writes W into it.
+  void resize_like(const Rows& rows) {
+    for_each_index<pools>([&](auto a) {
+      const Index items = rows.template pool<a>().items();
+      std::get<a>(diagonal_).resize(items);
+      for_each_index<pools>([&](auto b) { std::get<b>(std::get<a>(blocks_)).reset(items); });
+    });
+  }
+
   template <int p>
   const auto& diagonal(Index i) const {
     return std::get<p>(diagonal_)[i];
   }
 
-  /// Large terms cancel here: the sum runs in double whatever is stored.
   template <int p>
   Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
-    const auto& pool = rows.template pool<p>();
     constexpr int Ra = Rows::template rows_of<p>;
-    Vec<Ra, Sum> r = pool.d[i].template cast<Sum>();
-    r.noalias() += std::get<p>(diagonal_)[i].template cast<Sum>() * pool.lambda[i].template cast<Sum>();
-    for_each_index<pools>([&](auto b) {
-      const auto& W = std::get<b>(std::get<p>(blocks_));
-      const auto* lambda = rows.template pool<b>().lambda.data();
-      for (Index e = W.start[i]; e < W.start[i + 1]; ++e)
-        r.noalias() += W.block[e].template cast<Sum>() * lambda[W.column[e]].template cast<Sum>();
-    });
+    Vec<Ra, Sum> r = others<p>(rows, i);
+    r += std::get<p>(diagonal_)[i].template cast<Sum>() *
+         rows.template pool<p>().lambda[i].template cast<Sum>();
     return Vec<Ra, T>(r.template cast<T>());
+  }
+
+  /// d_i + Σ_{j ≠ i} W_ij λ_j: what the rows would do without this constraint.
+  template <int p>
+  Vec<Rows::template rows_of<p>, T> free_velocity(const Rows& rows, Index i) const {
+    return Vec<Rows::template rows_of<p>, T>(others<p>(rows, i).template cast<T>());
   }
 
   template <int p>
@@ -123,6 +134,19 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   }
 
  private:
+  /// Large terms cancel here: the sum runs in double whatever is stored.
+  template <int p>
+  Vec<Rows::template rows_of<p>, Sum> others(const Rows& rows, Index i) const {
+    Vec<Rows::template rows_of<p>, Sum> r = rows.template pool<p>().d[i].template cast<Sum>();
+    for_each_index<pools>([&](auto b) {
+      const auto& W = std::get<b>(std::get<p>(blocks_));
+      const Index first = W.start[i], count = W.start[i + 1] - first;
+      inner::add_row(r, count, W.block.data() + first, W.column.data() + first,
+                     rows.template pool<b>().lambda.data());
+    });
+    return r;
+  }
+
   template <class Set>
   static constexpr bool couples = Inverse::is_whole && inner::may_couple<std::remove_cvref_t<Set>>;
 

@@ -13,7 +13,8 @@ namespace delassus {
 ///
 /// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then has
 /// prepare(W, memory) and project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds`
-/// (one RowKind a row), natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) (into its cone).
+/// (one RowKind a row), natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) (into its cone), and
+/// λ = meet(item, b, memory), what `project` does, from the free velocity b = u − W λ alone.
 template <class L>
 concept ConstraintLaw = requires {
   typename L::Item;                                   // what the user adds, or collision detection fills

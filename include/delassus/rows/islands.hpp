@@ -47,6 +47,18 @@ class Islands {
       for (auto& array : *arrays) f(array);
   }
 
+  /// One island of all items: a problem without bodies, or one whose errors shall be measured over the whole.
+  template <class Rows>
+  void take_all(const Rows& rows) {
+    parent_.assign(1, 0);
+    island_.assign(1, 0);
+    count_ = 1;
+    for_each_index<Rows::pool_count>([&](auto p) {
+      lowest_[p].assign(rows.template pool<p>().items(), 0);
+      sort(p);
+    });
+  }
+
  private:
   template <class Pool, class Moves>
   void join(const Pool& pool, Index item, std::span<const Index> first_block, const Moves& moves, Index& seen) {

@@ -1,24 +1,27 @@
-/// Nesterov's momentum over exact Gauss-Seidel sweeps, restarted when it turns against the residual.
+/// Gauss-Seidel sweeps with momentum, and what helps when they stall.
 #pragma once
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/anderson.hpp>
+#include <delassus/solvers/inner/momentum.hpp>
+#include <delassus/solvers/inner/pursuit.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
-#include <cmath>
-#include <limits>
-#include <utility>
-
 namespace delassus {
 
-/// With z = sweep(y):
+/// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
 ///
-///   x⁺ = z,  θ⁺ = (1 + √(1 + 4 θ²))/2,  y⁺ = P_K(x⁺ + (θ − 1)/θ⁺ (x⁺ − x)),
+///   momentum    Nesterov over exact sweeps: ends nearly every solve;
+///   anderson    mixes the last five sweeps: breaks most limit cycles;
+///   projection  Nesterov over sweeps of one projection a visit, slower and without the cycles of the exact law;
+///   patient     momentum again, with ten times the patience;
+///   conjugate   conjugate directions over sweeps damped to 0.8;
 ///
-/// restarted (θ = 1, y = z) when (y − z)·(z − x) > 0 or when the sweep moved more than the one before. The best measured
-/// iterate is kept. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the gradient restart.
+/// and from the start again with twice the patience. The best measured iterate is kept, and the report names the stage that
+/// ended the solve. A solve that does not stall is in the first stage alone.
 template <class Criterion = Residual>
 struct BasicAcceleratedGaussSeidel {
   using plays = role::Solver;
@@ -32,8 +35,10 @@ struct BasicAcceleratedGaussSeidel {
   template <class Rows>
   struct Workspace {
     Impulses<Rows> x, y, best;
+    inner::History history;
     void reset(const Rows& rows) {
       for (auto* set : {&x, &y, &best}) set->resize_like(rows);
+      history.reserve(std::size_t(rows.row_count()));
     }
   };
 
@@ -47,65 +52,26 @@ struct BasicAcceleratedGaussSeidel {
 
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
-    const int rows = problem.row_count();
-    SolveReport report;
-    report.measure = problem.measure();
-    problem.tell(0, report.measure);
-    if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
-    if (min_iterations == 0 && is_done(report.measure, rows)) return finish(report, rows);
-
-    problem.save(work.x);
-    problem.save(work.best);
-    Measure best = report.measure;
-    double theta = 1, last = std::numeric_limits<double>::infinity();
-    int measured = 0;
-    for (bool is_last = max_iterations == 0; !is_last;) {
-      problem.save(work.y);
-      const double moved = problem.sweep(relaxation);  // λ is z now
-      ++report.sweeps;
-      is_last = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
-      const int batch = Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report.sweeps);
-      if (report.sweeps - measured >= batch || is_last) {
-        measured = report.sweeps;
-        report.measure = problem.measure();
-        problem.tell(report.sweeps, report.measure);
-        if (report.sweeps >= min_iterations && is_done(report.measure, rows)) return finish(report, rows);
-        if (report.measure.residual < best.residual) {
-          best = report.measure;
-          problem.save(work.best);
-        }
-      }
-      if (!is_last) momentum(problem, work, theta, last, moved);
+    inner::Pursuit<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> pursuit(*this, problem, work.best);
+    if (!pursuit.begin()) return pursuit.finish();
+    const auto exact = [&] { return problem.sweep(relaxation); };
+    const auto one_projection = [&] { return problem.project_once(); };
+    const auto damped = [&] { return problem.sweep(0.8); };
+    const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, work.y, sweep); };
+    for (int patience = 250;; patience *= 2) {
+      const auto open = [&](const char* name, int factor) {
+        if (pursuit.is_over()) return false;
+        if (name[0] != 'm' || patience > 250) pursuit.back_to_best();
+        pursuit.open(name, factor * patience);
+        return true;
+      };
+      if (open("momentum", 1)) momentum(exact);
+      if (open("anderson", 1)) inner::anderson(problem, pursuit, work.history, exact);
+      if (open("projection", 6)) momentum(one_projection);
+      if (open("patient", 12)) momentum(exact);
+      if (open("conjugate", 4)) inner::conjugate_directions(problem, pursuit, work.history, damped);
+      if (pursuit.is_over()) return pursuit.finish();
     }
-    problem.load(work.best);
-    report.measure = best;
-    return finish(report, rows);
-  }
-
- private:
-  template <class Problem, class Workspace>
-  static void momentum(Problem& problem, Workspace& work, double& theta, double& last, double moved) {
-    const bool is_against = problem.curvature(work.y, work.x) > 0 || moved > last;
-    // work.y has served; it takes z, the next x, while λ moves on to the next y.
-    problem.save(work.y);
-    if (is_against) {
-      theta = 1;
-      last = std::numeric_limits<double>::infinity();
-    } else {
-      const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
-      problem.extrapolate(work.x, (theta - 1) / next);
-      theta = next;
-      last = moved;
-    }
-    std::swap(work.x, work.y);
-  }
-
-  bool is_done(const Measure& m, int rows) const {
-    return inner::is_within<Criterion>(*this, m, rows) || m.residual <= m.floor;
-  }
-  SolveReport finish(SolveReport report, int rows) const {
-    report.status = inner::verdict<Criterion>(*this, report.measure, rows);
-    return report;
   }
 };
 

@@ -6,6 +6,8 @@
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <tuple>
 #include <vector>
@@ -60,6 +62,24 @@ class IslandProblem {
     return double(energy);
   }
 
+  /// One step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint in order: less than an
+  /// exact answer, and a contraction where exact answers go round in circles. Returns what `sweep` returns.
+  double project_once() {
+    T energy = 0;
+    each([&](auto p, Index i) {
+      constexpr int R = Rows::template rows_of<p>;
+      auto& lambda = rows_.template pool<p>().lambda[i];
+      const Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
+      const T s = c.W.norm();
+      const Vec<R, T> next = lambda - book_.template natural_map<p>(i, c, s) / s;
+      const Vec<R, T> change = next - lambda;
+      lambda = next;
+      W_.template commit<p>(rows_, i, change);
+      energy += c.W.trace() / T(R) * change.squaredNorm();
+    });
+    return double(energy);
+  }
+
   Measure measure() {
     MeasureSums sums;
     for_each_index<pools>([&](auto p) {
@@ -100,6 +120,26 @@ class IslandProblem {
     });
   }
 
+  /// The numbers √w_i λ_i of all constraints, in order; `to` has as many.
+  void gather(std::vector<double>& to) const {
+    std::size_t at = 0;
+    each([&](auto p, Index i) {
+      const double root = root_of_weight<p>(i);
+      for (const T x : rows_.template pool<p>().lambda[i]) to[at++] = root * double(x);
+    });
+  }
+  /// The way back, each λ_i brought into its law's cone.
+  void scatter(const std::vector<double>& from) {
+    std::size_t at = 0;
+    each([&](auto p, Index i) {
+      const double root = root_of_weight<p>(i);
+      Vec<Rows::template rows_of<p>, T> next;
+      for (T& x : next) x = root > 0 ? T(from[at++] / root) : (++at, T(0));
+      book_.template clamp<p>(i, next);
+      assign<p>(i, next);
+    });
+  }
+
   /// Σ w_i (a_i − λ_i)·(λ_i − b_i).
   double curvature(const Impulses<Rows>& a, const Impulses<Rows>& b) const {
     T sum = 0;
@@ -120,6 +160,11 @@ class IslandProblem {
   }
 
   template <int p>
+  double root_of_weight(Index i) const {
+    return std::sqrt(double(W_.template diagonal<p>(i).trace()) / Rows::template rows_of<p>);
+  }
+
+  template <int p>
   void assign(Index i, const Vec<Rows::template rows_of<p>, T>& next) {
     auto& lambda = rows_.template pool<p>().lambda[i];
     const Vec<Rows::template rows_of<p>, T> change = next - lambda;
@@ -127,20 +172,32 @@ class IslandProblem {
     W_.template commit<p>(rows_, i, change);
   }
 
+  /// The impulse that meets the law of item i while the others stand still.
+  template <int p>
+  Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
+    constexpr int R = Rows::template rows_of<p>;
+    if constexpr (Book::template meets<p>() && requires { W_.template free_velocity<p>(rows_, i); }) {
+      return book_.template meet<p>(i, W_.template free_velocity<p>(rows_, i));
+    } else {
+      Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
+      book_.template project<p>(i, c);
+      return c.lambda;
+    }
+  }
+
   template <int p>
   void visit(Index i, T relaxation, T& energy, T& displacement, T& most) {
     constexpr int R = Rows::template rows_of<p>;
     auto& lambda = rows_.template pool<p>().lambda[i];
-    Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
-    book_.template project<p>(i, c);
+    Vec<R, T> next = answer<p>(i, lambda);
     if (relaxation != T(1)) {
-      c.lambda = lambda + relaxation * (c.lambda - lambda);
-      book_.template clamp<p>(i, c.lambda);
+      next = lambda + relaxation * (next - lambda);
+      book_.template clamp<p>(i, next);
     }
-    const Vec<R, T> change = c.lambda - lambda;
-    lambda = c.lambda;
+    const Vec<R, T> change = next - lambda;
+    lambda = next;
     W_.template commit<p>(rows_, i, change);
-    const T weight = c.W.trace() / T(R), square = change.squaredNorm();
+    const T weight = W_.template diagonal<p>(i).trace() / T(R), square = change.squaredNorm();
     energy += weight * square;
     const T share = weight * std::sqrt(square);
     displacement += share;

@@ -4,7 +4,10 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/rows/row_system.hpp>
 
+#include <concepts>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -15,6 +18,8 @@ class LawBook;
 /// Calls each law with its item and its memory. `prepare` runs once a step, when W is built.
 template <class... Laws, class T>
 class LawBook<Constraints<Laws...>, T> {
+  using Memories = std::tuple<std::vector<inner::memory_of_t<Laws, T>>...>;
+
  public:
   explicit LawBook(const Constraints<Laws...>& constraints) : constraints_(&constraints) {}
 
@@ -42,6 +47,21 @@ class LawBook<Constraints<Laws...>, T> {
     inner::project(pool.law, pool.item(i), c, std::get<p>(memory_)[i]);
   }
 
+  /// Whether the law of pool p answers to the free velocity alone.
+  template <int p>
+  static constexpr bool meets() {
+    using Pool = std::remove_cvref_t<decltype(std::declval<const Constraints<Laws...>&>().template pool<p>())>;
+    using Memory = typename std::tuple_element_t<p, Memories>::value_type;
+    return requires(const Pool& pool, const Vec<Pool::rows, T>& b, Memory& memory) {
+      { pool.law.meet(pool.item(0), b, memory) } -> std::same_as<Vec<Pool::rows, T>>;
+    };
+  }
+  template <int p, int R>
+  Vec<R, T> meet(Index i, const Vec<R, T>& b) {
+    const auto& pool = constraints_->template pool<p>();
+    return pool.law.meet(pool.item(i), b, std::get<p>(memory_)[i]);
+  }
+
   /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
   template <int p, int R>
   Vec<R, T> natural_map(Index i, const Local<R, T>& c, T scale) {
@@ -65,7 +85,7 @@ class LawBook<Constraints<Laws...>, T> {
 
  private:
   const Constraints<Laws...>* constraints_;
-  std::tuple<std::vector<inner::memory_of_t<Laws, T>>...> memory_;
+  Memories memory_;
 };
 
 }  // namespace delassus

@@ -13,6 +13,7 @@ struct SolveReport {
   Status status = Status::converged;
   int sweeps = 0;
   Measure measure{};
+  const char* ended_by = "sweeps";  ///< the stage of the solver that came last
 };
 
 /// The parameters every sweeping solver shares.

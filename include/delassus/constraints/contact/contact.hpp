@@ -68,6 +68,12 @@ struct Contact {
     inner::project(local(), item.parameters, c, memory);
   }
   template <class T>
+  Vec<rows, T> meet(const Item& item, const Vec<rows, T>& b, Memory<T>& memory) const
+    requires requires { local().meet(item.parameters, b, memory); }
+  {
+    return local().meet(item.parameters, b, memory);
+  }
+  template <class T>
   Vec<rows, T> natural_map(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
     return local().natural_map(item.parameters, lambda, u, scale);
   }

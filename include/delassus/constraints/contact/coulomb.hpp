@@ -72,16 +72,17 @@ struct Coulomb {
 
   template <class T>
   void project(const Parameters& p, Local<3, T>& c, Memory<T>& memory) const {
-    const Vec<3, T> b = c.free_velocity();
-    if (b[0] >= T(0)) {
-      c.lambda.setZero();
-      return;
-    }
+    c.lambda = meet(p, c.free_velocity(), memory);
+  }
+  /// λ from b = u − W λ, the velocity without this contact.
+  template <class T>
+  Vec<3, T> meet(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
+    if (b[0] >= T(0)) return Vec<3, T>::Zero();
     const T mu = T(p.friction);
-    c.lambda = -(memory.inverse * b);
-    const T limit = mu * c.lambda[0];
-    if (c.lambda[0] >= T(0) && c.lambda[1] * c.lambda[1] + c.lambda[2] * c.lambda[2] <= limit * limit) return;
-    c.lambda = slip(b, mu, memory);
+    const Vec<3, T> stick = -(memory.inverse * b);
+    const T limit = mu * stick[0];
+    if (stick[0] >= T(0) && stick[1] * stick[1] + stick[2] * stick[2] <= limit * limit) return stick;
+    return slip(b, mu, memory);
   }
 
   template <class T>

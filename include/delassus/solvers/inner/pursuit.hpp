@@ -1,0 +1,103 @@
+/// What the stages of one solve share: the count of sweeps, the best measured impulses, and when a stage has stalled.
+#pragma once
+
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delassus::inner {
+
+/// Sweeps are counted and measured here; a stage asks after each of its sweeps whether to go on. A stage has stalled when
+/// the best measured error did not halve within `patience` sweeps, or half as many as it took to get there if that is more.
+template <class Criterion, class Solver, class Problem, class Impulses>
+class Pursuit {
+ public:
+  Pursuit(const Solver& solver, Problem& problem, Impulses& best)
+      : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {}
+
+  /// The first measure, before any sweep. False: there is nothing to sweep.
+  bool begin() {
+    report_.measure = best_ = problem_.measure();
+    problem_.tell(0, report_.measure);
+    if (!std::isfinite(report_.measure.residual)) {
+      report_.status = Status::quarantined;
+      return false;
+    }
+    if (solver_.min_iterations == 0 && is_done(best_)) {
+      is_met_ = true;
+      return false;
+    }
+    problem_.save(best_set_);
+    return solver_.max_iterations > 0;
+  }
+
+  void open(const char* stage, int patience) {
+    report_.ended_by = stage;
+    patience_ = patience;
+    opened_ = progressed_ = report_.sweeps;
+    mark_ = Criterion::sum(best_);
+  }
+
+  /// After a sweep of the present stage, λ being what it made: false when the stage, or the solve, is over.
+  bool goes_on() {
+    ++report_.sweeps;
+    is_last_ = report_.sweeps >= solver_.max_iterations ||
+               (report_.sweeps >= solver_.min_iterations && problem_.is_out_of_time());
+    const int batch = Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report_.sweeps);
+    if (report_.sweeps - measured_ < batch && !is_last_) return true;
+    measured_ = report_.sweeps;
+    report_.measure = problem_.measure();
+    problem_.tell(report_.sweeps, report_.measure);
+    is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
+    if (is_met_) return false;
+    if (Criterion::needs_measure ? Criterion::sum(report_.measure) < Criterion::sum(best_)
+                                 : report_.measure.residual < best_.residual) {
+      best_ = report_.measure;
+      problem_.save(best_set_);
+      if (Criterion::sum(best_) < 0.5 * mark_) {
+        mark_ = Criterion::sum(best_);
+        progressed_ = report_.sweeps;
+      }
+    }
+    return !is_last_ && !stalls();
+  }
+
+  /// The tolerance is met, or no sweep is left.
+  bool is_over() const { return is_met_ || is_last_; }
+  bool is_quarantined() const { return report_.status == Status::quarantined; }
+
+  /// λ ← the best measured.
+  void back_to_best() { problem_.load(best_set_); }
+
+  SolveReport finish() {
+    if (is_quarantined()) return report_;
+    if (!is_met_) {
+      if (report_.sweeps > 0) back_to_best();
+      report_.measure = best_;
+    }
+    report_.status = inner::verdict<Criterion>(solver_, report_.measure, rows_);
+    return report_;
+  }
+
+ private:
+  bool is_done(const Measure& m) const {
+    return inner::is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
+  }
+  bool stalls() const {
+    return Criterion::needs_measure &&
+           report_.sweeps - progressed_ > std::max(patience_, (progressed_ - opened_) / 2);
+  }
+
+  const Solver& solver_;
+  Problem& problem_;
+  Impulses& best_set_;
+  SolveReport report_{};
+  Measure best_{};
+  int rows_, measured_ = 0, patience_ = 0, opened_ = 0, progressed_ = 0;
+  double mark_ = std::numeric_limits<double>::infinity();
+  bool is_met_ = false, is_last_ = false;
+};
+
+}  // namespace delassus::inner
