@@ -3,6 +3,7 @@
 #include <delassus/delassus.hpp>
 
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "catch.hpp"
@@ -219,4 +220,29 @@ TEST_CASE("in single precision bodies fall and swing as in double, to single pre
     CAPTURE(i);
     CHECK((exact[i] - single[i]).norm() <= 1000 * 8 * 0x1p-24 * 5);
   }
+}
+
+TEST_CASE("ten thousand hulls that come and go live in the place of two, and those that stay do not move") {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+  const ConvexHull cube(corners);
+  corners.push_back({0, 0, 3});
+  const ConvexHull house(corners);
+  RigidBodies set;
+  const auto stays = set.add({.mass = 1.0, .shape = cube});
+  const ConvexHull* const its_hull = set.shape(stays.index).hull;
+  std::set<const ConvexHull*> places;
+  for (int n = 0; n < 10000; ++n) {
+    const ConvexHull& given = n % 2 ? cube : house;
+    const auto comes = set.add({.mass = 1.0, .shape = given});
+    const ConvexHull* hull = set.shape(comes.index).hull;
+    REQUIRE(hull->vertices().size() == given.vertices().size());
+    places.insert(hull);
+    set.remove(comes);
+    if (n % 3 == 0) set.remove(set.add({.mass = 1.0, .shape = Sphere{1}}));  // the same place without a hull
+  }
+  REQUIRE(places.size() == 1);
+  REQUIRE(set.blocks() == 2);
+  REQUIRE(set.shape(stays.index).hull == its_hull);
+  REQUIRE(its_hull->vertices().size() == 8);
 }

@@ -20,6 +20,24 @@ struct Tagged : Set {
   using Set::Set;
 };
 
+namespace inner {
+
+/// The scalar of the first set; a World without one is refused by its loop.
+template <class... Sets>
+struct scalar_of {
+  using type = double;
+};
+template <class First, class... Rest>
+struct scalar_of<First, Rest...> {
+  using type = typename First::Scalar;
+};
+
+/// In place of a set that is not there: the sentence has been said.
+template <class Set>
+Set& no_set();
+
+}  // namespace inner
+
 /// A tuple of body sets of one scalar. Laws and collision see the sets only through `visit`, `point` and `frame`.
 template <class... Sets>
 class World {
@@ -27,7 +45,7 @@ class World {
   using plays = role::World;
   static constexpr int set_count = int(sizeof...(Sets));
   using Tuple = std::tuple<Sets...>;
-  using Scalar = typename std::tuple_element_t<0, Tuple>::Scalar;
+  using Scalar = typename inner::scalar_of<Sets...>::type;
 
   World()
     requires(set_count > 0)
@@ -44,11 +62,13 @@ class World {
   }
   template <class Set>
   Set& get() {
-    return std::get<Set>(sets_);
+    if constexpr (has_one<Set>()) return std::get<Set>(sets_);
+    else return inner::no_set<Set>();
   }
   template <class Set>
   const Set& get() const {
-    return std::get<Set>(sets_);
+    if constexpr (has_one<Set>()) return std::get<Set>(sets_);
+    else return inner::no_set<Set>();
   }
 
   /// f(set, std::integral_constant<int, s>) for every set, in order.
@@ -119,6 +139,15 @@ class World {
   void memory(auto& archive) { archive(sets_); }
 
  private:
+  template <class Set>
+  static consteval bool has_one() {
+    constexpr int count = (int(std::is_same_v<Set, Sets>) + ... + 0);
+    static_assert(count > 0, "delassus: this World has no set of bodies of this type; add it to World{...}");
+    static_assert(count < 2,
+                  "delassus: this World has two sets of this type; make the second one Tagged<RigidBodies, struct "
+                  "Debris>, and ask for it by that name");
+    return count == 1;
+  }
   template <class Self, class F, int... s>
   static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {
     (f(std::get<s>(self.sets_), std::integral_constant<int, s>{}), ...);

@@ -33,11 +33,11 @@ class Constraints {
   }
   template <class Law>
   auto& of() {
-    return std::get<Pool<Law>>(pools_);
+    return std::get<place_of<Law>()>(pools_);
   }
   template <class Law>
   const auto& of() const {
-    return std::get<Pool<Law>>(pools_);
+    return std::get<place_of<Law>()>(pools_);
   }
 
   static void each_array(auto& self, auto&& f) {
@@ -59,6 +59,19 @@ class Constraints {
   };
 
  private:
+  /// Of the one pool of this law.
+  template <class Law>
+  static consteval std::size_t place_of() {
+    constexpr bool is_it[] = {std::is_same_v<Law, Laws>..., false};
+    constexpr int count = (int(std::is_same_v<Law, Laws>) + ... + 0);
+    static_assert(count < 2,
+                  "delassus: Constraints{...} lists this law twice; one entry holds any number of constraints, take "
+                  "the other out");
+    std::size_t place = 0;
+    while (!is_it[place] && place < sizeof...(Laws)) ++place;
+    return place;
+  }
+
   [[no_unique_address]] std::tuple<Pool<Laws>...> pools_;
 };
 

@@ -66,9 +66,14 @@ void project(const L& law, const Item& item, C& local, M& memory) {
 /// One sentence for the first thing a law lacks.
 template <class L>
 consteval bool law_is_sound() {
+  constexpr bool is_around_a_law = !requires { typename L::no_contact_law; };
+  static_assert(is_around_a_law,
+                "delassus: Contact{...} takes a contact law, as in Contact{Coulomb{.friction = 0.5}}; this type lacks "
+                "`rows`, `kinds` or `Parameters`");
   constexpr bool has_shape = ConstraintLaw<L>;
-  static_assert(has_shape,
-                "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
+  if constexpr (is_around_a_law)
+    static_assert(has_shape,
+                  "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
   if constexpr (has_shape) {
     constexpr bool projects = Projects<L>;
     static_assert(projects,

@@ -88,6 +88,13 @@ consteval bool has_one_world() {
 }
 
 template <class World>
+consteval bool has_bodies() {
+  constexpr bool has = World::set_count > 0;
+  static_assert(has, "delassus: a World needs at least one set of bodies; write World{RigidBodies{}}");
+  return has;
+}
+
+template <class World>
 consteval bool has_one_scalar() {
   constexpr bool is_one = []<class... S>(const delassus::World<S...>*) {
     return (std::is_same_v<typename S::Scalar, typename World::Scalar> && ...);
@@ -229,6 +236,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!has_one_world<Policies...>()) return false;
   else if constexpr (!one_of_each<Policies...>()) return false;
   else if constexpr (!(plays_its_role<Policies>() && ...)) return false;
+  else if constexpr (!has_bodies<typename Parts::World>()) return false;
   else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
   else if constexpr (!constraints_are_sound<Parts>()) return false;
   else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;

@@ -95,6 +95,14 @@ struct Contact {
   }
 };
 
+/// Around what is no contact law; the loop's checks say so.
+template <class Law>
+  requires(!requires { Law::rows, Law::kinds, typename Law::Parameters{}; })
+struct Contact<Law> {
+  using no_contact_law = Law;
+  Law law{};
+};
+
 template <class Law>
 Contact(Law) -> Contact<Law>;
 
