@@ -2,8 +2,11 @@
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "allocation_scenes.hpp"
 
+#include <delassus/collision/with_filter.hpp>
+
 TEST_CASE("a warm step of ten jointed boxes with contacts allocates nothing") {
   REQUIRE(allocations_of_jointed_stack(NativeCollision{}) == 0);
+  REQUIRE(allocations_of_jointed_stack(WithFilter{NativeCollision{}}) == 0);
 }
 
 TEST_CASE("a warm step of a chain of joints allocates nothing") {

@@ -9,6 +9,11 @@
 
 namespace delassus {
 
+/// Which pairs may collide, besides their groups: `NoFilter` says all.
+struct NoFilter {
+  constexpr bool lets(std::uint64_t) const { return true; }
+};
+
 /// A posed, moving shape. m, m/s, rad/s, world frame.
 struct Collider {
   Shape shape{};
@@ -20,6 +25,14 @@ struct Collider {
   std::uint32_t collides_with = ~0u;  ///< pairs when each one's group meets the other's mask
   std::uint32_t key = 0;              ///< names this collider from step to step; unique
 };
+
+/// The key of block b of set s in a loop's world.
+constexpr std::uint32_t collider_key(Index s, Index b) { return (std::uint32_t(s) << 28) | std::uint32_t(b); }
+
+/// Names a pair, whichever of the two is named first.
+constexpr std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a);
+}
 
 /// One contact. `a` and `b` index the colliders of this call, key of a < key of b. World frame.
 struct ContactPoint {

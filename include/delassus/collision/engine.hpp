@@ -22,13 +22,14 @@ namespace delassus {
 template <NarrowKernel Kernel, BroadPhase Broad>
 class CollisionEngine {
  public:
-  /// Contacts within the margin, sorted by pair and then by feature; `out` is cleared first. h is the step,
-  /// s.
+  /// Contacts within the margin of the pairs that the filter lets, sorted by pair and then by feature; `out` is
+  /// cleared first. h is the step, s.
+  template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
-                         std::vector<ContactPoint>& out) {
+                         std::vector<ContactPoint>& out, const Filter& filter = {}) {
     out.clear();
     report_ = {};
-    find_pairs(colliders, h, settings);
+    find_pairs(colliders, h, settings, filter);
     next_memory_.clear();
     std::size_t last = 0;
     const PairMemory nothing;
@@ -56,7 +57,9 @@ class CollisionEngine {
     bool operator<(const Job& o) const { return pair < o.pair; }
   };
 
-  void find_pairs(std::span<const Collider> colliders, double h, const CollisionSettings& settings) {
+  template <class Filter>
+  void find_pairs(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
+                  const Filter& filter) {
     boxes_.clear();
     half_spaces_.clear();
     pairs_.clear();
@@ -67,11 +70,11 @@ class CollisionEngine {
       boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
     }
     find_candidates(colliders);
-    for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j);
+    for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
     for (const Index plane : half_spaces_)
       for (Index i = 0; i < Index(colliders.size()); ++i)
         if (!boxes_[i].isEmpty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
-          add_job(colliders, plane, i);
+          add_job(colliders, plane, i, filter);
     std::sort(jobs_.begin(), jobs_.end());
     report_.pairs = Index(jobs_.size());
   }
@@ -86,12 +89,15 @@ class CollisionEngine {
     }
   }
 
-  void add_job(std::span<const Collider> colliders, Index a, Index b) {
+  template <class Filter>
+  void add_job(std::span<const Collider> colliders, Index a, Index b, const Filter& filter) {
     const Collider &x = colliders[a], &y = colliders[b];
     if (!x.is_movable && !y.is_movable) return;
     if ((x.group & y.collides_with) == 0 || (y.group & x.collides_with) == 0) return;
+    const std::uint64_t pair = pair_key(x.key, y.key);
+    if (!filter.lets(pair)) return;
     if (x.key > y.key) std::swap(a, b);
-    jobs_.push_back({std::uint64_t(colliders[a].key) << 32 | colliders[b].key, a, b});
+    jobs_.push_back({pair, a, b});
   }
 
   /// One pair: distance, patch, choice of points, names. In the frame of A until the points are written.

@@ -18,8 +18,10 @@ struct NativeDetection {
   CollisionEngine<Kernel, Broad> engine{};
 
   void check() const { CollisionSettings{margin, contact_distance, max_points}.check("NativeCollision"); }
-  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
-    return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts);
+  template <class Filter = NoFilter>
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
+                         const Filter& filter = {}) {
+    return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts, filter);
   }
 };
 

@@ -9,10 +9,10 @@
 
 namespace delassus {
 
-/// Two unit vectors that complete n to a right-handed frame (rows n, t₁, t₂), continuous away from one direction.
-/// Source: [DuffEtAl2017], the branchless form with copysign.
+/// Two unit vectors that complete n to a right-handed frame (rows n, t₁, t₂). Any such choice jumps somewhere: this one
+/// at n_z = −0.75, where no floor, wall or ceiling is. Source: [DuffEtAl2017], whose form jumps at n_z = 0, at every wall.
 inline Mat3 contact_frame(const Vec3& n) {
-  const double sign = std::copysign(1.0, n[2]);
+  const double sign = n[2] < -0.75 ? -1.0 : 1.0;
   const double a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
   const double rows[3][3] = {{n[0], n[1], n[2]},
                              {1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]},

@@ -43,6 +43,8 @@ void AnimationLoop<Policies...>::detect() {
   if constexpr (Laws::has_contacts) {
     auto& contacts = work_.contacts;
     contacts.gather(std::as_const(*this).world());
+    if constexpr (requires { Parts::Collision::asks_for_joints; })
+      part<role::Collision>().refresh(std::as_const(*this).world(), [&](const auto& f) { each_joint(f); });
     const auto detect_all = [&] {
       return part<role::Collision>().detect(std::span<const Collider>(contacts.colliders), h_, contacts.points);
     };

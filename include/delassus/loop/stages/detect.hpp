@@ -56,7 +56,7 @@ class ContactBook {
     c.is_movable = is_movable;
     c.group = set.group(b);
     c.collides_with = set.collides_with(b);
-    c.key = (std::uint32_t(s) << 28) | std::uint32_t(b);
+    c.key = collider_key(s, b);
     colliders.push_back(c);
     anchors_.push_back({.set = s, .block = b});
     materials_.push_back(set.material(b));

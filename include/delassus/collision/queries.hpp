@@ -1,0 +1,208 @@
+/// What a host asks of the bodies between steps: rays, nearest points, overlaps, distances.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/collision/certified_pair.hpp>
+#include <delassus/collision/half_space.hpp>
+#include <delassus/collision/inner/margins.hpp>
+#include <delassus/core/expect.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace delassus {
+
+/// A point on a body. `anchor` names it as joints do, so that it can be held from here on.
+struct SurfacePoint {
+  bool is_found = false;
+  Anchor anchor{};
+  Vec3 point = Vec3::Zero();   ///< on the surface, world frame, m
+  Vec3 normal = Vec3::Zero();  ///< unit, out of the body
+  double distance = 0;         ///< m: along the ray, or from the point asked for, negative inside
+  explicit operator bool() const { return is_found; }
+};
+
+/// The shortest way between two bodies, or out of each other. World frame, m; b − a = distance · normal.
+struct Separation {
+  double distance = 0;
+  Vec3 normal = Vec3::Zero(), point_a = Vec3::Zero(), point_b = Vec3::Zero();
+};
+
+namespace inner {
+
+inline constexpr double forever = std::numeric_limits<double>::infinity();
+
+/// Signed distance of two posed shapes, at most one of them a half-space, in the frame of A; `far` beyond
+/// `reach`.
+inline SignedPair measure(const Shape& a, const Shape& b, const Pose& b_in_a, double reach) {
+  Patch patch;
+  if (a.kind == ShapeKind::half_space)
+    return half_space_patch(b, b_in_a, plane_of(a, Pose{}), true, reach, length_scale(b), patch);
+  if (b.kind == ShapeKind::half_space)
+    return half_space_patch(a, Pose{}, plane_of(b, b_in_a), false, reach, length_scale(a), patch);
+  GjkEpa kernel;
+  return certified_pair(kernel, a, b, b_in_a, reach, pair_scale(a, b), Vec3::Zero()).pair;
+}
+
+/// The signed distance of a point from a shape, in its frame: `normal` points from the shape to the point.
+inline SignedPair measure_point(const Shape& s, const Vec3& point) {
+  const Shape dot = Sphere{0};
+  if (s.kind == ShapeKind::half_space) return measure(s, dot, Pose{.position = point}, forever);
+  PairCache cache;
+  return GjkEpa{}.pair(s, dot, Pose{.position = point}, forever, cache);
+}
+
+/// Where the ray enters the shape, in its frame; false when it misses within `reach`. Each plane that
+/// separates the point from the shape is where the ray can go without touching it: x ← x + d / (−n · r) r.
+/// From inside it is 0. Source: the convex ray cast of [VanDenBergen2003].
+inline bool enter(const Shape& s, const Vec3& origin, const Vec3& direction, double reach, double& way,
+                  Vec3& normal) {
+  way = 0;
+  const double scale = s.kind == ShapeKind::half_space ? 1.0 : length_scale(s);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const SignedPair r = measure_point(s, origin + way * direction);
+    normal = r.normal;
+    if (r.distance <= 1e-10 * (scale + way)) return true;
+    const double approach = -normal.dot(direction);
+    if (!(approach > 0)) return false;
+    way += r.distance / approach;
+    if (!(way <= reach)) return false;
+  }
+  return true;
+}
+
+/// True when the ray meets the box within `reach`; a ray along a side may miss it or not.
+inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction, double reach) {
+  double first = 0, last = reach;
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 0) {
+      if (origin[k] < box.min()[k] || origin[k] > box.max()[k]) return false;
+      continue;
+    }
+    const double x = (box.min()[k] - origin[k]) / direction[k], y = (box.max()[k] - origin[k]) / direction[k];
+    first = std::max(first, std::min(x, y));
+    last = std::min(last, std::max(x, y));
+  }
+  return first <= last;
+}
+
+/// f(set, s, b, shape, pose) for every body with a shape whose group meets the mask; one that is not finite
+/// has none.
+template <class World, class F>
+void each_shape(const World& world, std::uint32_t groups, const F& f) {
+  world.each([&](const auto& set, auto s) {
+    for (Index b = 0; b < set.blocks(); ++b) {
+      if (!set.has_collider(b) || (set.group(b) & groups) == 0) continue;
+      const Pose pose = set.pose(b);
+      if (is_finite(pose.position) && is_finite(pose.rotation)) f(set, Index(s), b, set.shape(b), pose);
+    }
+  });
+}
+
+template <class Set>
+SurfacePoint surface_point(const Set& set, Index s, Index b, const Pose& pose, const Vec3& point,
+                           const Vec3& normal, double distance) {
+  SurfacePoint found{.is_found = true, .point = point, .normal = normal, .distance = distance};
+  found.anchor = anchor(set, set.handle(b), pose.to_local(point));
+  found.anchor.set = s;
+  return found;
+}
+
+}  // namespace inner
+
+/// The first body that the ray from `origin` along `direction` (any length) meets within `reach` m. A body
+/// that holds the origin is met there, at the distance 0. `groups` masks the bodies that are asked, by their
+/// own group.
+template <class World>
+SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direction,
+                      double reach = inner::forever, std::uint32_t groups = ~0u) {
+  const Vec3 along = inner::direction_of(direction);
+  DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
+                  "ray_cast: origin and direction must be finite and the direction not zero");
+  DELASSUS_EXPECT(reach >= 0, "ray_cast: reach " + inner::text(reach) + " m must be >= 0");
+  SurfacePoint first;
+  double nearest = reach;
+  inner::each_shape(
+      world, groups, [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
+        if (shape.kind != ShapeKind::half_space &&
+            !inner::ray_meets(tight_box(shape, pose), origin, along, nearest))
+          return;
+        double way = 0;
+        Vec3 normal;
+        const Vec3 local = pose.rotation.transpose() * along;
+        if (!inner::enter(shape, pose.to_local(origin), local, nearest, way, normal)) return;
+        if (first && !(way < first.distance)) return;
+        nearest = way;
+        first = inner::surface_point(set, s, b, pose, origin + way * along, pose.rotation * normal, way);
+      });
+  return first;
+}
+
+/// The surface point nearest to `point`, of all bodies within `reach` m. Inside a body the distance is
+/// negative, and the body in which the point lies deepest is the nearest.
+template <class World>
+SurfacePoint closest_point(const World& world, const Vec3& point, double reach = inner::forever,
+                           std::uint32_t groups = ~0u) {
+  DELASSUS_EXPECT(is_finite(point), "closest_point: the point is not finite");
+  DELASSUS_EXPECT(reach >= 0, "closest_point: reach " + inner::text(reach) + " m must be >= 0");
+  SurfacePoint best;
+  inner::each_shape(world, groups,
+                    [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
+                      const double limit = best ? best.distance : reach;
+                      if (shape.kind != ShapeKind::half_space &&
+                          tight_box(shape, pose).exteriorDistance(point) > std::max(limit, 0.0))
+                        return;
+                      const SignedPair r = inner::measure_point(shape, pose.to_local(point));
+                      if (!(r.distance <= limit) || (best && r.distance == limit)) return;
+                      best = inner::surface_point(set, s, b, pose, pose.to_world(r.point_a),
+                                                  pose.rotation * r.normal, r.distance);
+                    });
+  return best;
+}
+
+/// Every body that overlaps `shape` at `pose`, or comes within `margin` m of it: the point of each that lies
+/// deepest in the shape, and how far. In the order of the bodies; `found` is cleared first.
+template <class World>
+void overlaps(const World& world, const Shape& shape, const Pose& pose, std::vector<SurfacePoint>& found,
+              double margin = 0, std::uint32_t groups = ~0u) {
+  check(shape, "overlaps");
+  DELASSUS_EXPECT(shape.has_volume(),
+                  std::string("overlaps: a ") + name(shape.kind) + " has no volume to overlap with");
+  DELASSUS_EXPECT(is_finite(pose.position) && is_finite(pose.rotation), "overlaps: the pose is not finite");
+  found.clear();
+  const Vec3 more = Vec3::Constant(margin);
+  const Aabb tight = tight_box(shape, pose), box(tight.min() - more, tight.max() + more);
+  inner::each_shape(
+      world, groups, [&](const auto& set, Index s, Index b, const Shape& other, const Pose& at) {
+        if (other.kind != ShapeKind::half_space && !tight_box(other, at).intersects(box)) return;
+        const Pose relative{.position = at.to_local(pose.position),
+                            .rotation = at.rotation.transpose() * pose.rotation};
+        const SignedPair r = inner::measure(other, shape, relative, margin);
+        if (r.status != PairStatus::near || r.distance > margin) return;
+        found.push_back(
+            inner::surface_point(set, s, b, at, at.to_world(r.point_a), at.rotation * r.normal, r.distance));
+      });
+}
+
+/// The shortest way between the surfaces of two posed shapes; of two half-spaces there is none.
+inline Separation separation(const Shape& a, const Pose& at_a, const Shape& b, const Pose& at_b) {
+  const auto is_body = [](const Shape& s) { return s.kind != ShapeKind::none; };
+  DELASSUS_EXPECT(is_body(a) && is_body(b), "separation: a body without a shape has no distance");
+  DELASSUS_EXPECT(a.has_volume() || b.has_volume(), "separation: two half-spaces have no distance");
+  const Pose b_in_a{.position = at_a.to_local(at_b.position),
+                    .rotation = at_a.rotation.transpose() * at_b.rotation};
+  const SignedPair r = inner::measure(a, b, b_in_a, inner::forever);
+  return {r.distance, at_a.rotation * r.normal, at_a.to_world(r.point_a), at_a.to_world(r.point_b)};
+}
+
+/// The same of two bodies, by their handles: `separation(set, box, set, ball)`.
+template <class SetA, class SetB>
+Separation separation(const SetA& set_a, typename SetA::Handle a, const SetB& set_b,
+                      typename SetB::Handle b) {
+  DELASSUS_EXPECT(set_a.contains(a) && set_b.contains(b),
+                  "separation: a body was removed; its handle is stale");
+  return separation(set_a.shape(a.index), set_a.pose(a.index), set_b.shape(b.index), set_b.pose(b.index));
+}
+
+}  // namespace delassus

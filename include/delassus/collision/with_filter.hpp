@@ -1,0 +1,116 @@
+/// Detection that lets some pairs of bodies pass through each other: those a joint holds, and those named.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/anchor.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace delassus {
+
+/// `WithFilter{NativeCollision{}}` in the place of the backend: bodies that hold each other by a joint do not
+/// collide, nor do the pairs given to `ignore`. Filtered pairs cost no query. Groups and masks of the bodies
+/// hold as ever. A change wakes nobody.
+template <class Backend>
+struct WithFilter {
+  using plays = role::Collision;
+  static constexpr bool asks_for_joints = true;  ///< the loop calls refresh before each detect
+
+  Backend backend{};
+  bool joined = true;  ///< bodies with a joint between them pass through each other
+
+  WithFilter() = default;
+  explicit WithFilter(Backend b, bool lets_joined_pass = true)
+      : backend(std::move(b)), joined(lets_joined_pass) {}
+
+  /// From now on these two bodies pass through each other: `filter.ignore(loop.world(), anchor(rigid, a),
+  /// anchor(rigid, b))`. Forgotten when one of them is removed.
+  template <class World>
+  void ignore(const World& world, Anchor a, Anchor b) {
+    resolve(world, a, b);
+    if (place_of(a, b) == named_.end()) named_.push_back({a, b});
+  }
+  /// They collide again.
+  template <class World>
+  void heed(const World& world, Anchor a, Anchor b) {
+    resolve(world, a, b);
+    const auto place = place_of(a, b);
+    if (place != named_.end()) named_.erase(place);
+  }
+
+  void check() const {
+    if constexpr (requires { backend.check(); }) backend.check();
+  }
+
+  /// The loop says before each detection who is still there, and whom joints hold: each_joint(f) calls f(a,
+  /// b).
+  template <class World, class EachJoint>
+  void refresh(const World& world, const EachJoint& each_joint) {
+    std::erase_if(named_, [&](const Pair& p) { return !world.is_current(p.a) || !world.is_current(p.b); });
+    pairs_.clear();
+    for (const Pair& p : named_) pairs_.push_back(key(p.a, p.b));
+    if (joined)
+      each_joint([&](const Anchor& a, const Anchor& b) {
+        if (!a.is_world() && !b.is_world()) pairs_.push_back(key(a, b));
+      });
+    std::sort(pairs_.begin(), pairs_.end());
+  }
+
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
+    if constexpr (requires { backend.detect(colliders, h, contacts, *this); }) {
+      return backend.detect(colliders, h, contacts, *this);
+    } else {
+      CollisionReport report = backend.detect(colliders, h, contacts);
+      std::erase_if(contacts, [&](const ContactPoint& c) { return !lets(c.pair); });
+      report.points = Index(contacts.size());
+      return report;
+    }
+  }
+
+  bool lets(std::uint64_t pair) const { return !std::binary_search(pairs_.begin(), pairs_.end(), pair); }
+
+  void memory(auto& archive) {
+    archive(named_);
+    if constexpr (requires { backend.memory(archive); })
+      backend.memory(archive);
+    else if constexpr (requires { backend.engine.memory(archive); })
+      backend.engine.memory(archive);
+  }
+
+ private:
+  struct Pair {
+    Anchor a, b;
+  };
+
+  static std::uint64_t key(const Anchor& a, const Anchor& b) {
+    return pair_key(collider_key(a.set, a.block), collider_key(b.set, b.block));
+  }
+  auto place_of(const Anchor& a, const Anchor& b) {
+    return std::find_if(named_.begin(), named_.end(),
+                        [&](const Pair& p) { return key(p.a, p.b) == key(a, b); });
+  }
+  template <class World>
+  static void resolve(const World& world, Anchor& a, Anchor& b) {
+    world.resolve(a, "collision filter, first body");
+    world.resolve(b, "collision filter, second body");
+    DELASSUS_EXPECT(!a.is_world() && !b.is_world(),
+                    "collision filter: the world has no shape; name two bodies");
+    DELASSUS_EXPECT(a.set != b.set || a.block != b.block,
+                    "collision filter: body " + inner::text(a.block) + " is named twice; name two bodies");
+  }
+
+  std::vector<Pair> named_;
+  std::vector<std::uint64_t> pairs_;
+};
+
+template <class Backend>
+WithFilter(Backend) -> WithFilter<Backend>;
+template <class Backend>
+WithFilter(Backend, bool) -> WithFilter<Backend>;
+
+}  // namespace delassus
