@@ -34,10 +34,10 @@ struct BasicAcceleratedGaussSeidel {
 
   template <class Rows>
   struct Workspace {
-    Impulses<Rows> x, y, best;
+    Impulses<Rows> x, best;
     inner::History history;
     void reset(const Rows& rows) {
-      for (auto* set : {&x, &y, &best}) set->resize_like(rows);
+      for (auto* set : {&x, &best}) set->resize_like(rows);
       history.reserve(std::size_t(rows.row_count()));
     }
   };
@@ -50,26 +50,28 @@ struct BasicAcceleratedGaussSeidel {
                     "AcceleratedGaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
   }
 
+  static constexpr int shortest = 400;  ///< sweeps in which the error must halve, at first
+
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
     inner::Pursuit<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> pursuit(*this, problem, work.best);
     if (!pursuit.begin()) return pursuit.finish();
-    const auto exact = [&] { return problem.sweep(relaxation); };
-    const auto one_projection = [&] { return problem.project_once(); };
+    const auto exact = [&](auto&... curvature) { return problem.sweep(relaxation, curvature...); };
+    const auto one_projection = [&](auto& x, double& curvature) { return problem.project_once(x, curvature); };
     const auto damped = [&] { return problem.sweep(0.8); };
-    const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, work.y, sweep); };
-    for (int patience = 250;; patience *= 2) {
+    const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, sweep); };
+    for (int patience = shortest;; patience *= 2) {
       const auto open = [&](const char* name, int factor) {
         if (pursuit.is_over()) return false;
-        if (name[0] != 'm' || patience > 250) pursuit.back_to_best();
+        if (name[0] != 'm' || patience > shortest) pursuit.back_to_best();
         pursuit.open(name, factor * patience);
         return true;
       };
       if (open("momentum", 1)) momentum(exact);
       if (open("anderson", 1)) inner::anderson(problem, pursuit, work.history, exact);
-      if (open("projection", 6)) momentum(one_projection);
-      if (open("patient", 12)) momentum(exact);
-      if (open("conjugate", 4)) inner::conjugate_directions(problem, pursuit, work.history, damped);
+      if (open("projection", 4)) momentum(one_projection);
+      if (open("patient", 10)) momentum(exact);
+      if (open("conjugate", 3)) inner::conjugate_directions(problem, pursuit, work.history, damped);
       if (pursuit.is_over()) return pursuit.finish();
     }
   }

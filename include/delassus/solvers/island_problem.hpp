@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -53,19 +54,23 @@ class IslandProblem {
   /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the others
   /// stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows.
   double sweep(double relaxation = 1) {
-    T energy = 0, displacement = 0, most = 0;
-    for_each_index<pools>([&](auto p) {
-      for (const Index i : islands_.items(p, island_)) visit<p>(i, T(relaxation), energy, displacement, most);
+    return visit_all(relaxation, [](auto, Index, const auto&, const auto&, T) {});
+  }
+  /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
+  double sweep(double relaxation, const Impulses<Rows>& x, double& curvature) {
+    T sum = 0;
+    const double energy = visit_all(relaxation, [&](auto p, Index i, const auto& change, const auto& z, T weight) {
+      sum -= weight * change.dot(z - std::get<p>(x.pools)[i]);
     });
-    last_change_ = h_ * double(displacement);
-    worst_change_ = h_ * double(most);
-    return double(energy);
+    curvature = double(sum);
+    return energy;
   }
 
   /// One step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint in order: less than an
-  /// exact answer, and a contraction where exact answers go round in circles. Returns what `sweep` returns.
-  double project_once() {
-    T energy = 0;
+  /// exact answer, and a contraction where exact answers go round in circles. Returns and sets what
+  /// `sweep` does.
+  double project_once(const Impulses<Rows>& x, double& curvature) {
+    T energy = 0, sum = 0;
     each([&](auto p, Index i) {
       constexpr int R = Rows::template rows_of<p>;
       auto& lambda = rows_.template pool<p>().lambda[i];
@@ -75,8 +80,11 @@ class IslandProblem {
       const Vec<R, T> change = next - lambda;
       lambda = next;
       W_.template commit<p>(rows_, i, change);
-      energy += c.W.trace() / T(R) * change.squaredNorm();
+      const T weight = c.W.trace() / T(R);
+      energy += weight * change.squaredNorm();
+      sum -= weight * change.dot(next - std::get<p>(x.pools)[i]);
     });
+    curvature = double(sum);
     return double(energy);
   }
 
@@ -110,11 +118,13 @@ class IslandProblem {
     each([&](auto p, Index i) { assign<p>(i, std::get<p>(from.pools)[i]); });
   }
 
-  /// λ ← λ + β (λ − before), each brought back into its law's cone.
-  void extrapolate(const Impulses<Rows>& before, double beta) {
+  /// λ ← λ + β (λ − before), each brought back into its law's cone; `before` takes the λ that was.
+  void extrapolate(Impulses<Rows>& before, double beta) {
     each([&](auto p, Index i) {
-      auto next = rows_.template pool<p>().lambda[i];
-      next += T(beta) * (next - std::get<p>(before.pools)[i]);
+      auto& last = std::get<p>(before.pools)[i];
+      const auto here = rows_.template pool<p>().lambda[i];
+      Vec<Rows::template rows_of<p>, T> next = here + T(beta) * (here - last);
+      last = here;
       book_.template clamp<p>(i, next);
       assign<p>(i, next);
     });
@@ -138,17 +148,6 @@ class IslandProblem {
       book_.template clamp<p>(i, next);
       assign<p>(i, next);
     });
-  }
-
-  /// Σ w_i (a_i − λ_i)·(λ_i − b_i).
-  double curvature(const Impulses<Rows>& a, const Impulses<Rows>& b) const {
-    T sum = 0;
-    each([&](auto p, Index i) {
-      const auto& x = rows_.template pool<p>().lambda[i];
-      const T weight = W_.template diagonal<p>(i).trace() / T(Rows::template rows_of<p>);
-      sum += weight * (std::get<p>(a.pools)[i] - x).dot(x - std::get<p>(b.pools)[i]);
-    });
-    return double(sum);
   }
 
  private:
@@ -176,7 +175,7 @@ class IslandProblem {
   template <int p>
   Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
     constexpr int R = Rows::template rows_of<p>;
-    if constexpr (Book::template meets<p>() && requires { W_.template free_velocity<p>(rows_, i); }) {
+    if constexpr (requires { requires Book::template meets<p>(); W_.template free_velocity<p>(rows_, i); }) {
       return book_.template meet<p>(i, W_.template free_velocity<p>(rows_, i));
     } else {
       Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
@@ -185,8 +184,19 @@ class IslandProblem {
     }
   }
 
-  template <int p>
-  void visit(Index i, T relaxation, T& energy, T& displacement, T& most) {
+  template <class See>
+  double visit_all(double relaxation, See&& see) {
+    T energy = 0, displacement = 0, most = 0;
+    for_each_index<pools>([&](auto p) {
+      for (const Index i : islands_.items(p, island_)) visit<p>(i, T(relaxation), see, energy, displacement, most);
+    });
+    last_change_ = h_ * double(displacement);
+    worst_change_ = h_ * double(most);
+    return double(energy);
+  }
+
+  template <int p, class See>
+  void visit(Index i, T relaxation, See& see, T& energy, T& displacement, T& most) {
     constexpr int R = Rows::template rows_of<p>;
     auto& lambda = rows_.template pool<p>().lambda[i];
     Vec<R, T> next = answer<p>(i, lambda);
@@ -199,6 +209,7 @@ class IslandProblem {
     W_.template commit<p>(rows_, i, change);
     const T weight = W_.template diagonal<p>(i).trace() / T(R), square = change.squaredNorm();
     energy += weight * square;
+    see(std::integral_constant<int, p>{}, i, change, next, weight);
     const T share = weight * std::sqrt(square);
     displacement += share;
     most = std::max(most, share);

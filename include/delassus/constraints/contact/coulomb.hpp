@@ -108,7 +108,7 @@ struct Coulomb {
     const T c1 = b[1] - memory.from_normal[0] * b[0], c2 = b[2] - memory.from_normal[1] * b[0];
     const T bn = b[0] / memory.normal;
     const auto& S = memory.schur;
-    constexpr T tolerance = T(16) * std::numeric_limits<T>::epsilon();
+    constexpr T tolerance = T(16) * std::numeric_limits<T>::epsilon(), near = sizeof(T) == 8 ? T(3e-8) : T(7e-4);
     T low = 0, high = std::numeric_limits<T>::infinity(), alpha = memory.alpha;
     T x1 = 0, x2 = 0, normal = 0, length = 0;
     for (int iteration = 0; iteration < 60; ++iteration) {
@@ -127,6 +127,16 @@ struct Coulomb {
       const T normal_slope = -(memory.to_normal[0] * y1 + memory.to_normal[1] * y2);
       const T slope = mu * (normal_slope - normal * (x1 * y1 + x2 * y2) / square);
       T next = slope > 0 ? alpha - gap / slope : T(-1);
+      if (std::abs(gap) <= near * length && next > low && next < high) {
+        // So near the root that what the tangent leaves out, of the order of gap², is rounding: no further evaluation.
+        const T step = next - alpha;
+        alpha = next;
+        x1 += step * y1;
+        x2 += step * y2;
+        normal += step * normal_slope;
+        length = inner::length(x1, x2);
+        break;
+      }
       if (!(next > low && next < high)) {
         const T first = T(0.05) * (S(0, 0) + S(1, 1));
         next = high < std::numeric_limits<T>::infinity() ? T(0.5) * (low + high) : std::max(T(4) * alpha, first);

@@ -36,7 +36,9 @@ inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// x⁺ = P_K(z − Σ_k γ_k Δz_k), z = sweep(x), f = z − x, γ = argmin |f − Σ_k γ_k Δf_k| over the last five changes. When |f|
-/// grew to twice its least the history is dropped and the last good z taken. Source: [WalkerNi2011], eq. (2.1).
+/// grew to twice its least the history is dropped and the last good z taken. A mixture ten times larger than the first z is
+/// not taken: where the laws contradict each other λ has no limit, and mixing would run there at once.
+/// Source: [WalkerNi2011].
 template <class Problem, class Pursuit, class Sweep>
 void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
   constexpr int depth = History::depth;
@@ -44,12 +46,13 @@ void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
   Mat<depth, depth> gram = Mat<depth, depth>::Zero();
   int count = 0, place = 0;
   bool has_last = false;
-  double least = 0;
+  double least = 0, limit = -1;
   for (;;) {
     problem.gather(h.x);
     sweep();
     if (!pursuit.goes_on()) return;
     problem.gather(h.z);
+    if (limit < 0) limit = 100 * dot(h.z, h.z);
     for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];
     const double size = std::sqrt(dot(h.f, h.f));
     if (has_last && size > 2 * least) {
@@ -86,7 +89,7 @@ void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
     h.x = h.last_z;
     for (int k = 0; k < count; ++k)
       for (std::size_t i = 0; i < h.x.size(); ++i) h.x[i] -= gamma[k] * h.change_z[k][i];
-    problem.scatter(h.x);
+    if (dot(h.x, h.x) <= limit) problem.scatter(h.x);
   }
 }
 
@@ -96,12 +99,13 @@ void conjugate_directions(Problem& problem, Pursuit& pursuit, History& h, Sweep&
   h.resize(std::size_t(problem.row_count()));
   auto& direction = h.good;
   std::fill(direction.begin(), direction.end(), 0.0);
-  double last = 0;
+  double last = 0, limit = -1;
   for (;;) {
     problem.gather(h.x);
     sweep();
     if (!pursuit.goes_on()) return;
     problem.gather(h.z);
+    if (limit < 0) limit = 100 * dot(h.z, h.z);
     for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];
     const double square = dot(h.f, h.f), beta = last > 0 ? square / last : 0;
     last = square;
@@ -113,7 +117,7 @@ void conjugate_directions(Problem& problem, Pursuit& pursuit, History& h, Sweep&
       h.z[i] += beta * direction[i];
       direction[i] = beta * direction[i] + h.f[i];
     }
-    problem.scatter(h.z);
+    if (dot(h.z, h.z) <= limit) problem.scatter(h.z);
   }
 }
 

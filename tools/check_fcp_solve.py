@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Runs fcp_solve as a user would: check_fcp_solve.py PROGRAM. What it prints, writes and returns is checked."""
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+# A box on a slope: one contact that slips (u = W λ + q with W = 1, μ = 0.5): λ = (1, -0.5, 0).
+SLIPS = "fcp 1 sym\n1 1\n0.5\n-1 2 0\n0 0 1 0 0 0 1 0 0 0 1\n"
+
+
+def run(program, *words):
+    done = subprocess.run([program, *map(str, words)], capture_output=True, text=True, timeout=60)
+    return done.returncode, done.stdout, done.stderr
+
+
+def expect(holds, what):
+    if not holds:
+        sys.exit(f"check_fcp_solve: {what}")
+
+
+def main():
+    program = sys.argv[1]
+    with tempfile.TemporaryDirectory() as folder:
+        problem, out, bad = Path(folder, "slips.fcp"), Path(folder, "out.txt"), Path(folder, "bad.fcp")
+        problem.write_text(SLIPS)
+        status, text, _ = run(program, problem, "--out", out)
+        line = text.splitlines()[1].split()
+        expect(status == 0 and line[:3] == ["slips", "1", "converged"], f"one contact: {status} {text}")
+        expect(float(line[3]) <= 1e-8 and float(line[4]) <= 1e-8, f"errors: {text}")
+        found = [float(x) for x in out.read_text().split()]
+        expect(all(abs(a - b) < 1e-8 for a, b in zip(found, [1, -0.5, 0])) and len(found) == 3, f"impulses: {found}")
+        status, text, _ = run(program, problem, "--warm", out)
+        expect(status == 0 and text.splitlines()[1].split()[5] == "0", f"warm start without a sweep: {text}")
+        status, text, _ = run(program, problem, problem, "--solver", "plain", "--stop", "err")
+        expect(status == 0 and len(text.splitlines()) == 3, f"two problems: {text}")
+        bad.write_text(SLIPS.replace("0.5", "-0.5"))
+        status, _, error = run(program, bad)
+        expect(status == 2 and f"{bad}, line 3: friction -0.5 must be >= 0" in error, f"a bad file: {status} {error}")
+        for words, reason in (([], "usage"), ([problem, "--solver", "magic"], "'magic'"), ([problem, "--tolerance", "x"], "'x'"),
+                              ([problem, "--stop", "no"], "'no'"), ([problem, "--nothing", "1"], "--nothing")):
+            status, _, error = run(program, *words)
+            expect(status == 2 and reason in error, f"{words}: {status} {error}")
+
+    problems = os.environ.get("DELASSUS_PROBLEMS")
+    if not problems:
+        print("check_fcp_solve: DELASSUS_PROBLEMS is not set, no problem file solved")
+        return
+    files = sorted(Path(problems).glob("*.fcp"))
+    hard = [f for f in files if f.stem.startswith("RockPile")]
+    status, text, _ = run(program, *[f for f in files if f not in hard], "--stop", "err")
+    expect(status == 0, f"not all of {problems} reach 1e-8:\n{text}")
+    # It may converge or not within the second, but says what its error is.
+    for file in hard:
+        status, text, _ = run(program, file, "--stop", "err", "--time-limit", 1)
+        line = text.splitlines()[1].split()
+        expect((status == 0) == (float(line[3]) <= 1e-8) == (line[2] == "converged"), f"{file.stem}: {status} {text}")
+    print(f"check_fcp_solve: {len(files)} problems")
+
+
+if __name__ == "__main__":
+    main()
