@@ -80,8 +80,17 @@ inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
   return c;
 }
 
-/// At most `limit` points. Last step's stay while they span three quarters of what a new choice would and
-/// miss the deepest by no more than 5e-5 of the scale; a choice that changes every step makes a stack walk.
+inline void drop_highest(const Patch& patch, Choice& c) {
+  int highest = 0;
+  for (int k = 1; k < c.count; ++k)
+    if (patch.point[c.index[k]].gap > patch.point[c.index[highest]].gap) highest = k;
+  c.index[highest] = c.index[--c.count];
+}
+
+/// At most `limit` points. Last step's stay; when they miss the deepest by more than 5e-5 of the scale, it
+/// takes the place of the highest, so that the two on which a round cap tips remain on either side of it.
+/// When they span less than 0.55 of what a new choice would (three corners of an octagon in a row and one
+/// across span 0.6), all are chosen anew. A choice that changes every step makes a stack walk.
 inline Choice reduce(const Patch& patch, const Continuation& continues, const Vec3& n, double scale,
                      int limit) {
   Choice kept;
@@ -98,11 +107,11 @@ inline Choice reduce(const Patch& patch, const Continuation& continues, const Ve
   const Choice anew = choose_anew(patch, n, limit);
   const int lowest = deepest(patch);
   if (!(least <= patch.point[lowest].gap + 5e-5 * scale)) {
-    if (kept.count == limit) return anew;
+    if (kept.count == limit) drop_highest(patch, kept);
     kept.add(lowest);
   }
   fill(patch, limit, kept);
-  return spread(patch, kept, n) >= 0.75 * spread(patch, anew, n) ? kept : anew;
+  return spread(patch, kept, n) >= 0.55 * spread(patch, anew, n) ? kept : anew;
 }
 
 }  // namespace delassus::inner
