@@ -103,6 +103,12 @@ TEST_CASE("the front holds the runs that no other beats in both cost and error")
   REQUIRE(front.size() == 2);
   CHECK(front[0]->number == 1);
   CHECK(front[1]->number == 0);
+  add(6, 1e-4, Outcome::sound);
+  CHECK(study.front(0).size() == 3);
+  study.measures[0].uncertainty = 1e-2;  // 1e-3 and 1e-4 cannot be told apart: the cheaper one stays
+  CHECK(study.front(0).size() == 2);
+  CHECK(study.front(0)[1]->number == 0);
+  CHECK(study.cheapest(0, 1)->number == 1);  // not the failed one, whatever error it left
 }
 
 TEST_CASE("what fails, is refused or hits its cap stays in the table, and only a cap may be chosen") {

@@ -55,6 +55,7 @@ void append_member(std::string& out, const char* name, const T& value, const T& 
   if (out.back() != '{') out += ", ";
   out += std::string(".") + name + " = ";
   if constexpr (std::is_same_v<T, bool>) out += value ? "true" : "false";
+  else if constexpr (std::is_integral_v<T>) out += std::to_string(value);
   else out += shortest_text(double(value));
 }
 

@@ -136,12 +136,15 @@ struct Study {
     }
     return best;
   }
-  /// Runs that no other run beats in both cost and error, cheapest first.
+  /// Runs that no other run beats in both cost and error, cheapest first. Errors below the uncertainty of the reference are
+  /// all alike, so at most one of them is in it.
   std::vector<const StudyRun*> front(int m) const {
     std::vector<const StudyRun*> front;
     for (const StudyRun& run : runs)
       if (run.is_usable() && std::isfinite(run.errors[std::size_t(m)])) front.push_back(&run);
-    const auto error = [m](const StudyRun* run) { return run->errors[std::size_t(m)]; };
+    const auto error = [&](const StudyRun* run) {
+      return std::max(run->errors[std::size_t(m)], measures[std::size_t(m)].uncertainty);
+    };
     std::stable_sort(front.begin(), front.end(), [&](const StudyRun* a, const StudyRun* b) {
       return a->cost < b->cost || (a->cost == b->cost && error(a) < error(b));
     });
@@ -154,8 +157,9 @@ struct Study {
 
   /// `auto loop = scene(ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-08});  // then loop.step(0.005)`
   std::string line(const StudyRun& run) const {
-    return "auto loop = " + plan.call + "(" + run.code + ");  // then loop.step(" + inner::shortest_text(run.h) + ")";
+    return "auto loop = " + call(run) + ";  // then loop.step(" + inner::shortest_text(run.h) + ")";
   }
+  std::string call(const StudyRun& run) const { return plan.call + "(" + run.code + ")"; }
 };
 
 }  // namespace delassus
