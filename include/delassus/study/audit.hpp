@@ -109,7 +109,7 @@ class Audit {
       use.name = inner::type_text<Law>();
       use.rows = R;
       use.is_contact = ContactLaw<Law>;
-      use.has_friction = use.is_contact && R == 3;
+      use.has_friction = use.is_contact && R >= 3;  // rows n, t₁, t₂, and what a law has beyond
       for (Index k = 0; k < problem.islands.count(); ++k)
         use.work += double(R) * double(problem.islands.items(p, k).size()) * std::max(1, reports[std::size_t(k)].sweeps);
       const auto& rows = problem.rows.template pool<p>();
@@ -118,7 +118,7 @@ class Audit {
         const double w = double(problem.W.template diagonal<p>(i).trace()) / R;
         if constexpr (ContactLaw<Law>) see_contact(use, loop, pool, rows, i, w, threshold);
         else see_joint(use, pool, rows.lambda[i].template cast<double>().norm(), i, w, threshold);
-        if constexpr (ContactLaw<Law> && R == 3) {
+        if constexpr (ContactLaw<Law> && R >= 3) {
           if (i > 0 && pool.item(i).record.pair == pool.item(i - 1).record.pair) continue;  // contacts are sorted by pair
           Index end = i + 1;
           while (end < rows.items() && pool.item(end).record.pair == pool.item(i).record.pair) ++end;
@@ -152,7 +152,7 @@ class Audit {
     bool slips = false;
     for (Index i = begin; i < end; ++i) {
       const auto& item = pool.item(i);
-      const Vec3 tangent = item.frame.template bottomRows<2>().transpose() * rows.lambda[i].template cast<double>().template tail<2>();
+      const Vec3 tangent = item.frame.template bottomRows<2>().transpose() * rows.lambda[i].template cast<double>().template segment<2>(1);
       const Vec3 arm = item.record.point() - centre;
       sum += tangent;
       moment += arm.cross(tangent).dot(item.record.normal);

@@ -29,6 +29,7 @@ std::string type_text() {
   std::string text(all.substr(start, end - start));
   constexpr std::string_view library = "delassus::";
   for (std::size_t at; (at = text.find(library)) != text.npos;) text.erase(at, library.size());
+  for (std::size_t at; (at = text.find("> >")) != text.npos;) text.erase(at + 1, 1);
   return text;
 }
 
