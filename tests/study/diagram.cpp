@@ -118,6 +118,9 @@ TEST_CASE("the code of a policy names what differs from its defaults, as C++ tha
         "AcceleratedGaussSeidel{.tolerance = 1e-08, .max_iterations = 20, .all_verified = true}");
   CHECK(code_of(BasicGaussSeidel<LastChange>{.relaxation = 1.0 / 3}) == "BasicGaussSeidel<LastChange>{.relaxation = 0.3333333333333333}");
   CHECK(code_of(AssembledCompliance{}) == "AssembledCompliance{}");
+  CHECK(inner::step_text(1. / 30) == "1. / 30");
+  CHECK(inner::step_text(1. / 64) == "0.015625");
+  CHECK(inner::step_text(0.1 / 3 * 2.7) == inner::shortest_text(0.1 / 3 * 2.7));
   struct Own {
     std::string code() const { return "Own(7)"; }
   };

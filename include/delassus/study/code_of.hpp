@@ -7,6 +7,7 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdlib>
@@ -47,6 +48,13 @@ inline std::string shortest_text(double value) {
   for (int digits = 1; digits < 17; ++digits)
     if (const std::string text = number_text(value, digits); std::strtod(text.c_str(), nullptr) == value) return text;
   return number_text(value, 17);
+}
+
+/// A step as C++ writes it best: 0.005, but 1. / 30.
+inline std::string step_text(double h) {
+  const std::string text = shortest_text(h);
+  const double rate = std::round(1 / h);
+  return text.size() > 8 && rate > 1 && 1 / rate == h ? "1. / " + number_text(rate, 12) : text;
 }
 
 /// ".name = value" for a number that differs from its default.

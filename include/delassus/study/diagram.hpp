@@ -129,7 +129,7 @@ class Diagram {
   }
 
   std::string hint(const StudyRun& run) const {
-    std::string text = run.code + "\nstep " + shortest_text(run.h) + " s, " + name(run.outcome) + "\n";
+    std::string text = run.code + "\nstep " + step_text(run.h) + " s, " + name(run.outcome) + "\n";
     if (run.is_usable()) text += "error " + with_prefix(error(run), study_.measures[m_].unit) + ", ";
     text += with_prefix(seconds(run), "s") + " per s, " + number_text(run.sweeps / double(std::max(run.steps, 1l)), 3) + " sweeps a step";
     if (run.capped_steps > 0) text += "\n" + std::to_string(run.capped_steps) + " of " + std::to_string(run.steps) + " steps not converged";
@@ -219,7 +219,7 @@ class Diagram {
                                      (measure.uncertainty > 0 ? " ± " + with_prefix(measure.uncertainty, measure.unit) : "") + " for " +
                                      with_prefix(seconds(*chosen_), "s") + " of processor time per simulated second");
     svg_.text(left, bottom + 94, "auto loop = " + study_.call(*chosen_) + ";", "code");
-    svg_.text(left, bottom + 111, "loop.step(" + shortest_text(chosen_->h) + ");", "code");
+    svg_.text(left, bottom + 111, "loop.step(" + step_text(chosen_->h) + ");", "code");
   }
 
   const Study& study_;

@@ -157,7 +157,7 @@ struct Study {
 
   /// `auto loop = scene(ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-08});  // then loop.step(0.005)`
   std::string line(const StudyRun& run) const {
-    return "auto loop = " + call(run) + ";  // then loop.step(" + inner::shortest_text(run.h) + ")";
+    return "auto loop = " + call(run) + ";  // then loop.step(" + inner::step_text(run.h) + ")";
   }
   std::string call(const StudyRun& run) const { return plan.call + "(" + run.code + ")"; }
 };
