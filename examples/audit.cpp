@@ -1,5 +1,5 @@
-// Which effects a run used: a box rests on the ground, and its friction and restitution are paid for all the same.
-// prints: never: friction restitution body
+// Which effects a run used: a box rests on the ground, and its friction and restitution are paid for all the
+// same. prints: never: friction restitution body
 #include <delassus/delassus.hpp>
 #include <delassus/study/audit.hpp>
 
@@ -8,7 +8,8 @@
 using namespace delassus;
 
 int main() {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.5}, 0.3}}}, Audit{}};
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.5}, 0.3}}},
+                     Audit{}};
   auto& rigid = bodies<RigidBodies>(loop.world());
   rigid.add_fixed(HalfSpace{});
   rigid.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});

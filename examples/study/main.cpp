@@ -15,7 +15,8 @@ namespace study_program {
 
 namespace {
 
-constexpr const char* help = R"text(delassus_study [--scene NAME] [--budget E] [--shard I/N] [--out DIR] [--quick] [--quiet]
+constexpr const char* help =
+    R"text(delassus_study [--scene NAME] [--budget E] [--shard I/N] [--out DIR] [--quick] [--quiet]
 
 Runs scenes over integrators, stabilisations, solvers, builders, tolerances and steps; draws error against time; and names
 the cheapest combination that holds an error budget. A run that was interrupted goes on from its log in DIR.
@@ -33,7 +34,10 @@ struct Part {
   const char* name;
   bool (*run)(const Options&);
 };
-constexpr Part parts[] = {{"sliding_box", sliding_box}, {"double_pendulum", double_pendulum}, {"ten_boxes", ten_boxes}, {"heavy_chain", heavy_chain}};
+constexpr Part parts[] = {{"sliding_box", sliding_box},
+                          {"double_pendulum", double_pendulum},
+                          {"ten_boxes", ten_boxes},
+                          {"heavy_chain", heavy_chain}};
 
 bool is_scene(std::string_view name) {
   for (const Part& part : parts)
@@ -44,8 +48,8 @@ bool is_scene(std::string_view name) {
 /// "1/4": two numbers and nothing else.
 bool read_shard(const char* word, Options& options) {
   int read = 0;
-  return std::sscanf(word, "%d/%d%n", &options.shard, &options.shards, &read) == 2 && word[read] == '\0' && options.shard >= 0 &&
-         options.shard < options.shards;
+  return std::sscanf(word, "%d/%d%n", &options.shard, &options.shards, &read) == 2 && word[read] == '\0' &&
+         options.shard >= 0 && options.shard < options.shards;
 }
 
 bool read_budget(const char* word, Options& options) {
@@ -59,14 +63,22 @@ Options read_options(std::span<char*> arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string_view word = arguments[i];
     const bool has_value = i + 1 < arguments.size();
-    if (word == "--quick") options.is_quick = true;
-    else if (word == "--quiet") options.is_quiet = true;
-    else if (word == "--help" || word == "-h") options.wants_help = true;
-    else if (word == "--out" && has_value) options.out = arguments[++i];
-    else if (word == "--scene" && has_value && is_scene(arguments[i + 1])) options.scene = arguments[++i];
-    else if (word == "--budget" && has_value && read_budget(arguments[i + 1], options)) ++i;
-    else if (word == "--shard" && has_value && read_shard(arguments[i + 1], options)) ++i;
-    else options.unknown = word;
+    if (word == "--quick")
+      options.is_quick = true;
+    else if (word == "--quiet")
+      options.is_quiet = true;
+    else if (word == "--help" || word == "-h")
+      options.wants_help = true;
+    else if (word == "--out" && has_value)
+      options.out = arguments[++i];
+    else if (word == "--scene" && has_value && is_scene(arguments[i + 1]))
+      options.scene = arguments[++i];
+    else if (word == "--budget" && has_value && read_budget(arguments[i + 1], options))
+      ++i;
+    else if (word == "--shard" && has_value && read_shard(arguments[i + 1], options))
+      ++i;
+    else
+      options.unknown = word;
   }
   return options;
 }
@@ -79,7 +91,9 @@ int main(int count, char** arguments) {
   const Options options = read_options(std::span(arguments, std::size_t(count)).subspan(1));
   if (options.wants_help) return std::fputs(help, stdout), 0;
   if (!options.unknown.empty()) {
-    std::fprintf(stderr, "delassus_study: '%s' is not an option, or its value is not one; --help lists them.\n", options.unknown.c_str());
+    std::fprintf(stderr,
+                 "delassus_study: '%s' is not an option, or its value is not one; --help lists them.\n",
+                 options.unknown.c_str());
     return 2;
   }
   try {

@@ -22,11 +22,11 @@ struct Options {
   bool is_quick = false, is_quiet = false, wants_help = false;
 };
 
-/// Announces the study, runs it, writes <out>/<file>.svg and .csv, prints the best and what failed, and measures the chosen
-/// run again, alone. False when that run does not hold the budget.
+/// Announces the study, runs it, writes <out>/<file>.svg and .csv, prints the best and what failed, and
+/// measures the chosen run again, alone. False when that run does not hold the budget.
 template <class Scene, class List, class M, class R = References<>>
-bool run_study(const Options& options, const char* file, double usual_budget, const Scene& scene, const List& list, StudyPlan plan,
-               const M& measures, const R& references = {}) {
+bool run_study(const Options& options, const char* file, double usual_budget, const Scene& scene,
+               const List& list, StudyPlan plan, const M& measures, const R& references = {}) {
   const double budget = options.budget > 0 ? options.budget : usual_budget;
   plan.is_quiet = options.is_quiet;
   plan.shard = options.shard;
@@ -34,7 +34,9 @@ bool run_study(const Options& options, const char* file, double usual_budget, co
   plan.max_seconds = 20;
   if (options.is_quick) plan.repeats = 1, plan.steps.resize(2), plan.tolerances.resize(1);
   const std::string base = (std::filesystem::path(options.out) / file).string();
-  plan.log = base + (plan.shards > 1 ? "." + std::to_string(plan.shard) + "of" + std::to_string(plan.shards) : "") + ".log";
+  plan.log = base +
+             (plan.shards > 1 ? "." + std::to_string(plan.shard) + "of" + std::to_string(plan.shards) : "") +
+             ".log";
   if (!options.is_quiet) std::printf("\n%s.\n", announcement(list, plan).c_str());
   std::fflush(stdout);
 
@@ -45,13 +47,15 @@ bool run_study(const Options& options, const char* file, double usual_budget, co
     print(front_table(study));
     if (const Table trouble = trouble_table(study); !trouble.rows.empty()) std::puts(""), print(trouble);
   }
-  std::printf("manifest: %s, key %s, commit %s, %s, %s, %zu runs of %d, %d from the log; no random number is drawn\n", file,
-              StudyLog::key_of(study).c_str(), DELASSUS_STUDY_COMMIT, DELASSUS_STUDY_COMPILER, DELASSUS_STUDY_FLAGS, study.runs.size(),
-              study.run_count(), study.resumed);
+  std::printf(
+      "manifest: %s, key %s, commit %s, %s, %s, %zu runs of %d, %d from the log; no random number is drawn\n",
+      file, StudyLog::key_of(study).c_str(), DELASSUS_STUDY_COMMIT, DELASSUS_STUDY_COMPILER,
+      DELASSUS_STUDY_FLAGS, study.runs.size(), study.run_count(), study.resumed);
 
   const StudyRun* best = study.cheapest(0, budget);
   if (!best) {
-    std::printf("%s: no run is known to hold %s\n", file, inner::with_prefix(budget, study.measures[0].unit).c_str());
+    std::printf("%s: no run is known to hold %s\n", file,
+                inner::with_prefix(budget, study.measures[0].unit).c_str());
     return true;
   }
   StudyPlan again = plan;
@@ -59,7 +63,8 @@ bool run_study(const Options& options, const char* file, double usual_budget, co
   again.log.clear();
   const Study alone = sweep(scene, list, again, measures, references, ThreadClock{});
   const double bound = alone.error_bound(alone.runs[0], 0);
-  std::printf("%s, cheapest within %s (measured again: %s):\n  %s\n", file, inner::with_prefix(budget, study.measures[0].unit).c_str(),
+  std::printf("%s, cheapest within %s (measured again: %s):\n  %s\n", file,
+              inner::with_prefix(budget, study.measures[0].unit).c_str(),
               inner::with_prefix(bound, study.measures[0].unit).c_str(), study.line(*best).c_str());
   return bound <= budget;
 }

@@ -1,4 +1,5 @@
-// A box slides at 5 m/s on a floor with friction 0.3 and stops after 4.247 m: Coulomb's law has the answer at every moment.
+// A box slides at 5 m/s on a floor with friction 0.3 and stops after 4.247 m: Coulomb's law has the answer at
+// every moment.
 #include "scene_study.hpp"
 
 #include <delassus/delassus.hpp>
@@ -19,12 +20,17 @@ bool sliding_box(const Options& options) {
     const double s = std::min(t, v0 / deceleration);
     return v0 * s - 0.5 * deceleration * s * s;
   };
-  return run_study(options, "sliding_box", 1e-3, scene,
-                   Combinations{Choices{SymplecticEuler{}, ImplicitMidpoint{}},
-                                Choices{Baumgarte{}, PositionProjection{}}, Choices{AcceleratedGaussSeidel{}, GaussSeidel{}}},
-                   {.name = "Sliding box", .duration = 2, .steps = {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005},
-                    .tolerances = {1e-2, 1e-4, 1e-8}, .outputs = 10, .repeats = 5},
-                   Measures{Compared{"place", "m", place, exact}, penetration(), solver_residual()});
+  return run_study(
+      options, "sliding_box", 1e-3, scene,
+      Combinations{Choices{SymplecticEuler{}, ImplicitMidpoint{}}, Choices{Baumgarte{}, PositionProjection{}},
+                   Choices{AcceleratedGaussSeidel{}, GaussSeidel{}}},
+      {.name = "Sliding box",
+       .duration = 2,
+       .steps = {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005},
+       .tolerances = {1e-2, 1e-4, 1e-8},
+       .outputs = 10,
+       .repeats = 5},
+      Measures{Compared{"place", "m", place, exact}, penetration(), solver_residual()});
 }
 
 }  // namespace study_program

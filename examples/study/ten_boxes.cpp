@@ -21,10 +21,14 @@ bool ten_boxes(const Options& options) {
                    Combinations{Choices{Baumgarte{}, SoftContact{}, PositionProjection{}},
                                 Choices{AcceleratedGaussSeidel{}, GaussSeidel{}},
                                 Choices{AssembledCompliance{}, MatrixFreeCompliance{}}},
-                   {.name = "Stack of ten boxes", .duration = 1, .steps = {1. / 30, 1. / 60, 1. / 120},
-                    .tolerances = {1e-1, 1e-2, 1e-3, 1e-4, 1e-6}, .outputs = 10, .repeats = 3},
-                   Measures{Compared{"place of the top box", "m", top, [start](double) { return start; }}, penetration(), energy_change(),
-                            solver_residual()});
+                   {.name = "Stack of ten boxes",
+                    .duration = 1,
+                    .steps = {1. / 30, 1. / 60, 1. / 120},
+                    .tolerances = {1e-1, 1e-2, 1e-3, 1e-4, 1e-6},
+                    .outputs = 10,
+                    .repeats = 3},
+                   Measures{Compared{"place of the top box", "m", top, [start](double) { return start; }},
+                            penetration(), energy_change(), solver_residual()});
 }
 
 }  // namespace study_program

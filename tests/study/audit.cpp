@@ -21,7 +21,8 @@ TEST_CASE("an audit finds friction, restitution, a joint and bodies that a scene
   CHECK(report.unused().size() == 5);
   // Two rows of three of every contact are friction's; nothing else has rows but the two joints.
   CHECK(find(report, Effect::friction).work == Approx(2. / 3 * find(report, Effect::contact).work));
-  CHECK(find(report, Effect::contact).work + find(report, Effect::joint, 0).work + find(report, Effect::joint, 1).work ==
+  CHECK(find(report, Effect::contact).work + find(report, Effect::joint, 0).work +
+            find(report, Effect::joint, 1).work ==
         Approx(report.work));
   const Table table = audit_table(report);
   CHECK(table.rows.size() == report.uses.size());
@@ -32,7 +33,8 @@ TEST_CASE("an audit finds nothing in a scene that needs all of its effects") {
   auto loop = loop_with(Restitution{Coulomb{.friction = 0.05}, 0.7});
   auto& rigid = bodies<RigidBodies>(loop.world());
   rigid.add_fixed(HalfSpace{});
-  rigid.add({.position = {0, 0, 1}, .velocity = {3, 0, 0}, .mass = 1.0, .shape = Sphere{0.2}});  // bounces, slips
+  rigid.add(
+      {.position = {0, 0, 1}, .velocity = {3, 0, 0}, .mass = 1.0, .shape = Sphere{0.2}});  // bounces, slips
   const auto bob = rigid.add({.position = {1, 5, 4}, .mass = 1.0, .shape = Sphere{0.1}});
   loop.add(DistanceJoint::Item{.a = anchor(rigid, bob), .b = world_anchor({0, 5, 4}), .length = 1});
   const AuditReport report = audit(run(std::move(loop), 100));

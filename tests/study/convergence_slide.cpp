@@ -20,7 +20,8 @@ double order(const Study& study, int first, int m = 0) {
 
 }  // namespace
 
-TEST_CASE("a sliding box stops where Coulomb says: symplectic Euler in first order, to its discrete closed form") {
+TEST_CASE(
+    "a sliding box stops where Coulomb says: symplectic Euler in first order, to its discrete closed form") {
   const double v0 = 5, mu = 0.3;
   const auto scene = [&](auto... policies) {
     AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = mu}}}, policies...};
@@ -34,13 +35,19 @@ TEST_CASE("a sliding box stops where Coulomb says: symplectic Euler in first ord
     const double end = v0 / (mu * g), s = std::min(t, end);
     return v0 * s - 0.5 * mu * g * s * s;
   };
-  const StudyPlan plan{.name = "sliding box", .duration = 1, .steps = {1. / 50, 1. / 100, 1. / 200}, .tolerances = {1e-10},
-                       .outputs = 5, .repeats = 1, .is_quiet = true};
+  const StudyPlan plan{.name = "sliding box",
+                       .duration = 1,
+                       .steps = {1. / 50, 1. / 100, 1. / 200},
+                       .tolerances = {1e-10},
+                       .outputs = 5,
+                       .repeats = 1,
+                       .is_quiet = true};
   const Study study = sweep(scene, Combinations{Choices{AcceleratedGaussSeidel{}}}, plan,
                             Measures{Compared{"place", "m", place, exact}, penetration()});
   for (const StudyRun& run : study.runs) {
     CHECK(run.outcome == Outcome::sound);
-    // v after n steps is v0 − n μ g h, so x lags by ½ μ g h t. The solve is good to 1e-10 of g h, 1/h times over.
+    // v after n steps is v0 − n μ g h, so x lags by ½ μ g h t. The solve is good to 1e-10 of g h, 1/h times
+    // over.
     CHECK(run.errors[0] == Approx(0.5 * mu * g * run.h).epsilon(1e-6));
     // Nothing pushes the box in but the residual of the solve, 1e-10 of v0, for 1 s.
     CHECK(run.errors[1] < 1e-9 * v0);

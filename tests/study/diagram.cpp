@@ -23,10 +23,19 @@ Study example() {
               .combinations = 2,
               .axes = {{"Euler{}", "Midpoint{}"}, {"Solver{}"}},
               .measures = {{"place", "m", 1e-5}, {"drift", "m", 0}}};
-  const auto add = [&](int combination, double h, Outcome outcome, double cost, double error, long capped = 0) {
-    study.runs.push_back({.number = int(study.runs.size()), .combination = combination,
-                          .code = study.axes[0][std::size_t(combination)] + ", Solver{}", .h = h, .outcome = outcome, .cost = cost,
-                          .least_cost = cost, .sweeps = 40, .steps = 20, .capped_steps = capped, .errors = {error, error / 2}});
+  const auto add = [&](int combination, double h, Outcome outcome, double cost, double error,
+                       long capped = 0) {
+    study.runs.push_back({.number = int(study.runs.size()),
+                          .combination = combination,
+                          .code = study.axes[0][std::size_t(combination)] + ", Solver{}",
+                          .h = h,
+                          .outcome = outcome,
+                          .cost = cost,
+                          .least_cost = cost,
+                          .sweeps = 40,
+                          .steps = 20,
+                          .capped_steps = capped,
+                          .errors = {error, error / 2}});
   };
   add(0, 0.1, Outcome::failed, 1e-3, std::numeric_limits<double>::infinity());
   add(0, 0.01, Outcome::sound, 1e-2, 1e-3);
@@ -60,7 +69,9 @@ TEST_CASE("numbers have the prefixes of the SI where their unit takes them, and 
   CHECK(inner::with_prefix(0, "m") == "0 m");
 }
 
-TEST_CASE("a diagram has a mark for every run: failures crossed, caps hollow, errors below the reference's dimmed") {
+TEST_CASE(
+    "a diagram has a mark for every run: failures crossed, caps hollow, errors below the reference's "
+    "dimmed") {
   const Study study = example();
   const std::string svg = diagram_svg(study, {.budget = 1e-3});
   CHECK(count(svg, "class=\"cross ") == 1);
@@ -86,14 +97,16 @@ TEST_CASE("a diagram has a mark for every run: failures crossed, caps hollow, er
 TEST_CASE("a diagram without a budget, an uncertainty, or any sound run is drawn all the same") {
   Study study = example();
   CHECK(count(diagram_svg(study, {.measure = 1}), "class=\"band\"") == 0);
-  CHECK(diagram_svg(study, {.budget = 1e-6}).find("the reference itself is only sure to 10 µm") != std::string::npos);
+  CHECK(diagram_svg(study, {.budget = 1e-6}).find("the reference itself is only sure to 10 µm") !=
+        std::string::npos);
   study.measures[0].uncertainty = 0;
   CHECK(diagram_svg(study, {.budget = 1e-9}).find("smaller steps or tolerances may") != std::string::npos);
   for (StudyRun& run : study.runs) run.outcome = Outcome::failed;
   const std::string svg = diagram_svg(study, {.budget = 1e-3});
   CHECK(count(svg, "class=\"cross ") == 4);
   CHECK(svg.find("nan") == svg.npos);
-  CHECK_THROWS_WITH(diagram_svg(study, {.measure = 2}), "delassus: diagram of 'A <scene>': there is no measure 2");
+  CHECK_THROWS_WITH(diagram_svg(study, {.measure = 2}),
+                    "delassus: diagram of 'A <scene>': there is no measure 2");
 }
 
 TEST_CASE("the tables hold the front, what did not work, and every run with every digit") {
@@ -112,11 +125,13 @@ TEST_CASE("the tables hold the front, what did not work, and every run with ever
   CHECK(csv_text(all).find("\"Euler{}, Solver{}\",,0.10000000000000001,failed,") != std::string::npos);
 }
 
-TEST_CASE("the code of a policy names what differs from its defaults, as C++ that reads back the same number") {
+TEST_CASE(
+    "the code of a policy names what differs from its defaults, as C++ that reads back the same number") {
   CHECK(code_of(GaussSeidel{}) == "GaussSeidel{}");
   CHECK(code_of(AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 20, .all_verified = true}) ==
         "AcceleratedGaussSeidel{.tolerance = 1e-08, .max_iterations = 20, .all_verified = true}");
-  CHECK(code_of(BasicGaussSeidel<LastChange>{.relaxation = 1.0 / 3}) == "BasicGaussSeidel<LastChange>{.relaxation = 0.3333333333333333}");
+  CHECK(code_of(BasicGaussSeidel<LastChange>{.relaxation = 1.0 / 3}) ==
+        "BasicGaussSeidel<LastChange>{.relaxation = 0.3333333333333333}");
   CHECK(code_of(AssembledCompliance{}) == "AssembledCompliance{}");
   CHECK(inner::step_text(1. / 30) == "1. / 30");
   CHECK(inner::step_text(1. / 64) == "0.015625");

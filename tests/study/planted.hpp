@@ -26,7 +26,8 @@ inline const EffectUse& find(const AuditReport& report, Effect effect, int nth =
 
 template <class Law>
 auto loop_with(Law law) {
-  return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{law}, DistanceJoint{}}, AcceleratedGaussSeidel{.tolerance = 1e-8}, Audit{}};
+  return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{law}, DistanceJoint{}},
+                       AcceleratedGaussSeidel{.tolerance = 1e-8}, Audit{}};
 }
 
 /// Two boxes rest on the floor, a rod between them at its own length; a third body hangs on a rod and swings.

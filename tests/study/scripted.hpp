@@ -18,7 +18,9 @@ using namespace delassus;
 template <int order, int which = 0>
 struct Method {
   double factor = 1, price = 1;
-  std::string code() const { return "Method<" + std::to_string(order) + ", " + std::to_string(which) + ">{}"; }
+  std::string code() const {
+    return "Method<" + std::to_string(order) + ", " + std::to_string(which) + ">{}";
+  }
 };
 /// A "solver" that adds its tolerance to the error and takes a sweep for every decade of it.
 struct Sweeps {
@@ -46,7 +48,8 @@ struct Loop {
     h = by;
     time = ++count * by;
     *clock += price;
-    StepReport report{.sweeps = tolerance > 0 ? int(std::lround(-std::log10(tolerance))) : 1, .max_penetration = 0.25 * by};
+    StepReport report{.sweeps = tolerance > 0 ? int(std::lround(-std::log10(tolerance))) : 1,
+                      .max_penetration = 0.25 * by};
     if (fault == 1 && count % 4 == 0) report.status = Status::max_iterations;
     if (fault == 2 && count == 5) report.status = Status::quarantined;
     return report;

@@ -10,8 +10,14 @@ using namespace scripted;
 namespace {
 
 StudyPlan plan_of(std::vector<double> steps, std::vector<double> tolerances = {}) {
-  return {.name = "scripted", .duration = 1, .steps = std::move(steps), .tolerances = std::move(tolerances), .outputs = 2, .repeats = 3,
-          .max_seconds = 1e6, .is_quiet = true};
+  return {.name = "scripted",
+          .duration = 1,
+          .steps = std::move(steps),
+          .tolerances = std::move(tolerances),
+          .outputs = 2,
+          .repeats = 3,
+          .max_seconds = 1e6,
+          .is_quiet = true};
 }
 const auto compared = [] { return Measures{Compared{"value", "m", value, exact}}; };
 
@@ -59,18 +65,19 @@ TEST_CASE("the cost is the median of the repeats, over whole steps and nothing e
   };
   double time = 0;
   int built = 0;
-  const Study study = sweep(Uneven{&time, &built}, Combinations{Choices{Sound{}}}, plan_of({0.125}), compared(), References{},
-                            ScriptedClock{&time});
+  const Study study = sweep(Uneven{&time, &built}, Combinations{Choices{Sound{}}}, plan_of({0.125}),
+                            compared(), References{}, ScriptedClock{&time});
   CHECK(study.runs[0].cost == 3 * 8);
   CHECK(study.runs[0].least_cost == 1 * 8);
 }
 
 TEST_CASE("the cheapest run within a budget is found, and its line is C++ that makes it") {
   Stage stage;
-  // Second order costs 3 a step: at h = 1/8 its error 1/64 costs 24. First order needs h = 1/64 for that, and costs 64.
+  // Second order costs 3 a step: at h = 1/8 its error 1/64 costs 24. First order needs h = 1/64 for that, and
+  // costs 64.
   const Combinations list{Choices{Method<1>{.price = 1}, Method<2>{.price = 3}}};
-  const Study study =
-      sweep(stage.scene, list, plan_of({1. / 2, 1. / 4, 1. / 8, 1. / 64}), compared(), References{}, stage.clock());
+  const Study study = sweep(stage.scene, list, plan_of({1. / 2, 1. / 4, 1. / 8, 1. / 64}), compared(),
+                            References{}, stage.clock());
   const StudyRun* best = study.cheapest(0, 1. / 64);
   REQUIRE(best);
   CHECK(best->combination == 1);
@@ -91,13 +98,14 @@ TEST_CASE("the cheapest run within a budget is found, and its line is C++ that m
 TEST_CASE("the front holds the runs that no other beats in both cost and error") {
   Study study{.measures = {{"e", "m", 0}}};
   const auto add = [&](double cost, double error, Outcome outcome) {
-    study.runs.push_back({.number = int(study.runs.size()), .outcome = outcome, .cost = cost, .errors = {error}});
+    study.runs.push_back(
+        {.number = int(study.runs.size()), .outcome = outcome, .cost = cost, .errors = {error}});
   };
   add(4, 1e-3, Outcome::sound);
   add(1, 1e-1, Outcome::capped);
-  add(2, 2e-1, Outcome::sound);   // dearer and worse than the one before
-  add(1, 5e-1, Outcome::sound);   // as dear, and worse
-  add(9, 1e-3, Outcome::sound);   // as good, and dearer
+  add(2, 2e-1, Outcome::sound);  // dearer and worse than the one before
+  add(1, 5e-1, Outcome::sound);  // as dear, and worse
+  add(9, 1e-3, Outcome::sound);  // as good, and dearer
   add(0.1, 1e-9, Outcome::failed);
   const auto front = study.front(0);
   REQUIRE(front.size() == 2);
@@ -113,7 +121,8 @@ TEST_CASE("the front holds the runs that no other beats in both cost and error")
 
 TEST_CASE("what fails, is refused or hits its cap stays in the table, and only a cap may be chosen") {
   Stage stage;
-  const Combinations list{Choices{Method<1>{.factor = 0}}, Choices{Caps{}, Blows{}, Vanishes{}, Refuses{}, Sound{}}};
+  const Combinations list{Choices{Method<1>{.factor = 0}},
+                          Choices{Caps{}, Blows{}, Vanishes{}, Refuses{}, Sound{}}};
   const Study study = sweep(stage.scene, list, plan_of({0.125}), compared(), References{}, stage.clock());
   REQUIRE(study.runs.size() == 5);
   CHECK(study.runs[0].outcome == Outcome::capped);
@@ -142,13 +151,17 @@ TEST_CASE("a run that takes longer than its limit is stopped and shown at the li
   CHECK(study.cheapest(0, 1e300)->number == 0);
 }
 
-TEST_CASE("a reference of the scene's own has the difference of two methods as its uncertainty, and no error below it is believed") {
+TEST_CASE(
+    "a reference of the scene's own has the difference of two methods as its uncertainty, and no error below "
+    "it is believed") {
   Stage stage;
   const auto measures = Measures{Compared{"value", "m", value}, penetration()};
-  // At h/4 = 1/64: 2 h² = 2/4096 for the reference, ½ h for the other: they differ by 1/128 − 1/2048 = 15/2048.
+  // At h/4 = 1/64: 2 h² = 2/4096 for the reference, ½ h for the other: they differ by 1/128 − 1/2048 =
+  // 15/2048.
   const References references{refined(4, Method<2>{.factor = 2}), refined(4, Method<1>{.factor = 0.5})};
   const Combinations list{Choices{Method<2>{}, Method<1, 1>{.price = 0.5}}};
-  const Study study = sweep(stage.scene, list, plan_of({1. / 8, 1. / 16}), measures, references, stage.clock());
+  const Study study =
+      sweep(stage.scene, list, plan_of({1. / 8, 1. / 16}), measures, references, stage.clock());
   const double u = 15. / 2048;
   CHECK(study.measures[0].uncertainty == Approx(u).margin(4e-16));
   CHECK(study.measures[1].uncertainty == 0);
@@ -165,7 +178,8 @@ TEST_CASE("a reference of the scene's own has the difference of two methods as i
   CHECK_THROWS_WITH(study.measure("heat"), "delassus: study 'scripted': no measure is named 'heat'");
 }
 
-TEST_CASE("an interrupted study goes on from its log, a damaged line is run again, and another plan starts anew") {
+TEST_CASE(
+    "an interrupted study goes on from its log, a damaged line is run again, and another plan starts anew") {
   Stage stage;
   const Combinations list{Choices{Method<1>{}, Method<2>{}}, Choices{Sound{}, Blows{}}};
   StudyPlan plan = plan_of({0.25, 0.125});
@@ -186,7 +200,8 @@ TEST_CASE("an interrupted study goes on from its log, a damaged line is run agai
   }
   CHECK(known.measures[0].uncertainty == whole.measures[0].uncertainty);
 
-  std::filesystem::resize_file(plan.log, std::filesystem::file_size(plan.log) - 3);  // the write that a crash cut short
+  std::filesystem::resize_file(plan.log,
+                               std::filesystem::file_size(plan.log) - 3);  // the write that a crash cut short
   const Study mended = sweep(stage.scene, list, plan, measures, references, stage.clock());
   CHECK(mended.resumed == 7);
   REQUIRE(mended.runs.size() == 8);
@@ -235,7 +250,8 @@ TEST_CASE("a plan that cannot be run is refused in one sentence") {
     }
     return std::string("accepted");
   };
-  CHECK(refusal(plan_of({0.3})) == "delassus: study 'scripted': step 0.3 s must be > 0 and divide duration/outputs = 0.5 s");
+  CHECK(refusal(plan_of({0.3})) ==
+        "delassus: study 'scripted': step 0.3 s must be > 0 and divide duration/outputs = 0.5 s");
   CHECK(refusal(plan_of({})) == "delassus: study 'scripted': steps is empty; name at least one step size");
   CHECK(refusal(plan_of({0.5}, {-1})) == "delassus: study 'scripted': tolerance -1 must be finite and >= 0");
   StudyPlan plan = plan_of({0.5});

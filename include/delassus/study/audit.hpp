@@ -20,10 +20,12 @@
 
 namespace delassus {
 
-/// List it in a loop, run, and ask `audit(loop)`. It copies the rows of every step: for a run of inquiry, not for every day.
+/// List it in a loop, run, and ask `audit(loop)`. It copies the rows of every step: for a run of inquiry, not
+/// for every day.
 ///
-/// An effect acts where it changes a velocity by more than `least` times the speed of the scene, max |v| + h |g|: an impulse λ
-/// counts as w |λ|, w = tr(W_ii)/rows. Keep `least` above the tolerance of the solver, which leaves that much unsaid.
+/// An effect acts where it changes a velocity by more than `least` times the speed of the scene, max |v| + h
+/// |g|: an impulse λ counts as w |λ|, w = tr(W_ii)/rows. Keep `least` above the tolerance of the solver,
+/// which leaves that much unsaid.
 class Audit {
  public:
   using plays = role::Listener;
@@ -51,7 +53,8 @@ class Audit {
   AuditReport report() const { return inner::audit_report(seen_); }
 
  private:
-  /// Bodies may come while the loop runs: one that was not there at the start is followed from its first step on.
+  /// Bodies may come while the loop runs: one that was not there at the start is followed from its first step
+  /// on.
   void see_bodies(const auto& world) {
     const auto box = bounds(world);
     size_ = box.isEmpty() ? 0 : box.diagonal().norm();
@@ -67,14 +70,16 @@ class Audit {
         while (at < seen_.bodies.size() && (seen_.bodies[at].set != s || seen_.bodies[at].block != b)) ++at;
         if (at == seen_.bodies.size()) {
           const Pose pose = set.pose(b);
-          seen_.bodies.push_back({.name = set.who(b), .set = s, .block = b, .start = pose, .end = pose, .has_moved = false});
+          seen_.bodies.push_back(
+              {.name = set.who(b), .set = s, .block = b, .start = pose, .end = pose, .has_moved = false});
         }
         f(at, set, b);
       }
     });
   }
 
-  /// A body has moved when it is further from its start than `least` times the scene is wide, or has turned by as much, rad.
+  /// A body has moved when it is further from its start than `least` times the scene is wide, or has turned
+  /// by as much, rad.
   void see_motion(const auto& world) {
     each_body(world, [&](std::size_t at, const auto& set, Index b) {
       inner::BodyUse& body = seen_.bodies[at];
@@ -89,7 +94,8 @@ class Audit {
     double speed = 0, fall = 0;
     loop.world().each([&](const auto& set, auto) {
       if constexpr (requires { set.gravity; }) fall = std::max(fall, loop.step_size() * set.gravity.norm());
-      for (const Index b : alive(set)) speed = std::max(speed, double(set.velocity()[b].template head<3>().norm()));
+      for (const Index b : alive(set))
+        speed = std::max(speed, double(set.velocity()[b].template head<3>().norm()));
     });
     return speed + fall;
   }
@@ -111,15 +117,19 @@ class Audit {
       use.is_contact = ContactLaw<Law>;
       use.has_friction = use.is_contact && R >= 3;  // rows n, t₁, t₂, and what a law has beyond
       for (Index k = 0; k < problem.islands.count(); ++k)
-        use.work += double(R) * double(problem.islands.items(p, k).size()) * std::max(1, reports[std::size_t(k)].sweeps);
+        use.work += double(R) * double(problem.islands.items(p, k).size()) *
+                    std::max(1, reports[std::size_t(k)].sweeps);
       const auto& rows = problem.rows.template pool<p>();
       use.items += rows.items();
       for (Index i = 0; i < rows.items(); ++i) {
         const double w = double(problem.W.template diagonal<p>(i).trace()) / R;
-        if constexpr (ContactLaw<Law>) see_contact(use, loop, pool, rows, i, w, threshold);
-        else see_joint(use, pool, rows.lambda[i].template cast<double>().norm(), i, w, threshold);
+        if constexpr (ContactLaw<Law>)
+          see_contact(use, loop, pool, rows, i, w, threshold);
+        else
+          see_joint(use, pool, rows.lambda[i].template cast<double>().norm(), i, w, threshold);
         if constexpr (ContactLaw<Law> && R >= 3) {
-          if (i > 0 && pool.item(i).record.pair == pool.item(i - 1).record.pair) continue;  // contacts are sorted by pair
+          if (i > 0 && pool.item(i).record.pair == pool.item(i - 1).record.pair)
+            continue;  // contacts are sorted by pair
           Index end = i + 1;
           while (end < rows.items() && pool.item(end).record.pair == pool.item(i).record.pair) ++end;
           see_friction(use, pool, rows, i, end, w, threshold);
@@ -129,8 +139,8 @@ class Audit {
   }
 
   template <class Loop, class P, class Rows>
-  static void see_contact(inner::PoolUse& use, const Loop& loop, const P& pool, const Rows& rows, Index i, double w,
-                          double threshold) {
+  static void see_contact(inner::PoolUse& use, const Loop& loop, const P& pool, const Rows& rows, Index i,
+                          double w, double threshold) {
     const double normal = double(rows.lambda[i][0]);
     if (w * normal > threshold) ++use.acted;
     if constexpr (requires { pool.law.restitution(pool.item(i)); }) {
@@ -142,22 +152,26 @@ class Audit {
     }
   }
 
-  /// The contacts i … end of one pair of bodies. Friction impulses in a patch may press against each other and move nobody:
-  /// what counts is their sum Σ λ_t, and their moment about the normal over the radius of the patch.
+  /// The contacts i … end of one pair of bodies. Friction impulses in a patch may press against each other
+  /// and move nobody: what counts is their sum Σ λ_t, and their moment about the normal over the radius of
+  /// the patch.
   template <class P, class Rows>
-  static void see_friction(inner::PoolUse& use, const P& pool, const Rows& rows, Index begin, Index end, double w, double threshold) {
+  static void see_friction(inner::PoolUse& use, const P& pool, const Rows& rows, Index begin, Index end,
+                           double w, double threshold) {
     Vec3 centre = Vec3::Zero(), sum = Vec3::Zero();
     for (Index i = begin; i < end; ++i) centre += pool.item(i).record.point() / double(end - begin);
     double moment = 0, radius = 0;
     bool slips = false;
     for (Index i = begin; i < end; ++i) {
       const auto& item = pool.item(i);
-      const Vec3 tangent = item.frame.template bottomRows<2>().transpose() * rows.lambda[i].template cast<double>().template segment<2>(1);
+      const Vec3 tangent = item.frame.template bottomRows<2>().transpose() *
+                           rows.lambda[i].template cast<double>().template segment<2>(1);
       const Vec3 arm = item.record.point() - centre;
       sum += tangent;
       moment += arm.cross(tangent).dot(item.record.normal);
       radius = std::max(radius, arm.norm());
-      if constexpr (requires { pool.law.is_sliding(item, rows.lambda[i]); }) slips = slips || pool.law.is_sliding(item, rows.lambda[i]);
+      if constexpr (requires { pool.law.is_sliding(item, rows.lambda[i]); })
+        slips = slips || pool.law.is_sliding(item, rows.lambda[i]);
     }
     const bool is_felt = w * std::max(sum.norm(), radius > 0 ? std::abs(moment) / radius : 0) > threshold;
     if (is_felt) use.held += end - begin;
@@ -165,7 +179,8 @@ class Audit {
   }
 
   template <class P>
-  static void see_joint(inner::PoolUse& use, const P& pool, double lambda, Index i, double w, double threshold) {
+  static void see_joint(inner::PoolUse& use, const P& pool, double lambda, Index i, double w,
+                        double threshold) {
     const std::size_t place = std::size_t(pool.slots.active()[std::size_t(i)]);
     if (use.loaded.size() <= place) use.loaded.resize(place + 1, 0), use.seen.resize(place + 1, 0);
     ++use.seen[place];
@@ -182,8 +197,9 @@ class Audit {
 /// What the Audit{} in the list of a loop has seen so far.
 template <class Loop>
 AuditReport audit(const Loop& loop) {
-  static_assert(requires { loop.template get<Audit>(); },
-                "delassus: audit(loop) asks the listener Audit{}; add it to the arguments of this AnimationLoop");
+  static_assert(
+      requires { loop.template get<Audit>(); },
+      "delassus: audit(loop) asks the listener Audit{}; add it to the arguments of this AnimationLoop");
   return loop.template get<Audit>().report();
 }
 

@@ -24,31 +24,39 @@ enum class Verdict : std::uint8_t {
 
 constexpr const char* name(Effect effect) {
   switch (effect) {
-    case Effect::contact: return "contact";
-    case Effect::friction: return "friction";
-    case Effect::restitution: return "restitution";
-    case Effect::joint: return "joint";
-    case Effect::body: return "body";
+    case Effect::contact:
+      return "contact";
+    case Effect::friction:
+      return "friction";
+    case Effect::restitution:
+      return "restitution";
+    case Effect::joint:
+      return "joint";
+    case Effect::body:
+      return "body";
   }
   return "unknown";
 }
 constexpr const char* name(Verdict verdict) {
   switch (verdict) {
-    case Verdict::acted: return "acted";
-    case Verdict::held: return "held, never slipped";
-    case Verdict::never: return "never";
+    case Verdict::acted:
+      return "acted";
+    case Verdict::held:
+      return "held, never slipped";
+    case Verdict::never:
+      return "never";
   }
   return "unknown";
 }
 
 struct EffectUse {
   Effect effect;
-  std::string name;       ///< of the law, or the body
-  int place = -1;         ///< of a joint in its pool
+  std::string name;  ///< of the law, or the body
+  int place = -1;    ///< of a joint in its pool
   Verdict verdict = Verdict::never;
-  long acted = 0;         ///< constraints × steps in which it acted
-  long present = 0;       ///< constraints × steps in which it was there
-  double work = 0;        ///< Σ rows × sweeps that it took
+  long acted = 0;    ///< constraints × steps in which it acted
+  long present = 0;  ///< constraints × steps in which it was there
+  double work = 0;   ///< Σ rows × sweeps that it took
 };
 
 /// Where a body was at the end, to compare two runs.
@@ -80,29 +88,34 @@ struct Without {
   double difference = 0;  ///< largest distance of a body's place at the end, m, of bodies in both runs
 };
 
-/// `rerun()` makes the same scene without an effect, steps it as often, and returns the loop; an Audit{} is in its list.
+/// `rerun()` makes the same scene without an effect, steps it as often, and returns the loop; an Audit{} is
+/// in its list.
 template <class F>
 Without without(const AuditReport& with, F&& rerun) {
   const AuditReport bare = audit(rerun());
-  DELASSUS_EXPECT(bare.steps == with.steps, "without: the second run took " + std::to_string(bare.steps) + " steps, the first " +
-                                                std::to_string(with.steps) + "; they must be as many");
+  DELASSUS_EXPECT(bare.steps == with.steps, "without: the second run took " + std::to_string(bare.steps) +
+                                                " steps, the first " + std::to_string(with.steps) +
+                                                "; they must be as many");
   Without out{.saving = with.work > 0 ? 1 - bare.work / with.work : 0, .difference = 0};
   for (const AuditedBody& a : with.bodies)
     for (const AuditedBody& b : bare.bodies)
-      if (a.set == b.set && a.block == b.block) out.difference = std::max(out.difference, (a.position - b.position).norm());
+      if (a.set == b.set && a.block == b.block)
+        out.difference = std::max(out.difference, (a.position - b.position).norm());
   return out;
 }
 
 /// One row an effect; what never acted first.
 inline Table audit_table(const AuditReport& report) {
   Table table{.title = "Effects of a run of " + std::to_string(report.steps) + " steps",
-              .caption = "Share: of rows × sweeps, what would go with the effect. Restitution and bodies have no rows of their own.",
+              .caption =
+                  "Share: of rows × sweeps, what would go with the effect. Restitution and bodies have no "
+                  "rows of their own.",
               .columns = {"effect", "of", "verdict", "acted", "present", "share of work (%)"}};
   for (const bool is_first : {true, false})
     for (const EffectUse& use : report.uses) {
       if ((use.verdict == Verdict::never) != is_first) continue;
-      table.add({name(use.effect), use.place >= 0 ? use.name + " #" + std::to_string(use.place) : use.name, name(use.verdict), use.acted,
-                 use.present, Cell(100 * report.predicted_saving(use), 3)});
+      table.add({name(use.effect), use.place >= 0 ? use.name + " #" + std::to_string(use.place) : use.name,
+                 name(use.verdict), use.acted, use.present, Cell(100 * report.predicted_saving(use), 3)});
     }
   return table;
 }
@@ -135,18 +148,23 @@ inline Verdict verdict_of(long acted) { return acted > 0 ? Verdict::acted : Verd
 inline void append_contact(std::vector<EffectUse>& uses, const PoolUse& pool) {
   uses.push_back({Effect::contact, pool.name, -1, verdict_of(pool.acted), pool.acted, pool.items, pool.work});
   if (pool.has_friction) {
-    const Verdict verdict = pool.slipped > 0 ? Verdict::acted : pool.held > 0 ? Verdict::held : Verdict::never;
-    uses.push_back({Effect::friction, pool.name, -1, verdict, pool.held, pool.items, pool.work * (pool.rows - 1) / pool.rows});
+    const Verdict verdict = pool.slipped > 0 ? Verdict::acted
+                            : pool.held > 0  ? Verdict::held
+                                             : Verdict::never;
+    uses.push_back({Effect::friction, pool.name, -1, verdict, pool.held, pool.items,
+                    pool.work * (pool.rows - 1) / pool.rows});
   }
   if (pool.has_restitution)
-    uses.push_back({Effect::restitution, pool.name, -1, verdict_of(pool.bounced), pool.bounced, pool.items, 0});
+    uses.push_back(
+        {Effect::restitution, pool.name, -1, verdict_of(pool.bounced), pool.bounced, pool.items, 0});
 }
 
 /// A joint's share of its pool's work is that of its steps.
 inline void append_joints(std::vector<EffectUse>& uses, const PoolUse& pool) {
   for (std::size_t place = 0; place < pool.seen.size(); ++place)
     if (pool.seen[place] > 0)
-      uses.push_back({Effect::joint, pool.name, int(place), verdict_of(pool.loaded[place]), pool.loaded[place], pool.seen[place],
+      uses.push_back({Effect::joint, pool.name, int(place), verdict_of(pool.loaded[place]),
+                      pool.loaded[place], pool.seen[place],
                       pool.work * double(pool.seen[place]) / double(pool.items)});
 }
 
@@ -154,8 +172,10 @@ inline AuditReport audit_report(const AuditSeen& seen) {
   AuditReport report{.steps = seen.steps};
   for (const PoolUse& pool : seen.pools) {
     report.work += pool.work;
-    if (pool.is_contact) append_contact(report.uses, pool);
-    else append_joints(report.uses, pool);
+    if (pool.is_contact)
+      append_contact(report.uses, pool);
+    else
+      append_joints(report.uses, pool);
   }
   for (const BodyUse& body : seen.bodies) {
     report.uses.push_back({Effect::body, body.name, -1, verdict_of(body.has_moved), body.has_moved, 1, 0});

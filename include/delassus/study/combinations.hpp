@@ -10,7 +10,8 @@
 
 namespace delassus {
 
-/// One axis: `Choices{SymplecticEuler{}, ImplicitMidpoint{}}`. Each is a type of its own, so each is compiled.
+/// One axis: `Choices{SymplecticEuler{}, ImplicitMidpoint{}}`. Each is a type of its own, so each is
+/// compiled.
 template <class... P>
 struct Choices {
   static constexpr int count = int(sizeof...(P));
@@ -21,13 +22,14 @@ struct Choices {
 template <class... P>
 Choices(P...) -> Choices<P...>;
 
-/// `Combinations{Choices{...}, Choices{...}}`: the product of the axes, the last axis varying first. `count` loops are
-/// compiled, each about as long as a small program of its own.
+/// `Combinations{Choices{...}, Choices{...}}`: the product of the axes, the last axis varying first. `count`
+/// loops are compiled, each about as long as a small program of its own.
 template <class... Axes>
 class Combinations {
  public:
   static constexpr int count = (1 * ... * Axes::count);
-  static_assert(((Axes::count > 0) && ...), "delassus: every Choices{...} of a study needs at least one policy");
+  static_assert(((Axes::count > 0) && ...),
+                "delassus: every Choices{...} of a study needs at least one policy");
 
   explicit Combinations(Axes... axes) : axes_(std::move(axes)...) {}
 

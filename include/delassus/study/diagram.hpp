@@ -16,15 +16,15 @@ namespace delassus {
 
 struct DiagramOptions {
   int measure = 0;
-  double budget = 0;       ///< drawn, with the cheapest run that holds it, where > 0
-  int colour_axis = -1;    ///< axis of the combinations that colours tell apart; -1: the first with a choice
-  int marker_axis = -1;    ///< and the one that marks tell apart; -1: the next
+  double budget = 0;     ///< drawn, with the cheapest run that holds it, where > 0
+  int colour_axis = -1;  ///< axis of the combinations that colours tell apart; -1: the first with a choice
+  int marker_axis = -1;  ///< and the one that marks tell apart; -1: the next
 };
 
 namespace inner {
 
-/// The colours are those of Okabe and Ito, which people who do not tell red from green apart do tell apart; on a dark page
-/// the same hues, lighter.
+/// The colours are those of Okabe and Ito, which people who do not tell red from green apart do tell apart;
+/// on a dark page the same hues, lighter.
 inline constexpr std::string_view diagram_style = R"css(
 svg{font:13px system-ui,sans-serif;background:#fff}
 text{fill:#1f2328}.small{font-size:12px;fill:#59636e}.title{font-size:18px;font-weight:600}.code{font:12px ui-monospace,monospace}
@@ -43,13 +43,17 @@ text{fill:#1f2328}.small{font-size:12px;fill:#59636e}.title{font-size:18px;font-
 /// One diagram while it is drawn.
 class Diagram {
  public:
-  Diagram(const Study& study, const DiagramOptions& options) : study_(study), options_(options), m_(std::size_t(options.measure)) {
-    DELASSUS_EXPECT(options.measure >= 0 && m_ < study.measures.size(),
-                    "diagram of '" + study.plan.name + "': there is no measure " + std::to_string(options.measure));
+  Diagram(const Study& study, const DiagramOptions& options)
+      : study_(study), options_(options), m_(std::size_t(options.measure)) {
+    DELASSUS_EXPECT(
+        options.measure >= 0 && m_ < study.measures.size(),
+        "diagram of '" + study.plan.name + "': there is no measure " + std::to_string(options.measure));
     for (int a = 0; a < int(study.axes.size()); ++a)
       if (study.axes[std::size_t(a)].size() > 1) {
-        if (options_.colour_axis < 0) options_.colour_axis = a;
-        else if (options_.marker_axis < 0 && a != options_.colour_axis) options_.marker_axis = a;
+        if (options_.colour_axis < 0)
+          options_.colour_axis = a;
+        else if (options_.marker_axis < 0 && a != options_.colour_axis)
+          options_.marker_axis = a;
       }
     chosen_ = options.budget > 0 ? study.cheapest(options.measure, options.budget) : nullptr;
     find_ranges();
@@ -59,23 +63,28 @@ class Diagram {
     const StudyMeasure& measure = study_.measures[m_];
     svg_.rectangle(0, 0, width, height, "page");
     svg_.text(left, 30, study_.plan.name + ": what accuracy costs", "title");
-    svg_.text(left, 50, "Each mark is one run of " + shortest_text(study_.plan.duration) +
-                            " s. Lower is more accurate, further left is cheaper. The line joins the best.", "small");
+    svg_.text(left, 50,
+              "Each mark is one run of " + shortest_text(study_.plan.duration) +
+                  " s. Lower is more accurate, further left is cheaper. The line joins the best.",
+              "small");
     draw_axes(measure);
     if (measure.uncertainty > 0) draw_uncertainty(measure.uncertainty);
     if (options_.budget > 0) draw_budget(measure);
     draw_runs();
     draw_front();
     if (measure.uncertainty > 0)
-      svg_.text(right - 8, bottom - 7, "errors in here are not believed: the reference is not this sure", "small halo", "end");
+      svg_.text(right - 8, bottom - 7, "errors in here are not believed: the reference is not this sure",
+                "small halo", "end");
     draw_legend();
     draw_choice(measure);
     return svg_.text_of(study_.plan.name + ": error in " + measure.name + " against processor time",
-                        "A log-log diagram of " + std::to_string(study_.runs.size()) + " runs.", diagram_style);
+                        "A log-log diagram of " + std::to_string(study_.runs.size()) + " runs.",
+                        diagram_style);
   }
 
  private:
-  static constexpr double width = 960, height = 640, left = 100, top = 92, plot_width = 590, plot_height = 430;
+  static constexpr double width = 960, height = 640, left = 100, top = 92, plot_width = 590,
+                          plot_height = 430;
   static constexpr double bottom = top + plot_height, right = left + plot_width;
 
   double seconds(const StudyRun& run) const { return run.cost / study_.plan.duration; }
@@ -131,8 +140,11 @@ class Diagram {
   std::string hint(const StudyRun& run) const {
     std::string text = run.code + "\nstep " + step_text(run.h) + " s, " + name(run.outcome) + "\n";
     if (run.is_usable()) text += "error " + with_prefix(error(run), study_.measures[m_].unit) + ", ";
-    text += with_prefix(seconds(run), "s") + " per s, " + number_text(run.sweeps / double(std::max(run.steps, 1l)), 3) + " sweeps a step";
-    if (run.capped_steps > 0) text += "\n" + std::to_string(run.capped_steps) + " of " + std::to_string(run.steps) + " steps not converged";
+    text += with_prefix(seconds(run), "s") + " per s, " +
+            number_text(run.sweeps / double(std::max(run.steps, 1l)), 3) + " sweeps a step";
+    if (run.capped_steps > 0)
+      text += "\n" + std::to_string(run.capped_steps) + " of " + std::to_string(run.steps) +
+              " steps not converged";
     return text;
   }
 
@@ -155,8 +167,11 @@ class Diagram {
       if (!study_.is_believed(run, options_.measure) && study_.measures[m_].uncertainty > 0) cls += " dim";
       svg_.marker(shape, x, y_.at(error(run)), 3.6, cls, hint(run));
     }
-    const auto lost = std::count_if(study_.runs.begin(), study_.runs.end(), [](const auto& run) { return !run.is_usable(); });
-    if (lost > 0) svg_.text(right + 8, top - 10, "× " + std::to_string(lost) + (lost == 1 ? " run" : " runs") + " failed or too slow");
+    const auto lost = std::count_if(study_.runs.begin(), study_.runs.end(),
+                                    [](const auto& run) { return !run.is_usable(); });
+    if (lost > 0)
+      svg_.text(right + 8, top - 10,
+                "× " + std::to_string(lost) + (lost == 1 ? " run" : " runs") + " failed or too slow");
   }
 
   /// Down and to the right from one best run to the next: nothing lies below or left of it.
@@ -168,7 +183,8 @@ class Diagram {
       points.push_back({x, y});
     }
     if (points.size() > 1) svg_.polyline(points, "front");
-    if (chosen_) svg_.marker(0, x_.at(seconds(*chosen_)), y_.at(error(*chosen_)), 9, "chosen", hint(*chosen_));
+    if (chosen_)
+      svg_.marker(0, x_.at(seconds(*chosen_)), y_.at(error(*chosen_)), 9, "chosen", hint(*chosen_));
   }
 
   /// `AcceleratedGaussSeidel{}` needs no braces to be recognised.
@@ -180,7 +196,8 @@ class Diagram {
   void draw_legend() {
     double y = top + 150;
     // Out of the way of the budget's own words.
-    if (options_.budget > 0 && y_.at(options_.budget) > y - 24) y = std::min(y_.at(options_.budget) + 34, bottom - 200);
+    if (options_.budget > 0 && y_.at(options_.budget) > y - 24)
+      y = std::min(y_.at(options_.budget) + 34, bottom - 200);
     if (options_.budget > 0 && std::abs(y_.at(options_.budget) - y) < 24) y = top + 40;
     const double x = right + 20;
     const auto entries = [&](int axis, bool is_colour) {
@@ -194,7 +211,8 @@ class Diagram {
     };
     entries(options_.colour_axis, true);
     entries(options_.marker_axis, false);
-    const bool is_any_capped = std::any_of(study_.runs.begin(), study_.runs.end(), [](const auto& r) { return r.outcome == Outcome::capped; });
+    const bool is_any_capped = std::any_of(study_.runs.begin(), study_.runs.end(),
+                                           [](const auto& r) { return r.outcome == Outcome::capped; });
     if (is_any_capped) {
       svg_.marker(0, x, y - 4, 4.5, "run ink hollow");
       svg_.text(x + 14, y, "some steps not converged");
@@ -210,14 +228,18 @@ class Diagram {
     if (!(options_.budget > 0)) return;
     const std::string budget = with_prefix(options_.budget, measure.unit);
     if (!chosen_) {
-      svg_.text(left, bottom + 76, "No run is known to hold " + budget + (measure.uncertainty >= options_.budget
-                    ? ": the reference itself is only sure to " + with_prefix(measure.uncertainty, measure.unit) + "."
-                    : "; smaller steps or tolerances may."));
+      svg_.text(left, bottom + 76,
+                "No run is known to hold " + budget +
+                    (measure.uncertainty >= options_.budget
+                         ? ": the reference itself is only sure to " +
+                               with_prefix(measure.uncertainty, measure.unit) + "."
+                         : "; smaller steps or tolerances may."));
       return;
     }
-    svg_.text(left, bottom + 72, "Cheapest within " + budget + ": error " + with_prefix(error(*chosen_), measure.unit) +
-                                     (measure.uncertainty > 0 ? " ± " + with_prefix(measure.uncertainty, measure.unit) : "") + " for " +
-                                     with_prefix(seconds(*chosen_), "s") + " of processor time per simulated second");
+    svg_.text(left, bottom + 72,
+              "Cheapest within " + budget + ": error " + with_prefix(error(*chosen_), measure.unit) +
+                  (measure.uncertainty > 0 ? " ± " + with_prefix(measure.uncertainty, measure.unit) : "") +
+                  " for " + with_prefix(seconds(*chosen_), "s") + " of processor time per simulated second");
     svg_.text(left, bottom + 94, "auto loop = " + study_.call(*chosen_) + ";", "code");
     svg_.text(left, bottom + 111, "loop.step(" + step_text(chosen_->h) + ");", "code");
   }
@@ -233,7 +255,9 @@ class Diagram {
 }  // namespace inner
 
 /// The diagram as SVG text, for light and dark pages. Throws InvalidArgument when there is no such measure.
-inline std::string diagram_svg(const Study& study, const DiagramOptions& options = {}) { return inner::Diagram(study, options).text(); }
+inline std::string diagram_svg(const Study& study, const DiagramOptions& options = {}) {
+  return inner::Diagram(study, options).text();
+}
 
 /// Throws InvalidArgument naming `path` when it cannot be written.
 inline void write_diagram(const std::string& path, const Study& study, const DiagramOptions& options = {}) {

@@ -18,7 +18,8 @@
 
 namespace delassus {
 
-/// What one measure saw in one run: `width` numbers at the start and at every output, and the worst of the steps.
+/// What one measure saw in one run: `width` numbers at the start and at every output, and the worst of the
+/// steps.
 struct Observation {
   std::size_t width = 0;
   std::vector<double> values;
@@ -27,7 +28,8 @@ struct Observation {
 
 namespace inner {
 
-/// The larger one, and infinity once something is not a number: an error never becomes smaller by not being one.
+/// The larger one, and infinity once something is not a number: an error never becomes smaller by not being
+/// one.
 inline double larger(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<double>::infinity();
   return std::max(a, b);
@@ -54,7 +56,8 @@ void observe(Observation& seen, const X& look) {
 /// The largest distance(own, theirs, width) over the outputs; infinite where one of the two has fewer.
 template <class Distance>
 double largest_distance(const Observation& own, const Observation& other, const Distance& distance) {
-  if (own.width != other.width || own.values.size() != other.values.size()) return std::numeric_limits<double>::infinity();
+  if (own.width != other.width || own.values.size() != other.values.size())
+    return std::numeric_limits<double>::infinity();
   double largest = 0;
   for (std::size_t k = 0; k + own.width <= own.values.size() && own.width > 0; k += own.width)
     largest = larger(largest, distance(&own.values[k], &other.values[k], own.width));
@@ -74,7 +77,8 @@ struct Distance {
   }
 };
 
-/// The angle between two orientations, rad: 4 asin(½ min|p ∓ q|), accurate where 2 acos(p·q) loses half the digits.
+/// The angle between two orientations, rad: 4 asin(½ min|p ∓ q|), accurate where 2 acos(p·q) loses half the
+/// digits.
 struct AngleBetween {
   double operator()(const double* p, const double* q, std::size_t) const {
     const auto length = [&](double sign) {
@@ -86,8 +90,8 @@ struct AngleBetween {
   }
 };
 
-/// The largest distance at the outputs between look(loop) and a reference: `exact(t)` where it is given, else the runs that
-/// the study's `References` name. `look` and `exact` return a number, a vector, or a Quat.
+/// The largest distance at the outputs between look(loop) and a reference: `exact(t)` where it is given, else
+/// the runs that the study's `References` name. `look` and `exact` return a number, a vector, or a Quat.
 template <class Look, class Exact = inner::NoExact, class Between = Distance>
 struct Compared {
   static constexpr bool has_exact = !std::is_same_v<Exact, inner::NoExact>;
@@ -98,7 +102,11 @@ struct Compared {
   Between between;
 
   Compared(std::string what, std::string in, Look look_at, Exact truth = {}, Between distance = {})
-      : name(std::move(what)), unit(std::move(in)), look(std::move(look_at)), exact(std::move(truth)), between(std::move(distance)) {}
+      : name(std::move(what)),
+        unit(std::move(in)),
+        look(std::move(look_at)),
+        exact(std::move(truth)),
+        between(std::move(distance)) {}
 
   void begin(const auto& loop, Observation& seen) const { inner::observe(seen, look(loop)); }
   void output(const auto& loop, Observation& seen) const { inner::observe(seen, look(loop)); }
@@ -132,7 +140,8 @@ struct Kept {
   void step(const StepReport&, Observation&) const {}
   double error(const Observation& own, const Observation&) const {
     Observation start{.width = own.width, .values = {}, .worst = 0};
-    for (std::size_t k = 0; own.width > 0 && k < own.values.size(); ++k) start.values.push_back(own.values[k % own.width]);
+    for (std::size_t k = 0; own.width > 0 && k < own.values.size(); ++k)
+      start.values.push_back(own.values[k % own.width]);
     return inner::largest_distance(own, start, Distance{});
   }
 };
@@ -148,7 +157,9 @@ struct Worst {
 
   void begin(const auto&, Observation&) const {}
   void output(const auto&, Observation&) const {}
-  void step(const StepReport& report, Observation& seen) const { seen.worst = inner::larger(seen.worst, std::abs(look(report))); }
+  void step(const StepReport& report, Observation& seen) const {
+    seen.worst = inner::larger(seen.worst, std::abs(look(report)));
+  }
   double error(const Observation& own, const Observation&) const { return own.worst; }
 };
 template <class Look>
@@ -165,11 +176,12 @@ inline auto solver_residual() {
 }
 /// The change of kinetic and potential energy of all bodies.
 inline auto energy_change() {
-  return Kept{"energy change", "J", [](const auto& loop) {
-                double sum = 0;
-                loop.world().each([&](const auto& set, auto) { sum += kinetic_energy(set) + potential_energy(set); });
-                return sum;
-              }};
+  return Kept{
+      "energy change", "J", [](const auto& loop) {
+        double sum = 0;
+        loop.world().each([&](const auto& set, auto) { sum += kinetic_energy(set) + potential_energy(set); });
+        return sum;
+      }};
 }
 /// The change of linear momentum: of a scene that nothing outside acts on.
 inline auto momentum_change() {

@@ -22,17 +22,16 @@ Refined<P...> refined(int refinement, P... policies) {
   return {refinement, {std::move(policies)...}};
 }
 
-/// The first run is the reference; the largest distance to the others is its uncertainty. Take another integrator for
-/// them: one method at two steps agrees with itself where both are wrong. A method of first order may be refined more.
+/// The first run is the reference; the largest distance to the others is its uncertainty. Take another
+/// integrator for them: one method at two steps agrees with itself where both are wrong. A method of first
+/// order may be refined more.
 template <class... R>
 struct References {
   static constexpr int count = int(sizeof...(R));
   std::tuple<R...> runs;
 
   References() = default;
-  explicit References(R... r)
-    requires(sizeof...(R) > 0)
-      : runs(std::move(r)...) {}
+  explicit References(R... r) requires(sizeof...(R) > 0) : runs(std::move(r)...) {}
 };
 template <class... R>
 References(R...) -> References<R...>;

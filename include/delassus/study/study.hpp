@@ -16,37 +16,40 @@ namespace delassus {
 
 /// The run-time side of a study. Runs are numbered: combinations, within them tolerances, within them steps.
 struct StudyPlan {
-  std::string name;                    ///< of the scene, for titles
-  std::string call = "scene";          ///< how the user's program calls the scene, for the C++ line
-  double duration = 1;                 ///< s, simulated
-  std::vector<double> steps{};         ///< h, s; each divides duration/outputs
-  std::vector<double> tolerances{};    ///< of the solver; none: as the policies say
-  int outputs = 10;                    ///< moments at which a run is compared, evenly spaced, the end included
-  int repeats = 3;                     ///< timed runs; the cost is their median
-  double max_seconds = 60;             ///< of cost, a run: a longer one is stopped and shown as such
-  std::string log{};                   ///< file that keeps each finished run; a study that was interrupted goes on from it
-  int shard = 0, shards = 1;           ///< only runs whose number is `shard` modulo `shards`
-  int only = -1;                       ///< only the run of this number
-  bool is_quiet = false;               ///< no progress line
+  std::string name;                  ///< of the scene, for titles
+  std::string call = "scene";        ///< how the user's program calls the scene, for the C++ line
+  double duration = 1;               ///< s, simulated
+  std::vector<double> steps{};       ///< h, s; each divides duration/outputs
+  std::vector<double> tolerances{};  ///< of the solver; none: as the policies say
+  int outputs = 10;                  ///< moments at which a run is compared, evenly spaced, the end included
+  int repeats = 3;                   ///< timed runs; the cost is their median
+  double max_seconds = 60;           ///< of cost, a run: a longer one is stopped and shown as such
+  std::string log{};  ///< file that keeps each finished run; a study that was interrupted goes on from it
+  int shard = 0, shards = 1;  ///< only runs whose number is `shard` modulo `shards`
+  int only = -1;              ///< only the run of this number
+  bool is_quiet = false;      ///< no progress line
 
   void check() const {
     DELASSUS_EXPECT(std::isfinite(duration) && duration > 0,
                     "study '" + name + "': duration " + inner::text(duration) + " must be finite and > 0 s");
     DELASSUS_EXPECT(outputs > 0, "study '" + name + "': outputs " + std::to_string(outputs) + " must be > 0");
     DELASSUS_EXPECT(repeats > 0, "study '" + name + "': repeats " + std::to_string(repeats) + " must be > 0");
-    DELASSUS_EXPECT(shards > 0 && shard >= 0 && shard < shards, "study '" + name + "': shard " + std::to_string(shard) +
-                                                                    " must be one of 0 … " + std::to_string(shards - 1));
+    DELASSUS_EXPECT(shards > 0 && shard >= 0 && shard < shards,
+                    "study '" + name + "': shard " + std::to_string(shard) + " must be one of 0 … " +
+                        std::to_string(shards - 1));
     DELASSUS_EXPECT(!steps.empty(), "study '" + name + "': steps is empty; name at least one step size");
     for (const double h : steps) steps_between_outputs(h);
     for (const double t : tolerances)
-      DELASSUS_EXPECT(t >= 0 && std::isfinite(t), "study '" + name + "': tolerance " + inner::text(t) + " must be finite and >= 0");
+      DELASSUS_EXPECT(t >= 0 && std::isfinite(t),
+                      "study '" + name + "': tolerance " + inner::text(t) + " must be finite and >= 0");
   }
   /// Whole steps from one output to the next.
   long steps_between_outputs(double h) const {
     const double count = duration / outputs / h;
     DELASSUS_EXPECT(h > 0 && std::isfinite(h) && std::abs(count - std::round(count)) < 1e-6 && count > 0.5,
-                    "study '" + name + "': step " + inner::text(h) + " s must be > 0 and divide duration/outputs = " +
-                        inner::text(duration / outputs) + " s");
+                    "study '" + name + "': step " + inner::text(h) +
+                        " s must be > 0 and divide duration/outputs = " + inner::text(duration / outputs) +
+                        " s");
     return std::lround(count);
   }
   bool wants(int run) const { return only >= 0 ? run == only : run % shards == shard; }
@@ -61,10 +64,14 @@ enum class Outcome : std::uint8_t {
 
 constexpr const char* name(Outcome outcome) {
   switch (outcome) {
-    case Outcome::sound: return "sound";
-    case Outcome::capped: return "capped";
-    case Outcome::failed: return "failed";
-    case Outcome::too_slow: return "too slow";
+    case Outcome::sound:
+      return "sound";
+    case Outcome::capped:
+      return "capped";
+    case Outcome::failed:
+      return "failed";
+    case Outcome::too_slow:
+      return "too slow";
   }
   return "unknown";
 }
@@ -73,15 +80,15 @@ constexpr const char* name(Outcome outcome) {
 struct StudyRun {
   int number = -1;
   int combination = -1;
-  std::string code;         ///< its policies as C++
-  double tolerance = -1;    ///< of the solver; -1 where the plan names none
-  double h = 0;             ///< s
+  std::string code;       ///< its policies as C++
+  double tolerance = -1;  ///< of the solver; -1 where the plan names none
+  double h = 0;           ///< s
   Outcome outcome = Outcome::failed;
-  double cost = 0;          ///< s, median of the repeats, all steps, without set-up
-  double least_cost = 0;    ///< s, the smallest of the repeats
-  double sweeps = 0;        ///< of all steps: the count that no machine changes
+  double cost = 0;        ///< s, median of the repeats, all steps, without set-up
+  double least_cost = 0;  ///< s, the smallest of the repeats
+  double sweeps = 0;      ///< of all steps: the count that no machine changes
   long steps = 0;
-  long capped_steps = 0;    ///< that did not converge
+  long capped_steps = 0;       ///< that did not converge
   std::vector<double> errors;  ///< by measure
 
   bool is_usable() const { return outcome == Outcome::sound || outcome == Outcome::capped; }
@@ -111,7 +118,9 @@ struct Study {
     inner::refuse("study '" + plan.name + "': no measure is named '" + std::string(wanted) + "'");
   }
   /// An error below the uncertainty of its reference is not known to be that small.
-  bool is_believed(const StudyRun& run, int m) const { return run.errors[std::size_t(m)] > measures[std::size_t(m)].uncertainty; }
+  bool is_believed(const StudyRun& run, int m) const {
+    return run.errors[std::size_t(m)] > measures[std::size_t(m)].uncertainty;
+  }
   /// The most the true error can be.
   double error_bound(const StudyRun& run, int m) const {
     return run.errors[std::size_t(m)] + measures[std::size_t(m)].uncertainty;
@@ -124,8 +133,8 @@ struct Study {
     return at;
   }
 
-  /// The cheapest run whose error bound in measure m is within `budget`; null where there is none. Of two that cost the same
-  /// the more accurate, then the first.
+  /// The cheapest run whose error bound in measure m is within `budget`; null where there is none. Of two
+  /// that cost the same the more accurate, then the first.
   const StudyRun* cheapest(int m, double budget) const {
     const StudyRun* best = nullptr;
     for (const StudyRun& run : runs) {
@@ -136,8 +145,8 @@ struct Study {
     }
     return best;
   }
-  /// Runs that no other run beats in both cost and error, cheapest first. Errors below the uncertainty of the reference are
-  /// all alike, so at most one of them is in it.
+  /// Runs that no other run beats in both cost and error, cheapest first. Errors below the uncertainty of the
+  /// reference are all alike, so at most one of them is in it.
   std::vector<const StudyRun*> front(int m) const {
     std::vector<const StudyRun*> front;
     for (const StudyRun& run : runs)

@@ -16,8 +16,8 @@
 
 namespace delassus {
 
-/// One line a run, fields separated by tabs, every digit kept. Lines of other plans, other policies or a write that was cut
-/// short are passed over. Files of shards may be joined end to end.
+/// One line a run, fields separated by tabs, every digit kept. Lines of other plans, other policies or a
+/// write that was cut short are passed over. Files of shards may be joined end to end.
 class StudyLog {
  public:
   /// Reads what `path` holds of this study; an empty path keeps nothing.
@@ -38,18 +38,22 @@ class StudyLog {
   const std::optional<std::vector<double>>& uncertainties() const { return uncertainties_; }
 
   void keep(const StudyRun& run) {
-    std::string line = key_ + "\trun\t" + std::to_string(run.number) + "\t" + std::to_string(run.combination) + "\t" + run.code;
-    for (const double x : {run.tolerance, run.h, double(run.outcome), run.cost, run.least_cost, run.sweeps, double(run.steps),
-                           double(run.capped_steps)})
+    std::string line = key_ + "\trun\t" + std::to_string(run.number) + "\t" +
+                       std::to_string(run.combination) + "\t" + run.code;
+    for (const double x : {run.tolerance, run.h, double(run.outcome), run.cost, run.least_cost, run.sweeps,
+                           double(run.steps), double(run.capped_steps)})
       line += "\t" + inner::number_text(x, 17);
     append(line, run.errors);
   }
-  void keep_uncertainties(const std::vector<double>& uncertainties) { append(key_ + "\treference", uncertainties); }
+  void keep_uncertainties(const std::vector<double>& uncertainties) {
+    append(key_ + "\treference", uncertainties);
+  }
 
   /// A number for all that must agree before two runs can stand in one table.
   static std::string key_of(const Study& study) {
     const StudyPlan& plan = study.plan;
-    std::string text = plan.name + "|" + inner::number_text(plan.duration, 17) + "|" + std::to_string(plan.outputs);
+    std::string text =
+        plan.name + "|" + inner::number_text(plan.duration, 17) + "|" + std::to_string(plan.outputs);
     for (const double h : plan.steps) text += "|h" + inner::number_text(h, 17);
     for (const double t : plan.tolerances) text += "|t" + inner::number_text(t, 17);
     for (const StudyMeasure& m : study.measures) text += "|" + m.name + "," + m.unit;
@@ -68,10 +72,12 @@ class StudyLog {
     if (std::exchange(ends_midway_, false)) line.insert(0, "\n");
     for (const double x : values) line += "\t" + inner::number_text(x, 17);
     std::FILE* file = std::fopen(path_.c_str(), "ab");
-    DELASSUS_EXPECT(file != nullptr, "cannot open the study's log '" + path_ + "' for writing; does its folder exist?");
+    DELASSUS_EXPECT(file != nullptr,
+                    "cannot open the study's log '" + path_ + "' for writing; does its folder exist?");
     const bool is_written = std::fputs((line + "\n").c_str(), file) >= 0;
     const bool is_closed = std::fclose(file) == 0;
-    DELASSUS_EXPECT(is_written && is_closed, "cannot write all of the study's log '" + path_ + "'; is the disk full?");
+    DELASSUS_EXPECT(is_written && is_closed,
+                    "cannot write all of the study's log '" + path_ + "'; is the disk full?");
   }
 
   void read(const std::string& line, std::size_t measures) {
@@ -85,9 +91,18 @@ class StudyLog {
       for (std::size_t k = 2; k < fields.size(); ++k) uncertainties_->push_back(number(k));
     }
     if (fields[1] != "run" || fields.size() != 13 + measures) return;
-    StudyRun run{.number = int(number(2)), .combination = int(number(3)), .code = fields[4], .tolerance = number(5),
-                 .h = number(6), .outcome = Outcome(int(number(7))), .cost = number(8), .least_cost = number(9),
-                 .sweeps = number(10), .steps = long(number(11)), .capped_steps = long(number(12)), .errors = {}};
+    StudyRun run{.number = int(number(2)),
+                 .combination = int(number(3)),
+                 .code = fields[4],
+                 .tolerance = number(5),
+                 .h = number(6),
+                 .outcome = Outcome(int(number(7))),
+                 .cost = number(8),
+                 .least_cost = number(9),
+                 .sweeps = number(10),
+                 .steps = long(number(11)),
+                 .capped_steps = long(number(12)),
+                 .errors = {}};
     for (std::size_t k = 13; k < fields.size(); ++k) run.errors.push_back(number(k));
     runs_.push_back(std::move(run));
   }

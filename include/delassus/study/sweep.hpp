@@ -26,8 +26,8 @@
 
 namespace delassus {
 
-/// Processor time of this process, all its threads together. Where other threads work too, take `ThreadClock` of
-/// adapters/posix.hpp.
+/// Processor time of this process, all its threads together. Where other threads work too, take `ThreadClock`
+/// of adapters/posix.hpp.
 struct ProcessorClock {
   double now() const { return double(std::clock()) / CLOCKS_PER_SEC; }
 };
@@ -53,8 +53,8 @@ struct Trace {
 
 /// One run with every measure looking on; stops where the scene is lost or the time is up.
 template <class Loop, class... M, class C>
-Trace<sizeof...(M)> trace(Loop& loop, const Measures<M...>& measures, long between, int outputs, double h, double max_seconds,
-                          const C& clock) {
+Trace<sizeof...(M)> trace(Loop& loop, const Measures<M...>& measures, long between, int outputs, double h,
+                          double max_seconds, const C& clock) {
   Trace<sizeof...(M)> t;
   const double start = clock.now();
   measures.each([&](const auto& m, std::size_t k) { m.begin(loop, t.seen[k]); });
@@ -76,11 +76,13 @@ Trace<sizeof...(M)> trace(Loop& loop, const Measures<M...>& measures, long betwe
 
 /// What the exact functions say at the outputs; empty where a measure has none.
 template <class... M>
-std::array<Observation, sizeof...(M)> exact_observations(const Measures<M...>& measures, const StudyPlan& plan) {
+std::array<Observation, sizeof...(M)> exact_observations(const Measures<M...>& measures,
+                                                         const StudyPlan& plan) {
   std::array<Observation, sizeof...(M)> exact{};
   measures.each([&](const auto& m, std::size_t k) {
     if constexpr (std::remove_cvref_t<decltype(m)>::has_exact)
-      for (int output = 0; output <= plan.outputs; ++output) observe(exact[k], m.exact(plan.duration * output / plan.outputs));
+      for (int output = 0; output <= plan.outputs; ++output)
+        observe(exact[k], m.exact(plan.duration * output / plan.outputs));
   });
   return exact;
 }
@@ -95,7 +97,8 @@ inline double median(std::vector<double> values) {
 template <class Scene, class List, class M, class R, class C>
 class Sweeper {
  public:
-  Sweeper(const Scene& scene, const List& list, const StudyPlan& plan, const M& measures, const R& references, const C& clock)
+  Sweeper(const Scene& scene, const List& list, const StudyPlan& plan, const M& measures, const R& references,
+          const C& clock)
       : scene_(scene), list_(list), measures_(measures), references_(references), clock_(clock) {
     plan.check();
     study_.plan = plan;
@@ -104,20 +107,25 @@ class Sweeper {
     measures.each([&](const auto& m, std::size_t) { study_.measures.push_back({m.name, m.unit}); });
     tolerances_ = plan.tolerances.empty() ? std::vector<double>{-1} : plan.tolerances;
     if (plan.only >= 0)
-      DELASSUS_EXPECT(plan.only < study_.run_count(), "study '" + plan.name + "': there is no run " + std::to_string(plan.only) +
-                                                          " among " + std::to_string(study_.run_count()));
+      DELASSUS_EXPECT(plan.only < study_.run_count(), "study '" + plan.name + "': there is no run " +
+                                                          std::to_string(plan.only) + " among " +
+                                                          std::to_string(study_.run_count()));
   }
 
   Study run() {
     log_ = std::make_unique<StudyLog>(study_.plan.log, study_);
     if (!study_.plan.is_quiet) progress_ = std::make_unique<Progress>(study_.plan.name);
-    if (log_->uncertainties()) keep(*log_->uncertainties());
-    else find_reference();
+    if (log_->uncertainties())
+      keep(*log_->uncertainties());
+    else
+      find_reference();
     list_.each([&](int combination, const auto&... policies) {
       for (std::size_t t = 0; t < tolerances_.size(); ++t)
         for (std::size_t s = 0; s < study_.plan.steps.size(); ++s) {
-          const int number = int((std::size_t(combination) * tolerances_.size() + t) * study_.plan.steps.size() + s);
-          visit(number, combination, tolerances_[t], study_.plan.steps[s], with_tolerance(policies, tolerances_[t])...);
+          const int number =
+              int((std::size_t(combination) * tolerances_.size() + t) * study_.plan.steps.size() + s);
+          visit(number, combination, tolerances_[t], study_.plan.steps[s],
+                with_tolerance(policies, tolerances_[t])...);
         }
     });
     return std::move(study_);
@@ -137,7 +145,12 @@ class Sweeper {
       ++study_.resumed;
     } else {
       if (!has_reference_) find_reference();
-      StudyRun run{.number = number, .combination = combination, .code = std::move(code), .tolerance = tolerance, .h = h, .errors = {}};
+      StudyRun run{.number = number,
+                   .combination = combination,
+                   .code = std::move(code),
+                   .tolerance = tolerance,
+                   .h = h,
+                   .errors = {}};
       run.errors.assign(measure_count, std::numeric_limits<double>::infinity());
       try {
         measure(run, policies...);
@@ -165,8 +178,10 @@ class Sweeper {
         run.errors[k] = m.error(seen.seen[k], reference_[k]);
         is_finite = is_finite && std::isfinite(run.errors[k]);
       });
-    run.outcome = !is_finite ? Outcome::failed : seen.is_too_slow ? Outcome::too_slow
-                  : run.capped_steps > 0 ? Outcome::capped : Outcome::sound;
+    run.outcome = !is_finite             ? Outcome::failed
+                  : seen.is_too_slow     ? Outcome::too_slow
+                  : run.capped_steps > 0 ? Outcome::capped
+                                         : Outcome::sound;
     run.cost = run.least_cost = plan.max_seconds;
     if (run.outcome == Outcome::too_slow) return;
     std::vector<double> costs;
@@ -175,7 +190,8 @@ class Sweeper {
     run.least_cost = *std::min_element(costs.begin(), costs.end());
   }
 
-  /// The steps of one run by the clock: as many as were measured, so a lost run costs what it took to get lost.
+  /// The steps of one run by the clock: as many as were measured, so a lost run costs what it took to get
+  /// lost.
   template <class... P>
   double time_of(const StudyRun& run, const P&... policies) const {
     auto loop = scene_(policies...);
@@ -190,16 +206,20 @@ class Sweeper {
     std::vector<double> uncertainties(measure_count, 0);
     if constexpr (M::needs_reference) {
       static_assert(R::count >= 2,
-                    "delassus: a measure without exact(t) needs References{refined(...), refined(...)} of two integrators");
+                    "delassus: a measure without exact(t) needs References{refined(...), refined(...)} of "
+                    "two integrators");
       const double finest = *std::min_element(study_.plan.steps.begin(), study_.plan.steps.end());
       bool is_first = true;
       const auto one = [&](const auto& refined) {
-        const Seen seen = std::apply([&](const auto&... policy) { return observe_fine(refined.refinement, finest, policy...); },
-                                     refined.policies);
+        const Seen seen = std::apply(
+            [&](const auto&... policy) { return observe_fine(refined.refinement, finest, policy...); },
+            refined.policies);
         measures_.each([&](const auto& m, std::size_t k) {
           if constexpr (std::remove_cvref_t<decltype(m)>::needs_reference) {
-            if (is_first) reference_[k] = seen[k];
-            else uncertainties[k] = larger(uncertainties[k], m.error(seen[k], reference_[k]));
+            if (is_first)
+              reference_[k] = seen[k];
+            else
+              uncertainties[k] = larger(uncertainties[k], m.error(seen[k], reference_[k]));
           }
         });
         is_first = false;
@@ -217,7 +237,8 @@ class Sweeper {
     const long between = study_.plan.steps_between_outputs(finest) * refinement;
     const auto seen = trace(loop, measures_, between, study_.plan.outputs, finest / refinement,
                             std::numeric_limits<double>::infinity(), clock_);
-    DELASSUS_EXPECT(!seen.is_lost, "study '" + study_.plan.name + "': a reference run became non-finite; refine it more");
+    DELASSUS_EXPECT(!seen.is_lost,
+                    "study '" + study_.plan.name + "': a reference run became non-finite; refine it more");
     return seen.seen;
   }
 
@@ -233,32 +254,38 @@ class Sweeper {
   Study study_;
   std::vector<double> tolerances_;
   Seen reference_{};
-  bool has_reference_ = false;  ///< its uncertainty may come from the log; the reference itself is made when a run needs it
+  bool has_reference_ =
+      false;  ///< its uncertainty may come from the log; the reference itself is made when a run needs it
   std::unique_ptr<StudyLog> log_;
   std::unique_ptr<Progress> progress_;
 };
 
 }  // namespace inner
 
-/// Runs scene(policies...), which returns a loop ready to step, for every combination of `list` at every tolerance and step
-/// of `plan`. Every run is measured once, then timed `plan.repeats` times by `clock`, whole steps alone. What fails, is
-/// refused, or takes too long stays in the result with its outcome. Throws InvalidArgument for a plan that cannot be run.
+/// Runs scene(policies...), which returns a loop ready to step, for every combination of `list` at every
+/// tolerance and step of `plan`. Every run is measured once, then timed `plan.repeats` times by `clock`,
+/// whole steps alone. What fails, is refused, or takes too long stays in the result with its outcome. Throws
+/// InvalidArgument for a plan that cannot be run.
 template <class Scene, class... Axes, class... M, class R = References<>, Clock C = ProcessorClock>
-Study sweep(const Scene& scene, const Combinations<Axes...>& list, const StudyPlan& plan, const Measures<M...>& measures,
-            const R& references = {}, const C& clock = {}) {
-  return inner::Sweeper<Scene, Combinations<Axes...>, Measures<M...>, R, C>(scene, list, plan, measures, references, clock).run();
+Study sweep(const Scene& scene, const Combinations<Axes...>& list, const StudyPlan& plan,
+            const Measures<M...>& measures, const R& references = {}, const C& clock = {}) {
+  return inner::Sweeper<Scene, Combinations<Axes...>, Measures<M...>, R, C>(scene, list, plan, measures,
+                                                                            references, clock)
+      .run();
 }
 
-/// "36 combinations × 3 tolerances × 4 steps = 432 runs, each measured once and timed 3 times": said before a study starts.
+/// "36 combinations × 3 tolerances × 4 steps = 432 runs, each measured once and timed 3 times": said before a
+/// study starts.
 template <class... Axes>
 std::string announcement(const Combinations<Axes...>&, const StudyPlan& plan) {
   const std::size_t tolerances = std::max<std::size_t>(plan.tolerances.size(), 1);
   const std::size_t runs = std::size_t(Combinations<Axes...>::count) * tolerances * plan.steps.size();
-  std::string text = plan.name + ": " + std::to_string(Combinations<Axes...>::count) + " combinations × " + std::to_string(tolerances) +
-                     " tolerances × " + std::to_string(plan.steps.size()) + " steps = " + std::to_string(runs) + " runs";
+  std::string text = plan.name + ": " + std::to_string(Combinations<Axes...>::count) + " combinations × " +
+                     std::to_string(tolerances) + " tolerances × " + std::to_string(plan.steps.size()) +
+                     " steps = " + std::to_string(runs) + " runs";
   if (plan.shards > 1)
-    text += ", of which shard " + std::to_string(plan.shard) + "/" + std::to_string(plan.shards) + " does every " +
-            std::to_string(plan.shards) + "th";
+    text += ", of which shard " + std::to_string(plan.shard) + "/" + std::to_string(plan.shards) +
+            " does every " + std::to_string(plan.shards) + "th";
   return text + ", each measured once and timed " + std::to_string(plan.repeats) + " times";
 }
 

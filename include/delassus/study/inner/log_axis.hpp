@@ -12,7 +12,8 @@
 
 namespace delassus::inner {
 
-/// [low, high], both > 0, widened to a tenth of a decade on each side and to one decade at least, on [start, end] px.
+/// [low, high], both > 0, widened to a tenth of a decade on each side and to one decade at least, on [start,
+/// end] px.
 class LogAxis {
  public:
   LogAxis() = default;
@@ -58,7 +59,8 @@ inline std::string with_prefix(double value, std::string_view unit) {
   static constexpr const char* prefixes[] = {"f", "p", "n", "µ", "m", ""};
   const int third = int(std::floor(exponent / 3.0));
   const bool takes_prefix = unit == "m" || unit == "s" || unit == "J" || unit == "N" || unit == "rad";
-  if (takes_prefix && third >= -5 && third < 0) return number_text(value * std::pow(10.0, -3 * third), 3) + " " + prefixes[third + 5] + std::string(unit);
+  if (takes_prefix && third >= -5 && third < 0)
+    return number_text(value * std::pow(10.0, -3 * third), 3) + " " + prefixes[third + 5] + std::string(unit);
   if (exponent >= -3 && exponent < 5) return number_text(rounded, 5) + in;
   const double mantissa = rounded / std::pow(10.0, exponent);
   return (std::abs(mantissa - 1) < 1e-9 ? "" : number_text(mantissa, 3) + "·") + power_of_ten(exponent) + in;
