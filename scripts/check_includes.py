@@ -11,7 +11,7 @@ from pathlib import Path
 
 LEVELS = {
     "core": 0, "math": 1, "geometry": 2, "linear": 2, "rows": 2, "bodies": 3, "integrators": 4, "constraints": 4,
-    "stabilisation": 4, "collision": 5, "compliance": 5, "solvers": 5, "loop": 6, "listeners": 7, "study": 8, "io": 8,
+    "stabilisation": 4, "collision": 5, "compliance": 5, "solvers": 5, "loop": 6, "listeners": 7, "io": 8, "study": 9,
     "adapters": 9,
 }
 # Files that name every part, up to the listeners: what a new part may edit.

@@ -1,0 +1,39 @@
+/// What a study compares its runs with: the scene itself, at finer steps, more than once.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+
+#include <tuple>
+#include <utility>
+
+namespace delassus {
+
+/// The scene with these policies at 1/refinement of the plan's smallest step.
+template <class... P>
+struct Refined {
+  int refinement;
+  std::tuple<P...> policies;
+};
+
+/// `refined(10, ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-12})`.
+template <class... P>
+Refined<P...> refined(int refinement, P... policies) {
+  DELASSUS_EXPECT(refinement >= 1, "refined: the refinement of a reference must be >= 1");
+  return {refinement, {std::move(policies)...}};
+}
+
+/// The first run is the reference; the largest distance to the others is its uncertainty. Take another
+/// integrator for them: one method at two steps agrees with itself where both are wrong. A method of first
+/// order may be refined more.
+template <class... R>
+struct References {
+  static constexpr int count = int(sizeof...(R));
+  std::tuple<R...> runs;
+
+  References() = default;
+  explicit References(R... r) requires(sizeof...(R) > 0) : runs(std::move(r)...) {}
+};
+template <class... R>
+References(R...) -> References<R...>;
+
+}  // namespace delassus

@@ -1,0 +1,174 @@
+/// What a study is asked, what it found, and the choice of the cheapest run that is accurate enough.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/study/code_of.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace delassus {
+
+/// The run-time side of a study. Runs are numbered: combinations, within them tolerances, within them steps.
+struct StudyPlan {
+  std::string name;                  ///< of the scene, for titles
+  std::string call = "scene";        ///< how the user's program calls the scene, for the C++ line
+  double duration = 1;               ///< s, simulated
+  std::vector<double> steps{};       ///< h, s; each divides duration/outputs
+  std::vector<double> tolerances{};  ///< of the solver; none: as the policies say
+  int outputs = 10;                  ///< moments at which a run is compared, evenly spaced, the end included
+  int repeats = 3;                   ///< timed runs; the cost is their median
+  double max_seconds = 60;           ///< of cost, a run: a longer one is stopped and shown as such
+  std::string log{};  ///< file that keeps each finished run; a study that was interrupted goes on from it
+  int shard = 0, shards = 1;  ///< only runs whose number is `shard` modulo `shards`
+  int only = -1;              ///< only the run of this number
+  bool is_quiet = false;      ///< no progress line
+
+  void check() const {
+    DELASSUS_EXPECT(std::isfinite(duration) && duration > 0,
+                    "study '" + name + "': duration " + inner::text(duration) + " must be finite and > 0 s");
+    DELASSUS_EXPECT(outputs > 0, "study '" + name + "': outputs " + std::to_string(outputs) + " must be > 0");
+    DELASSUS_EXPECT(repeats > 0, "study '" + name + "': repeats " + std::to_string(repeats) + " must be > 0");
+    DELASSUS_EXPECT(shards > 0 && shard >= 0 && shard < shards,
+                    "study '" + name + "': shard " + std::to_string(shard) + " must be one of 0 … " +
+                        std::to_string(shards - 1));
+    DELASSUS_EXPECT(!steps.empty(), "study '" + name + "': steps is empty; name at least one step size");
+    for (const double h : steps) steps_between_outputs(h);
+    for (const double t : tolerances)
+      DELASSUS_EXPECT(t >= 0 && std::isfinite(t),
+                      "study '" + name + "': tolerance " + inner::text(t) + " must be finite and >= 0");
+  }
+  /// Whole steps from one output to the next.
+  long steps_between_outputs(double h) const {
+    const double count = duration / outputs / h;
+    DELASSUS_EXPECT(h > 0 && std::isfinite(h) && std::abs(count - std::round(count)) < 1e-6 && count > 0.5,
+                    "study '" + name + "': step " + inner::text(h) +
+                        " s must be > 0 and divide duration/outputs = " + inner::text(duration / outputs) +
+                        " s");
+    return std::lround(count);
+  }
+  bool wants(int run) const { return only >= 0 ? run == only : run % shards == shard; }
+};
+
+enum class Outcome : std::uint8_t {
+  sound,     ///< every step converged
+  capped,    ///< finite, but some steps ran out of sweeps
+  failed,    ///< not finite, quarantined, or refused by the scene
+  too_slow,  ///< stopped at max_seconds
+};
+
+constexpr const char* name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::sound:
+      return "sound";
+    case Outcome::capped:
+      return "capped";
+    case Outcome::failed:
+      return "failed";
+    case Outcome::too_slow:
+      return "too slow";
+  }
+  return "unknown";
+}
+
+/// One combination at one tolerance and one step size.
+struct StudyRun {
+  int number = -1;
+  int combination = -1;
+  std::string code;       ///< its policies as C++
+  double tolerance = -1;  ///< of the solver; -1 where the plan names none
+  double h = 0;           ///< s
+  Outcome outcome = Outcome::failed;
+  double cost = 0;        ///< s, median of the repeats, all steps, without set-up
+  double least_cost = 0;  ///< s, the smallest of the repeats
+  double sweeps = 0;      ///< of all steps: the count that no machine changes
+  long steps = 0;
+  long capped_steps = 0;       ///< that did not converge
+  std::vector<double> errors;  ///< by measure
+
+  bool is_usable() const { return outcome == Outcome::sound || outcome == Outcome::capped; }
+};
+
+/// A measure and what is known of its reference.
+struct StudyMeasure {
+  std::string name, unit;
+  double uncertainty = 0;  ///< of the reference; 0 where it is exact or none is needed
+};
+
+struct Study {
+  StudyPlan plan;
+  int combinations = 0;
+  std::vector<std::vector<std::string>> axes;  ///< the C++ text of each choice
+  std::vector<StudyMeasure> measures;
+  std::vector<StudyRun> runs;  ///< in the order of their numbers
+  int resumed = 0;             ///< of them, read from the log
+
+  int run_count() const {
+    return combinations * int(plan.steps.size()) * int(plan.tolerances.empty() ? 1 : plan.tolerances.size());
+  }
+  /// The number of a measure by name.
+  int measure(std::string_view wanted) const {
+    for (std::size_t k = 0; k < measures.size(); ++k)
+      if (measures[k].name == wanted) return int(k);
+    inner::refuse("study '" + plan.name + "': no measure is named '" + std::string(wanted) + "'");
+  }
+  /// An error below the uncertainty of its reference is not known to be that small.
+  bool is_believed(const StudyRun& run, int m) const {
+    return run.errors[std::size_t(m)] > measures[std::size_t(m)].uncertainty;
+  }
+  /// The most the true error can be.
+  double error_bound(const StudyRun& run, int m) const {
+    return run.errors[std::size_t(m)] + measures[std::size_t(m)].uncertainty;
+  }
+  /// Which value of each axis a combination has; the last axis varies first.
+  std::vector<int> choices(int combination) const {
+    std::vector<int> at(axes.size());
+    for (std::size_t a = axes.size(); a-- > 0; combination /= int(axes[a].size()))
+      at[a] = combination % int(axes[a].size());
+    return at;
+  }
+
+  /// The cheapest run whose error bound in measure m is within `budget`; null where there is none. Of two
+  /// that cost the same the more accurate, then the first.
+  const StudyRun* cheapest(int m, double budget) const {
+    const StudyRun* best = nullptr;
+    for (const StudyRun& run : runs) {
+      if (!run.is_usable() || !(error_bound(run, m) <= budget)) continue;
+      if (!best || run.cost < best->cost ||
+          (run.cost == best->cost && error_bound(run, m) < error_bound(*best, m)))
+        best = &run;
+    }
+    return best;
+  }
+  /// Runs that no other run beats in both cost and error, cheapest first. Errors below the uncertainty of the
+  /// reference are all alike, so at most one of them is in it.
+  std::vector<const StudyRun*> front(int m) const {
+    std::vector<const StudyRun*> front;
+    for (const StudyRun& run : runs)
+      if (run.is_usable() && std::isfinite(run.errors[std::size_t(m)])) front.push_back(&run);
+    const auto error = [&](const StudyRun* run) {
+      return std::max(run->errors[std::size_t(m)], measures[std::size_t(m)].uncertainty);
+    };
+    std::stable_sort(front.begin(), front.end(), [&](const StudyRun* a, const StudyRun* b) {
+      return a->cost < b->cost || (a->cost == b->cost && error(a) < error(b));
+    });
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < front.size(); ++k)
+      if (kept == 0 || error(front[k]) < error(front[kept - 1])) front[kept++] = front[k];
+    front.resize(kept);
+    return front;
+  }
+
+  /// `auto loop = scene(ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-08});  // then loop.step(0.005)`
+  std::string line(const StudyRun& run) const {
+    return "auto loop = " + call(run) + ";  // then loop.step(" + inner::step_text(run.h) + ")";
+  }
+  std::string call(const StudyRun& run) const { return plan.call + "(" + run.code + ")"; }
+};
+
+}  // namespace delassus
