@@ -18,7 +18,10 @@
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/constraints/joints/cylindrical.hpp>
 #include <delassus/constraints/joints/distance_joint.hpp>
+#include <delassus/constraints/joints/drive.hpp>
 #include <delassus/constraints/joints/hinge.hpp>
+#include <delassus/constraints/joints/limit.hpp>
+#include <delassus/constraints/joints/motor.hpp>
 #include <delassus/constraints/joints/planar.hpp>
 #include <delassus/constraints/joints/point_on_line.hpp>
 #include <delassus/constraints/joints/slider.hpp>

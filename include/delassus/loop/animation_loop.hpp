@@ -60,6 +60,13 @@ class AnimationLoop {
     forget_rows();
   }
 
+  /// What a constraint was added with: its numbers may be changed at any time, its anchors may not.
+  template <class Law>
+  auto& item(ConstraintHandle<Law> constraint) {
+    auto& pool = laws().template of<Law>();
+    DELASSUS_EXPECT(pool.contains(constraint), "item: this constraint was removed, or is another loop's; its handle is stale");
+    return pool.items[constraint.index];
+  }
   /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
   template <class Law>
   const auto& impulse(ConstraintHandle<Law> constraint) const {

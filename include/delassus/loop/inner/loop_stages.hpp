@@ -72,6 +72,7 @@ void AnimationLoop<Policies...>::push_apart() {
 template <class... Policies>
 void AnimationLoop<Policies...>::linearize() {
   if constexpr (has_constraints) {
+    follow(std::as_const(*this).world(), laws());
     if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
     else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
     warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
@@ -124,7 +125,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::build() {
   if constexpr (has_constraints) {
     work_.W.build(std::as_const(*this).world(), work_.rows);
-    work_.book.prepare(work_.W, work_.rows);
+    work_.book.prepare(work_.W, work_.rows, h_);
   }
   tell<stage::Build>();
 }
