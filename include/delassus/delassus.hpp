@@ -16,6 +16,7 @@
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/constraints/joints/coupling.hpp>
 #include <delassus/constraints/joints/cylindrical.hpp>
 #include <delassus/constraints/joints/distance_joint.hpp>
 #include <delassus/constraints/joints/drive.hpp>
@@ -24,6 +25,7 @@
 #include <delassus/constraints/joints/motor.hpp>
 #include <delassus/constraints/joints/planar.hpp>
 #include <delassus/constraints/joints/point_on_line.hpp>
+#include <delassus/constraints/joints/screw.hpp>
 #include <delassus/constraints/joints/slider.hpp>
 #include <delassus/constraints/joints/universal.hpp>
 #include <delassus/constraints/joints/virtual_coupling.hpp>

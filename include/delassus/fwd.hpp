@@ -32,6 +32,7 @@ struct DistanceJoint;
 struct Hinge;
 struct Planar;
 struct PointOnLine;
+struct Screw;
 struct Slider;
 struct Universal;
 struct Weld;

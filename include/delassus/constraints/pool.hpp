@@ -58,12 +58,12 @@ struct Pool {
 
   /// Takes out every item one of whose anchors sits on this block: its body goes.
   void remove_on(std::uint32_t set, Index block) {
-    if constexpr (requires(Item& i) { i.a.owner, i.b.owner; })
+    if constexpr (HasEnds<Item>)
       for (Index k = 0; k < Index(items.size()); ++k) {
         if (!slots.is_alive(k)) continue;
-        const Item& i = items[k];
-        if ((i.a.owner == set && i.a.block == block) || (i.b.owner == set && i.b.block == block))
-          slots.give_back(k);
+        bool sits_there = false;
+        each_end(items[k], [&](const Anchor& a) { sits_there = sits_there || (a.owner == set && a.block == block); });
+        if (sits_there) slots.give_back(k);
       }
   }
 

@@ -327,9 +327,11 @@ auto AnimationLoop<Policies...>::add(Item item) {
                 "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
   if constexpr (!std::is_void_v<Law>) {
     if constexpr (requires { Law::check(item); }) Law::check(item);
-    if constexpr (requires { item.a.owner, item.b.owner; }) {
-      world().resolve(item.a, "constraint, first end");
-      world().resolve(item.b, "constraint, second end");
+    if constexpr (HasEnds<Item>) {
+      constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
+                                    "constraint, second end's carrier"};
+      int k = 0;
+      each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
       DELASSUS_EXPECT(item.a.set != item.b.set || item.a.block != item.b.block || item.a.is_world(),
                       "constraint: both ends are on body " + inner::text(item.a.block) + "; it would hold nothing");
       DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),
