@@ -16,6 +16,7 @@
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/constraints/joints/breakable.hpp>
 #include <delassus/constraints/joints/coupling.hpp>
 #include <delassus/constraints/joints/cylindrical.hpp>
 #include <delassus/constraints/joints/distance_joint.hpp>
@@ -43,6 +44,7 @@
 #include <delassus/loop/collisions_first.hpp>
 #include <delassus/loop/hand_picked.hpp>
 #include <delassus/loop/predictive_scheme.hpp>
+#include <delassus/loop/reaction.hpp>
 #include <delassus/loop/sleeping.hpp>
 #include <delassus/loop/solve_until.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>

@@ -74,6 +74,13 @@ class AnimationLoop {
     DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed, or is another loop's; its handle is stale");
     return pool.impulse[constraint.index];
   }
+  /// The constraints of a `Breakable` law that broke in the last step; they are taken out when the next one begins.
+  template <class Law>
+  std::span<const ConstraintHandle<Law>> broken() const
+    requires BreakableLaw<Law>
+  {
+    return laws().template of<Law>().broken;
+  }
   /// The force (N, N·m) of a constraint's rows that the next step starts from, and that `PredictiveScheme` applies.
   template <class Law>
   auto predicted_force(ConstraintHandle<Law> constraint) const {

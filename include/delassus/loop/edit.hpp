@@ -47,6 +47,31 @@ void drop_stale(const World& world, Laws& laws) {
   });
 }
 
+/// After the solve: who broke. Its handle, its impulse and its rows stay until the next step begins.
+template <class Laws>
+void note_broken(Laws& laws, double h) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.broken.size(); })
+      for (const Index k : pool.slots.active())
+        if (pool.law.breaks(pool.items[k], pool.impulse[k], h))
+          pool.broken.push_back({k, pool.slots.generation(k), pool.owner});
+  });
+}
+
+/// Takes out what broke in the step before.
+template <class Laws>
+void drop_broken(Laws& laws) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.broken.size(); }) {
+      for (const auto& joint : pool.broken)
+        if (pool.slots.is_current(joint.index, joint.generation)) pool.slots.give_back(joint.index);
+      pool.broken.clear();
+    }
+  });
+}
+
 /// Takes a body out, with every constraint that holds it.
 template <class World, class Laws, class Set>
 void remove_body(World& world, Laws& laws, Handle<Set> body) {

@@ -4,6 +4,8 @@
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/constraints/joints/joint_rows.hpp>
 
+#include <array>
+
 namespace delassus {
 
 /// φ = (a_k · (x_a − x_b), a_y · b_z, −a_x · b_z): five rows; b turns freely about the z axis of the frames.
@@ -11,6 +13,8 @@ namespace delassus {
 /// lost where b_z lies in the plane of a_x and a_y; b_z = −a_z meets the rows as well, and beyond 90° they
 /// pull there.
 struct Hinge : Bilateral<5> {
+  static constexpr std::array<int, 5> acts{0, 1, 2, 3, 4};  ///< see `Reaction`
+
   struct Item {
     Anchor a, b;
   };

@@ -4,12 +4,16 @@
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/constraints/joints/joint_rows.hpp>
 
+#include <array>
+
 namespace delassus {
 
 /// φ = (a_z · (x_a − x_b), a_y · b_z, −a_x · b_z): three rows; b moves along a_x and a_y and turns about a_z.
 /// λ is the force on a along a_z (N·s) and the moment on a about a_x and a_y (N·m·s), about x_b. Ranks are
 /// lost where those of `Hinge` are.
 struct Planar : Bilateral<3> {
+  static constexpr std::array<int, 3> acts{2, 3, 4};  ///< see `Reaction`
+
   struct Item {
     Anchor a, b;
   };

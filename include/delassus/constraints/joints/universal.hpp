@@ -4,6 +4,8 @@
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/constraints/joints/joint_rows.hpp>
 
+#include <array>
+
 namespace delassus {
 
 /// φ = (a_k · (x_a − x_b), a_x · b_y): four rows. The arms of the cross are a_x, on a, and b_y, on b; b turns
@@ -12,6 +14,8 @@ namespace delassus {
 /// moment about a_x × b_y (N·m·s) about x_b. The last row is lost only where the arms are parallel, which it
 /// forbids.
 struct Universal : Bilateral<4> {
+  static constexpr std::array<int, 4> acts{0, 1, 2, 5};  ///< see `Reaction`
+
   struct Item {
     Anchor a, b;
   };

@@ -32,6 +32,7 @@ void AnimationLoop<Policies...>::begin(double h) {
   world().each([&](auto& set, auto) { set.begin_step(h); });
   if constexpr (has_constraints) {
     work_.book.attach(laws());
+    inner::drop_broken(laws());
     inner::drop_stale(std::as_const(*this).world(), laws());
     if constexpr (Work::has_dormant) work_.activity.begin(world(), laws(), h);
   }
@@ -148,6 +149,7 @@ void AnimationLoop<Policies...>::solve() {
       report_.siconos_error = std::max(report_.siconos_error, r.measure.siconos);
     }
     keep_impulses(laws(), work_.rows, work_.contacts);
+    inner::note_broken(laws(), h_);
     forget_lost_islands(laws(), work_.rows, work_.W, work_.contacts, work_.islands, work_.reports);
     work_.contacts.remember();
   }
