@@ -38,7 +38,7 @@ void sweep_per_contact(benchmark::State& state) {
   loop.step(1e-3);
   auto problem = loop.problem();
   LawBook<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
-  book.prepare(problem.W, problem.rows);
+  book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
   for (auto _ : state)
     for (Index k = 0; k < problem.islands.count(); ++k) {

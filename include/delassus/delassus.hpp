@@ -1,6 +1,7 @@
 /// Everything up to the loop and its listeners; study, io and the adapters have their own headers.
 #pragma once
 
+#include <delassus/bodies/anchor_at.hpp>
 #include <delassus/bodies/invariants.hpp>
 #include <delassus/bodies/particles.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
@@ -15,8 +16,21 @@
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/constraints/joints/breakable.hpp>
+#include <delassus/constraints/joints/coupling.hpp>
+#include <delassus/constraints/joints/cylindrical.hpp>
 #include <delassus/constraints/joints/distance_joint.hpp>
+#include <delassus/constraints/joints/drive.hpp>
+#include <delassus/constraints/joints/hinge.hpp>
+#include <delassus/constraints/joints/limit.hpp>
+#include <delassus/constraints/joints/motor.hpp>
+#include <delassus/constraints/joints/planar.hpp>
+#include <delassus/constraints/joints/point_on_line.hpp>
+#include <delassus/constraints/joints/screw.hpp>
+#include <delassus/constraints/joints/slider.hpp>
+#include <delassus/constraints/joints/universal.hpp>
 #include <delassus/constraints/joints/virtual_coupling.hpp>
+#include <delassus/constraints/joints/weld.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
@@ -30,6 +44,7 @@
 #include <delassus/loop/collisions_first.hpp>
 #include <delassus/loop/hand_picked.hpp>
 #include <delassus/loop/predictive_scheme.hpp>
+#include <delassus/loop/reaction.hpp>
 #include <delassus/loop/sleeping.hpp>
 #include <delassus/loop/solve_until.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>

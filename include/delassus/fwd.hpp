@@ -27,7 +27,15 @@ struct Restitution;
 struct Coulomb;
 struct Frictionless;
 struct BallJoint;
+struct Cylindrical;
 struct DistanceJoint;
+struct Hinge;
+struct Planar;
+struct PointOnLine;
+struct Screw;
+struct Slider;
+struct Universal;
+struct Weld;
 
 struct SymplecticEuler;
 struct ImplicitEuler;

@@ -18,7 +18,7 @@ int main() {
   loop.step(1e-3);
   Given problem = loop.problem();
   Book book(problem.laws);
-  book.prepare(problem.W, problem.rows);
+  book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
   Island island(book, problem.rows, problem.W, problem.islands, 0, problem.h, nobody);
   return one_sweep(island) >= 0 ? 0 : 1;

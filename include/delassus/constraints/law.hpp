@@ -12,8 +12,10 @@ namespace delassus {
 /// `rows` and `Item` by type; project(item, Local<rows>&) replaces local.lambda by one that meets the law.
 ///
 /// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then has
-/// prepare(W, memory) and project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds`
-/// (one RowKind a row), natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) (into its cone), and
+/// prepare(W, memory), or prepare(item, W, h, memory) where a cap on the force makes one on the impulse, and
+/// project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds` (one RowKind a row),
+/// natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) or clamp(item, λ, memory) (into its cone), speed(item)
+/// (what its rows' velocity shall be, m/s), follow(item, world) (once a step, for what an item remembers of its pose), and
 /// λ = meet(item, b, memory), what `project` does, from the free velocity b = u − W λ alone.
 template <class L>
 concept ConstraintLaw = requires {

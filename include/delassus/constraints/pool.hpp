@@ -7,18 +7,33 @@
 #include <delassus/core/slots.hpp>
 #include <delassus/rows/anchor.hpp>
 
+#include <concepts>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
 
 /// Names one constraint of a law.
-template <class Law>
+template <class Law_>
 struct ConstraintHandle {
+  using Law = Law_;
   Index index = -1;
   std::uint32_t generation = 0;
   std::uint32_t owner = 0;  ///< its pool's own number; copies of a loop share it
 };
+
+/// A law whose items can break: breaks(item, λ, h) says whether the impulse of a step was too much.
+template <class L>
+concept BreakableLaw = requires(const L law, const typename L::Item item, const Vec<L::rows> lambda) {
+  { law.breaks(item, lambda, 1.0) } -> std::same_as<bool>;
+};
+
+namespace inner {
+
+struct NeverBreaks {};
+
+}  // namespace inner
 
 /// Items in places that never move, the impulse each had last step, and the list of live ones.
 template <class Law>
@@ -32,6 +47,8 @@ struct Pool {
   std::vector<char> starts_cold;   ///< that impulse is no start for the next step
   Slots slots;
   std::uint32_t owner = inner::next_owner();
+  /// Who broke in the last step, and goes when the next one begins.
+  [[no_unique_address]] std::conditional_t<BreakableLaw<Law>, std::vector<ConstraintHandle<Law>>, inner::NeverBreaks> broken;
 
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}
@@ -58,20 +75,24 @@ struct Pool {
 
   /// Takes out every item one of whose anchors sits on this block: its body goes.
   void remove_on(std::uint32_t set, Index block) {
-    if constexpr (requires(Item& i) { i.a.owner, i.b.owner; })
+    if constexpr (HasEnds<Item>)
       for (Index k = 0; k < Index(items.size()); ++k) {
         if (!slots.is_alive(k)) continue;
-        const Item& i = items[k];
-        if ((i.a.owner == set && i.a.block == block) || (i.b.owner == set && i.b.block == block))
-          slots.give_back(k);
+        bool sits_there = false;
+        each_end(items[k], [&](const Anchor& a) { sits_there = sits_there || (a.owner == set && a.block == block); });
+        if (sits_there) slots.give_back(k);
       }
   }
 
   static void each_array(auto& self, auto&& f) {
     f(self.items), f(self.impulse), f(self.starts_cold);
+    if constexpr (BreakableLaw<Law>) f(self.broken);
     self.slots.each_array(self.slots, f);
   }
-  void memory(auto& archive) { archive(items, impulse, starts_cold, slots); }
+  void memory(auto& archive) {
+    archive(items, impulse, starts_cold, slots);
+    if constexpr (BreakableLaw<Law>) archive(broken);
+  }
 
   /// The item behind the i-th rows of this step.
   const Item& item(Index i) const { return items[slots.active()[i]]; }

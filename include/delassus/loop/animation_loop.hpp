@@ -61,12 +61,26 @@ class AnimationLoop {
     forget_rows();
   }
 
+  /// What a constraint was added with: its numbers may be changed at any time, its anchors may not.
+  template <class Law>
+  auto& item(ConstraintHandle<Law> constraint) {
+    auto& pool = laws().template of<Law>();
+    DELASSUS_EXPECT(pool.contains(constraint), "item: this constraint was removed, or is another loop's; its handle is stale");
+    return pool.items[constraint.index];
+  }
   /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
   template <class Law>
   const auto& impulse(ConstraintHandle<Law> constraint) const {
     const auto& pool = laws().template of<Law>();
     DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed, or is another loop's; its handle is stale");
     return pool.impulse[constraint.index];
+  }
+  /// The constraints of a `Breakable` law that broke in the last step; they are taken out when the next one begins.
+  template <class Law>
+  std::span<const ConstraintHandle<Law>> broken() const
+    requires BreakableLaw<Law>
+  {
+    return laws().template of<Law>().broken;
   }
   /// The force (N, N·m) of a constraint's rows that the next step starts from, and that `PredictiveScheme` applies.
   template <class Law>
@@ -329,9 +343,11 @@ auto AnimationLoop<Policies...>::add(Item item) {
                 "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
   if constexpr (!std::is_void_v<Law>) {
     if constexpr (requires { Law::check(item); }) Law::check(item);
-    if constexpr (requires { item.a.owner, item.b.owner; }) {
-      world().resolve(item.a, "constraint, first end");
-      world().resolve(item.b, "constraint, second end");
+    if constexpr (HasEnds<Item>) {
+      constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
+                                    "constraint, second end's carrier"};
+      int k = 0;
+      each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
       DELASSUS_EXPECT(item.a.set != item.b.set || item.a.block != item.b.block || item.a.is_world(),
                       "constraint: both ends are on body " + inner::text(item.a.block) + "; it would hold nothing");
       DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),

@@ -61,9 +61,13 @@ class Dormant {
       const std::vector<Index> active = pool.slots.active();
       for (const Index place : active) {
         const auto& item = pool.items[place];
-        if constexpr (requires { item.a.owner, item.b.owner; }) {
-          const bool holds_one = group_of(item.a.set, item.a.block) == group || group_of(item.b.set, item.b.block) == group;
-          if (!holds_one || can_move(world, item.a) || can_move(world, item.b)) continue;
+        if constexpr (HasEnds<typename Pool::Item>) {
+          bool holds_one = false, is_held = false;
+          each_end(item, [&](const Anchor& end) {
+            holds_one = holds_one || group_of(end.set, end.block) == group;
+            is_held = is_held || can_move(world, end);
+          });
+          if (!holds_one || is_held) continue;
           items_.push_back({p, place, group, pool.slots.generation(place)});
           pool.slots.set_awake(place, false);
         }

@@ -28,9 +28,9 @@ void visit_body(World& world, Handle<Set> body, F&& f) {
 template <class World, class Pool>
 void adopt(const World& world, Pool& pool) {
   for (auto& item : pool.items)
-    if constexpr (requires { item.a.owner, item.b.owner; })
-      for (auto* anchor : {&item.a, &item.b})
-        world.visit(anchor->set, [&](const auto& set, auto) { anchor->owner = set.owner(); });
+    each_end(item, [&](Anchor& end) {
+      world.visit(end.set, [&](const auto& set, auto) { end.owner = set.owner(); });
+    });
 }
 
 /// Takes out every constraint one of whose bodies is gone: a host may remove bodies through their set.
@@ -40,10 +40,35 @@ void drop_stale(const World& world, Laws& laws) {
     auto& pool = laws.template pool<p>();
     if constexpr (requires { pool.slots; })
       for (Index i = 0; i < pool.count(); ++i) {
-        const auto& item = pool.item(i);
-        if constexpr (requires { item.a.owner, item.b.owner; })
-          if (!world.is_current(item.a) || !world.is_current(item.b)) pool.slots.give_back(pool.slots.active()[i--]);
+        bool is_stale = false;
+        each_end(pool.item(i), [&](const Anchor& end) { is_stale = is_stale || !world.is_current(end); });
+        if (is_stale) pool.slots.give_back(pool.slots.active()[i--]);
       }
+  });
+}
+
+/// After the solve: who broke. Its handle, its impulse and its rows stay until the next step begins.
+template <class Laws>
+void note_broken(Laws& laws, double h) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.broken.size(); })
+      for (const Index k : pool.slots.active())
+        if (pool.law.breaks(pool.items[k], pool.impulse[k], h))
+          pool.broken.push_back({k, pool.slots.generation(k), pool.owner});
+  });
+}
+
+/// Takes out what broke in the step before.
+template <class Laws>
+void drop_broken(Laws& laws) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.broken.size(); }) {
+      for (const auto& joint : pool.broken)
+        if (pool.slots.is_current(joint.index, joint.generation)) pool.slots.give_back(joint.index);
+      pool.broken.clear();
+    }
   });
 }
 

@@ -66,7 +66,7 @@ void each_joint(const Laws& laws, F&& f) {
     const auto& pool = laws.template pool<p>();
     for (Index i = 0; i < pool.count(); ++i) {
       const auto& item = pool.item(i);
-      if constexpr (requires { item.a.owner, item.b.owner; }) f(item.a, item.b);
+      if constexpr (HasEnds<std::remove_cvref_t<decltype(item)>>) f(item.a, item.b);
     }
   });
 }

@@ -28,7 +28,7 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver) 
   typename Solver::template Workspace<Rows> workspace;
   if constexpr (requires { workspace.reset(problem.rows); }) workspace.reset(problem.rows);
   problem.W.reset(problem.rows);
-  book.prepare(problem.W, problem.rows);
+  book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
   SolveReport worst;
   for (Index k = 0; k < problem.islands.count(); ++k) {

@@ -232,13 +232,8 @@ class Sleepers {
     for_each_index<Laws::pool_count>([&](auto p) {
       const auto& pool = laws.template pool<p>();
       if constexpr (requires { pool.slots; })
-        for (Index i = 0; i < pool.count(); ++i) {
-          const auto& item = pool.item(i);
-          if constexpr (requires { item.a.owner, item.b.owner; }) {
-            call(dormant_.group_of(item.a.set, item.a.block));
-            call(dormant_.group_of(item.b.set, item.b.block));
-          }
-        }
+        for (Index i = 0; i < pool.count(); ++i)
+          each_end(pool.item(i), [&](const Anchor& end) { call(dormant_.group_of(end.set, end.block)); });
     });
   }
 

@@ -23,6 +23,17 @@ struct Anchor {
   bool is_world() const { return set < 0; }
 };
 
+/// An item that holds two material points, a and b. One that couples two joints says c and d as well.
+template <class Item>
+concept HasEnds = requires(const Item& item) { item.a.owner, item.b.owner; };
+
+/// f(anchor) for every end of an item; nothing for one without ends.
+template <class Item, class F>
+void each_end(Item& item, F&& f) {
+  if constexpr (HasEnds<Item>) f(item.a), f(item.b);
+  if constexpr (requires { item.c.owner, item.d.owner; }) f(item.c), f(item.d);
+}
+
 /// A point of the world (m), with a frame.
 inline Anchor world_anchor(const Vec3& point, const Quat& frame = Quat::Identity()) {
   return {.local = point, .frame = frame};

@@ -6,7 +6,7 @@
 
 namespace delassus {
 
-/// equality φ = 0, λ free · lower φ ≥ 0, λ ≥ 0 · upper φ ≤ 0, λ ≤ 0 · friction: no φ, bounded by its law.
+/// equality φ = 0, λ free · lower φ ≥ 0, λ ≥ 0 · upper φ ≤ 0, λ ≤ 0 · friction: bounded by its law, with no φ but a spring's.
 enum class RowKind : std::uint8_t { equality, lower, upper, friction };
 
 /// The kinds of a law's rows: its own `kinds`, else all equalities when it says `bilateral`, else all `lower`.

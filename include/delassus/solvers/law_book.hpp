@@ -32,12 +32,17 @@ class LawBook<Constraints<Laws...>, T> {
   }
 
   template <class Operator, class Rows>
-  void prepare(const Operator& W, const Rows& rows) {
+  void prepare(const Operator& W, const Rows& rows, double h) {
     for_each_index<sizeof...(Laws)>([&](auto p) {
       auto& memory = std::get<p>(memory_);
       memory.resize(rows.template pool<p>().items());
-      for (std::size_t i = 0; i < memory.size(); ++i)
-        inner::prepare(constraints_->template pool<p>().law, W.template diagonal<p>(Index(i)), memory[i]);
+      const auto& pool = constraints_->template pool<p>();
+      for (Index i = 0; i < Index(memory.size()); ++i) {
+        const auto& own_block = W.template diagonal<p>(i);
+        if constexpr (requires { pool.law.prepare(pool.item(i), own_block, h, memory[i]); })
+          pool.law.prepare(pool.item(i), own_block, h, memory[i]);
+        else inner::prepare(pool.law, own_block, memory[i]);
+      }
     });
   }
 
@@ -80,7 +85,9 @@ class LawBook<Constraints<Laws...>, T> {
   template <int p, int R>
   void clamp(Index i, Vec<R, T>& lambda) const {
     const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.clamp(pool.item(i), lambda); }) pool.law.clamp(pool.item(i), lambda);
+    if constexpr (requires { pool.law.clamp(pool.item(i), lambda, std::get<p>(memory_)[i]); })
+      pool.law.clamp(pool.item(i), lambda, std::get<p>(memory_)[i]);
+    else if constexpr (requires { pool.law.clamp(pool.item(i), lambda); }) pool.law.clamp(pool.item(i), lambda);
   }
 
  private:

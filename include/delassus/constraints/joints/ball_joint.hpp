@@ -4,12 +4,16 @@
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/rows/anchor.hpp>
 
+#include <array>
+
 namespace delassus {
 
 /// φ = x_a − x_b (m, world axes), u = v_a − v_b. Both impulses act at one point, so that they have no moment: where the
 /// end without a frame is, a particle that can only be pushed at its centre, else at the middle of the two anchors. Two
 /// particles apart have no such point; their moment is φ × λ.
 struct BallJoint : Bilateral<3> {
+  static constexpr std::array<int, 3> acts{0, 1, 2};  ///< see `Reaction`
+
   struct Item {
     Anchor a, b;
   };

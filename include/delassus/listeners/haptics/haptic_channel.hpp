@@ -109,7 +109,7 @@ class BasicHapticChannel<Solver, C>::Channel {
     inner::take_snapshot(loop, sequence_, slot.snapshot);
     auto& problem = slot.snapshot.problem;
     if (!slot.tool.take(loop.world(), problem, coupling_)) return;
-    slot.book.prepare(problem.W, problem.rows);
+    slot.book.prepare(problem.W, problem.rows, problem.h);
     slot.workspace.reset(problem.rows);
     slots_.publish();
   }

@@ -32,6 +32,7 @@ void AnimationLoop<Policies...>::begin(double h) {
   world().each([&](auto& set, auto) { set.begin_step(h); });
   if constexpr (has_constraints) {
     work_.book.attach(laws());
+    inner::drop_broken(laws());
     inner::drop_stale(std::as_const(*this).world(), laws());
     if constexpr (Work::has_dormant) work_.activity.begin(world(), laws(), h);
   }
@@ -74,6 +75,7 @@ void AnimationLoop<Policies...>::push_apart() {
 template <class... Policies>
 void AnimationLoop<Policies...>::linearize() {
   if constexpr (has_constraints) {
+    follow(std::as_const(*this).world(), laws());
     if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
     else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
     warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
@@ -126,7 +128,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::build() {
   if constexpr (has_constraints) {
     work_.W.build(std::as_const(*this).world(), work_.rows);
-    work_.book.prepare(work_.W, work_.rows);
+    work_.book.prepare(work_.W, work_.rows, h_);
   }
   tell<stage::Build>();
 }
@@ -149,6 +151,7 @@ void AnimationLoop<Policies...>::solve() {
       report_.siconos_error = std::max(report_.siconos_error, r.measure.siconos);
     }
     keep_impulses(laws(), work_.rows, work_.contacts);
+    inner::note_broken(laws(), h_);
     forget_lost_islands(laws(), work_.rows, work_.W, work_.contacts, work_.islands, work_.reports);
     work_.contacts.remember();
   }

@@ -77,6 +77,15 @@ void soften(Pool& pool, Index i, int k, double h) {
   pool.bias[i][k] = T(stiffness * double(pool.phi[i][k]) / (h * stiffness + damping));
 }
 
+/// Rows that shall have a speed s: u⁺ − s in place of u⁺, in the soft row above as in a rigid one.
+template <class Pool>
+void drive(Pool& pool, Index i, double speed, double h) {
+  for (int k = 0; k < Pool::rows; ++k) {
+    if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) soften(pool, i, k, h);
+    pool.bias[i][k] -= typename Pool::Scalar(speed);
+  }
+}
+
 }  // namespace inner
 
 /// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity, all other
@@ -119,6 +128,8 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
             std::get<p>(bounce.pools)[i][k] = T(sign * (row.bias - row.plain));
         }
       }
+      if constexpr (requires { constraints.law.speed(constraints.item(i)); })
+        inner::drive(pool, i, constraints.law.speed(constraints.item(i)), h);
       pool.d[i] += pool.bias[i];
     }
   });

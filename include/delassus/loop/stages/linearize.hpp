@@ -11,6 +11,16 @@
 
 namespace delassus {
 
+/// Items that remember something of their pose (how often a wheel has turned) see the start of the step.
+template <class World, class Laws>
+void follow(const World& world, Laws& laws) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.law.follow(pool.items[0], world); })
+      for (const Index place : pool.slots.active()) pool.law.follow(pool.items[place], world);
+  });
+}
+
 /// H and φ at the present configuration of the world.
 template <class World, class Laws, class Rows>
 void linearize(const World& world, const Laws& laws, Rows& rows) {

@@ -1,0 +1,46 @@
+/// The local solve of a row whose force has a cap.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace delassus {
+
+/// λ = P(λ − d/W), P the projection on |λ| ≤ h F: u = 0 where the cap F (N or N·m) suffices, the whole cap
+/// against u where not. Exact at every visit. F = ∞ is no cap. The items say `max_force`.
+struct Bounded {
+  static constexpr int rows = 1;
+  static constexpr std::array<RowKind, 1> kinds{RowKind::friction};
+
+  template <class T>
+  struct Memory {
+    T most;  ///< h F, N·s or N·m·s
+  };
+
+  template <class Item, class T>
+  void prepare(const Item& item, const Mat<1, 1, T>&, double h, Memory<T>& memory) const {
+    memory.most = T(h * item.max_force);
+  }
+  template <class Item, class T>
+  void project(const Item& item, Local<1, T>& c, Memory<T>& memory) const {
+    if (c.W(0, 0) > T(0)) c.lambda[0] -= c.d[0] / c.W(0, 0);
+    clamp(item, c.lambda, memory);
+  }
+  template <class Item, class T>
+  void clamp(const Item&, Vec<1, T>& lambda, const Memory<T>& memory) const {
+    lambda[0] = std::clamp(lambda[0], -memory.most, memory.most);
+  }
+
+  static void check_cap(double max_force, const char* what, const char* unit) {
+    DELASSUS_EXPECT(max_force >= 0,
+                    std::string(what) + ": max_force " + inner::text(max_force) + " must be >= 0 " + unit);
+  }
+};
+
+}  // namespace delassus

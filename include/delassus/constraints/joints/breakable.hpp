@@ -1,0 +1,37 @@
+/// A wrapper that lets a joint break where it carries too much.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace delassus {
+
+/// `Breakable<Hinge>::Item{{a, b}, 500, 20}`: breaks when |F| > 500 N or |M| > 20 N·m, the means of a step,
+/// moments about the joint's point. It carries that step to its end, stands in
+/// `loop.broken<Breakable<Hinge>>()` after it with its impulse, and is gone when the next step begins. The
+/// joint says `acts`, as `Reaction` wants it.
+template <class Joint>
+struct Breakable : Joint {
+  struct Item : Joint::Item {
+    double max_force = std::numeric_limits<double>::infinity();   ///< N
+    double max_moment = std::numeric_limits<double>::infinity();  ///< N·m
+  };
+
+  static void check(const Item& item) {
+    if constexpr (requires { Joint::check(item); }) Joint::check(item);
+    DELASSUS_EXPECT(item.max_force > 0 && item.max_moment > 0,
+                    "Breakable: max_force " + inner::text(item.max_force) + " N and max_moment " +
+                        inner::text(item.max_moment) + " N·m must be > 0");
+  }
+
+  bool breaks(const Item& item, const Vec<Joint::rows>& lambda, double h) const {
+    double force = 0, moment = 0;
+    for (int k = 0; k < Joint::rows; ++k) (Joint::acts[k] < 3 ? force : moment) += lambda[k] * lambda[k];
+    return std::sqrt(force) > h * item.max_force || std::sqrt(moment) > h * item.max_moment;
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,72 @@
+/// The free axes of a joint as numbers: how far b has turned about an axis of a, how far it is along it.
+#pragma once
+
+#include <delassus/constraints/joints/joint_rows.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace delassus {
+
+/// The angle (rad) by which b's frame is turned about a_z against a's: the twist of the turn from a to b,
+///
+///   θ = atan2(a_y · b_x − a_x · b_y, a_x · b_x + a_y · b_y),   θ̇ = (a_z + b_z) · (ω_b − ω_a)/(1 + a_z ·
+///   b_z),
+///
+/// where the axes are parallel simply a_z · (ω_b − ω_a). Singular at b_z = −a_z, where it says 0 and takes
+/// a_z. Source: the twist 2 atan2(z, w) of the quaternion, written in its rotation matrix.
+struct Turn {
+  static constexpr bool winds = true;  // known up to whole turns
+  static constexpr const char* force_unit = "N·m";
+
+  static double value(const JointFrames& f) {
+    return std::atan2(f.a(1).dot(f.b(0)) - f.a(0).dot(f.b(1)), f.a(0).dot(f.b(0)) + f.a(1).dot(f.b(1)));
+  }
+  /// u_k += factor · θ̇.
+  static void write(auto& joint, int k, double factor) {
+    const double both = 1 + joint.a(2).dot(joint.b(2));
+    joint.about(k,
+                both > 1e-12 ? Vec3(factor / both * (joint.a(2) + joint.b(2))) : Vec3(factor * joint.a(2)));
+  }
+  static void check(const auto& item, const char* what) { inner::expect_frames(item, what); }
+};
+
+/// How far (m) b's point is from a's along a_z: s = a_z · (x_b − x_a), in every pose.
+struct Slide {
+  static constexpr bool winds = false;
+  static constexpr const char* force_unit = "N";
+
+  static double value(const JointFrames& f) { return f.a(2).dot(f.xb - f.xa); }
+  static void write(auto& joint, int k, double factor) { joint.along(k, factor * joint.a(2)); }
+  static void check(const auto& item, const char* what) { inner::expect_frame(item.a, what, "first"); }
+};
+
+namespace inner {
+
+/// `value` shifted by whole turns to the one nearest to `last`: a wheel is followed while it makes less than
+/// half a turn a step.
+template <class Coordinate>
+double unwound(double value, double last) {
+  if constexpr (Coordinate::winds) {
+    constexpr double turn = 2 * std::numbers::pi;
+    return value + turn * std::round((last - value) / turn);
+  }
+  return value;
+}
+
+}  // namespace inner
+
+/// What laws on one coordinate of a pair of ends share: their items say `position`, which the loop brings up
+/// to date once a step. It starts from 0, or from what the item says: 4π is the third turn.
+template <class Coordinate>
+struct OnAxis {
+  void follow(auto& item, const auto& world) const {
+    item.position = position(item, {item.a, item.b, world});
+  }
+  /// The coordinate in a pose near that of `item.position`.
+  static double position(const auto& item, const JointFrames& frames) {
+    return inner::unwound<Coordinate>(Coordinate::value(frames), item.position);
+  }
+};
+
+}  // namespace delassus

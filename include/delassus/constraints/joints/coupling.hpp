@@ -1,0 +1,67 @@
+/// A coupling: the coordinates of two joints keep a ratio. Gears, and a rack on its wheel.
+#pragma once
+
+#include <delassus/constraints/joints/bilateral.hpp>
+#include <delassus/constraints/joints/coordinate.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace delassus {
+
+/// The phase of a coupling is what it is in the pose of the first step.
+inline constexpr double from_pose = std::numeric_limits<double>::quiet_NaN();
+
+/// φ = q_a − ratio q_b − phase: q_a the `First` coordinate of a against its carrier c, q_b the `Second` of b
+/// against its carrier d. One row, turns counted over all of them, so that nothing adds up. c and d are
+/// mostly points of one housing, or of the world. λ is the force or moment on a along its axis (N·s, N·m·s);
+/// −ratio λ acts on b, and the carriers take the opposite of each, so that momentum and angular momentum of
+/// free bodies stay. The joints that leave a and b these coordinates are added beside it. Singular where the
+/// coordinates are.
+template <class First, class Second>
+struct Coupling : Bilateral<1> {
+  struct Item {
+    Anchor a, b;               ///< what moves
+    Anchor c, d;               ///< what a moves against, what b does: z axes along the axes of motion
+    double ratio = 1;          ///< of q_a to q_b
+    double phase = from_pose;  ///< rad or m
+    double position_a = 0, position_b = 0;  ///< q_a, q_b at the start of the last step, over all turns
+  };
+
+  static void check(const Item& item) {
+    First::check(Pair{item.c, item.a}, "Coupling, first joint");
+    Second::check(Pair{item.d, item.b}, "Coupling, second joint");
+    DELASSUS_EXPECT(
+        std::isfinite(item.ratio) && std::isfinite(item.position_a) && std::isfinite(item.position_b),
+        "Coupling: ratio " + inner::text(item.ratio) + " and positions must be finite");
+  }
+
+  void follow(Item& item, const auto& world) const {
+    item.position_a = inner::unwound<First>(First::value({item.c, item.a, world}), item.position_a);
+    item.position_b = inner::unwound<Second>(Second::value({item.d, item.b, world}), item.position_b);
+    if (std::isnan(item.phase)) item.phase = item.position_a - item.ratio * item.position_b;
+  }
+
+  void linearize(const Item& item, const auto& world, auto row) const {
+    JointRows first(item.c, item.a, world, row), second(item.d, item.b, world, row);
+    First::write(first, 0, 1);
+    Second::write(second, 0, -item.ratio);
+    const double qa = inner::unwound<First>(First::value(first), item.position_a),
+                 qb = inner::unwound<Second>(Second::value(second), item.position_b);
+    row.phi(0, qa - item.ratio * qb - item.phase);
+  }
+
+ private:
+  struct Pair {
+    const Anchor &a, &b;
+  };
+};
+
+/// θ_a = ratio θ_b + phase; two wheels that mesh outside each other have the ratio −(teeth of b)/(teeth of
+/// a).
+using Gear = Coupling<Turn, Turn>;
+/// s_a = ratio θ_b + phase: the bar a on the wheel b, ratio the wheel's radius (m), its sign that of the
+/// side.
+using Rack = Coupling<Slide, Turn>;
+
+}  // namespace delassus

@@ -1,0 +1,87 @@
+/// Limits of a free axis: stops that push back and never hold on.
+#pragma once
+
+#include <delassus/constraints/joints/coordinate.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace delassus {
+
+/// q − lower ≥ 0 ⟂ λ_0 ≥ 0 and q − upper ≤ 0 ⟂ λ_1 ≤ 0 for q = `Turn` or `Slide`: `Limit<Turn>` on a hinge,
+/// `Limit<Slide>` on a slider. At most one acts, so that the two are solved exactly. An open stop lets the
+/// axis come to it within the step and no further; e = 0 takes the speed away, e > 0 gives the share e of it
+/// back.
+///
+/// A bound has a row only while it is nearer than `margin` plus twice the way of the last step: one that is
+/// far costs nothing and does not weigh in the residual. Something that is hit and goes further than that in
+/// its first step passes the stop by that step's way, and is pushed back as from an overlap.
+template <class Coordinate>
+struct Limit : OnAxis<Coordinate> {
+  static constexpr int rows = 2;
+  static constexpr std::array<RowKind, 2> kinds{RowKind::lower, RowKind::upper};
+
+  struct Item {
+    Anchor a, b;
+    double lower = -std::numeric_limits<double>::infinity();  ///< rad or m
+    double upper = std::numeric_limits<double>::infinity();
+    double restitution = 0;  ///< e in [0, 1]
+    double margin = 0.05;    ///< rad or m
+    double position = 0;     ///< q at the start of the last step
+    double way = 0;          ///< what the last step added to it
+  };
+
+  static void check(const Item& item) {
+    Coordinate::check(item, "Limit");
+    DELASSUS_EXPECT(item.lower <= item.upper, "Limit: lower " + inner::text(item.lower) +
+                                                  " must be <= upper " + inner::text(item.upper));
+    DELASSUS_EXPECT(item.restitution >= 0 && item.restitution <= 1,
+                    "Limit: restitution " + inner::text(item.restitution) + " must be in [0, 1]");
+    DELASSUS_EXPECT(item.margin >= 0 && std::isfinite(item.position),
+                    "Limit: margin " + inner::text(item.margin) + " must be >= 0 and position finite");
+  }
+
+  void follow(Item& item, const auto& world) const {
+    const double before = item.position;
+    OnAxis<Coordinate>::follow(item, world);
+    item.way = item.position - before;
+  }
+
+  void linearize(const Item& item, const auto& world, auto row) const {
+    const double reach = item.margin + 2 * std::abs(item.way);
+    const double low = item.position - item.lower, high = item.position - item.upper;
+    if (!(low < reach) && !(high > -reach)) return;
+    JointRows joint(item.a, item.b, world, row);
+    const double moved = this->position(item, joint) - item.position;
+    if (low < reach) Coordinate::write(joint, 0, 1), row.phi(0, low + moved);
+    if (high > -reach) Coordinate::write(joint, 1, 1), row.phi(1, high + moved);
+  }
+
+  template <class T>
+  void project(const Item&, Local<2, T>& c) const {
+    const Vec<2, T> b = c.free_velocity();
+    c.lambda.setZero();
+    if (b[0] < T(0) && c.W(0, 0) > T(0))
+      c.lambda[0] = -b[0] / c.W(0, 0);
+    else if (b[1] > T(0) && c.W(1, 1) > T(0))
+      c.lambda[1] = -b[1] / c.W(1, 1);
+  }
+  template <class T>
+  Vec<2, T> natural_map(const Item& item, const Vec<2, T>& lambda, const Vec<2, T>& u, T scale) const {
+    Vec<2, T> projected = scale * lambda - u;
+    clamp(item, projected);
+    return scale * lambda - projected;
+  }
+  template <class T>
+  void clamp(const Item&, Vec<2, T>& lambda) const {
+    lambda[0] = std::max(T(0), lambda[0]);
+    lambda[1] = std::min(T(0), lambda[1]);
+  }
+  double restitution(const Item& item) const { return item.restitution; }
+};
+
+}  // namespace delassus
