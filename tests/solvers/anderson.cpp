@@ -1,3 +1,4 @@
+#include <delassus/math/linear.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
 
 #include "catch.hpp"

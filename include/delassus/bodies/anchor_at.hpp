@@ -18,10 +18,17 @@ Anchor anchor_at(const S& set, typename S::Handle body, const Vec3& point,
   return a;
 }
 
-/// The turn that takes z to `axis`, for the frame of a hinge or a slider. Any length but zero.
+/// The turn that takes z to `axis`, for the frame of a hinge or a slider. Any length but zero. With e the unit vector,
+///
+///   q = (1 + e_z, z × e) normalised, 1 + e_z = (e_x² + e_y²)/(1 − e_z) where e points down, and (0, x) where rounding cannot tell e from −z.
+///
+/// Eigen's FromTwoVectors would bring its singular value decomposition: 250 MB of compiler memory.
 inline Quat frame_along(const Vec3& axis) {
   DELASSUS_EXPECT(is_finite(axis) && axis.norm() > 0, "frame_along: the axis must be finite and not zero");
-  return Quat::FromTwoVectors(unit_axis(2), axis);
+  const Vec3 e = axis / axis.norm();
+  const double flat = e[0] * e[0] + e[1] * e[1];
+  if (e[2] < 0 && flat < 1e-32) return Quat(0, 1, 0, 0);
+  return Quat(e[2] < 0 ? flat / (1 - e[2]) : 1 + e[2], -e[1], e[0], 0).normalized();
 }
 
 }  // namespace delassus

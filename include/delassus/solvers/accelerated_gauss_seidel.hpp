@@ -18,7 +18,6 @@ namespace delassus {
 ///   anderson    mixes the last five sweeps: breaks most limit cycles;
 ///   projection  Nesterov over sweeps of one projection a visit, slower and without the cycles of the exact law;
 ///   patient     momentum again, with ten times the patience;
-///   conjugate   conjugate directions over sweeps damped to 0.8;
 ///
 /// and from the start again with twice the patience. The best measured iterate is kept, and the report names the stage that
 /// ended the solve. A solve that does not stall is in the first stage alone.
@@ -58,7 +57,6 @@ struct BasicAcceleratedGaussSeidel {
     if (!pursuit.begin()) return pursuit.finish();
     const auto exact = [&](auto&... curvature) { return problem.sweep(relaxation, curvature...); };
     const auto one_projection = [&](auto& x, double& curvature) { return problem.project_once(x, curvature); };
-    const auto damped = [&] { return problem.sweep(0.8); };
     const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, sweep); };
     for (int patience = shortest;; patience *= 2) {
       const auto open = [&](const char* name, int factor) {
@@ -71,7 +69,6 @@ struct BasicAcceleratedGaussSeidel {
       if (open("anderson", 1)) inner::anderson(problem, pursuit, work.history, exact);
       if (open("projection", 4)) momentum(one_projection);
       if (open("patient", 10)) momentum(exact);
-      if (open("conjugate", 3)) inner::conjugate_directions(problem, pursuit, work.history, damped);
       if (pursuit.is_over()) return pursuit.finish();
     }
   }

@@ -1,7 +1,5 @@
-/// Anderson's mixing of the last sweeps, and conjugate directions over damped ones.
+/// Anderson's mixing of the last sweeps.
 #pragma once
-
-#include <delassus/math/positive.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +33,27 @@ inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
+/// g ← (G + 1e-10 max G_kk 1)⁻¹ g by elimination; the lift keeps the pivots of a Gram matrix positive. No change, no step.
+/// Plain arrays: five by five in Eigen's types would cost each program 35 MB of compiler memory.
+template <int n>
+void solve_gram(const double (&gram)[n][n], double (&g)[n], int count) {
+  double G[n][n], largest = 0;
+  for (int k = 0; k < count; ++k) largest = std::max(largest, gram[k][k]);
+  if (!(largest > 0)) return std::fill(g, g + count, 0.0);
+  for (int k = 0; k < count; ++k)
+    for (int j = 0; j < count; ++j) G[k][j] = gram[k][j] + (k == j ? 1e-10 * largest : 0);
+  for (int k = 0; k < count; ++k)
+    for (int i = k + 1; i < count; ++i) {
+      const double share = G[i][k] / G[k][k];
+      for (int j = k; j < count; ++j) G[i][j] -= share * G[k][j];
+      g[i] -= share * g[k];
+    }
+  for (int k = count - 1; k >= 0; --k) {
+    for (int j = k + 1; j < count; ++j) g[k] -= G[k][j] * g[j];
+    g[k] /= G[k][k];
+  }
+}
+
 /// x⁺ = P_K(z − Σ_k γ_k Δz_k), z = sweep(x), f = z − x, γ = argmin |f − Σ_k γ_k Δf_k| over the last five changes. When |f|
 /// grew to twice its least the history is dropped and the last good z taken. A mixture ten times larger than the first z is
 /// not taken: where the laws contradict each other λ has no limit, and mixing would run there at once.
@@ -43,7 +62,7 @@ template <class Problem, class Pursuit, class Sweep>
 void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
   constexpr int depth = History::depth;
   h.resize(std::size_t(problem.row_count()));
-  Mat<depth, depth> gram = Mat<depth, depth>::Zero();
+  double gram[depth][depth] = {};
   int count = 0, place = 0;
   bool has_last = false;
   double least = 0, limit = -1;
@@ -69,55 +88,20 @@ void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
         h.change_z[place][i] = h.z[i] - h.last_z[i];
       }
       count = std::min(count + 1, depth);
-      for (int k = 0; k < count; ++k) gram(place, k) = gram(k, place) = dot(h.change_f[place], h.change_f[k]);
+      for (int k = 0; k < count; ++k) gram[place][k] = gram[k][place] = dot(h.change_f[place], h.change_f[k]);
       place = (place + 1) % depth;
     }
     std::swap(h.last_f, h.f);
     std::swap(h.last_z, h.z);
     has_last = true;
     if (count == 0) continue;
-    Mat<depth, depth> G = Mat<depth, depth>::Identity();
-    Vec<depth> g = Vec<depth>::Zero();
-    double largest = 0;
-    for (int k = 0; k < count; ++k) largest = std::max(largest, gram(k, k));
-    for (int k = 0; k < count; ++k) {
-      for (int j = 0; j < count; ++j) G(k, j) = gram(k, j);
-      G(k, k) += 1e-10 * largest;
-      g[k] = dot(h.change_f[k], h.last_f);
-    }
-    const Vec<depth> gamma = inverse_of_positive(G) * g;
+    double gamma[depth];
+    for (int k = 0; k < count; ++k) gamma[k] = dot(h.change_f[k], h.last_f);
+    solve_gram(gram, gamma, count);
     h.x = h.last_z;
     for (int k = 0; k < count; ++k)
       for (std::size_t i = 0; i < h.x.size(); ++i) h.x[i] -= gamma[k] * h.change_z[k][i];
     if (dot(h.x, h.x) <= limit) problem.scatter(h.x);
-  }
-}
-
-/// x⁺ = P_K(z + β p), p⁺ = β p + g, g = z − x, β = |g|²/|g₋|², dropped when β > 1. Source: [SilcowitzNiebeErleben2010].
-template <class Problem, class Pursuit, class Sweep>
-void conjugate_directions(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
-  h.resize(std::size_t(problem.row_count()));
-  auto& direction = h.good;
-  std::fill(direction.begin(), direction.end(), 0.0);
-  double last = 0, limit = -1;
-  for (;;) {
-    problem.gather(h.x);
-    sweep();
-    if (!pursuit.goes_on()) return;
-    problem.gather(h.z);
-    if (limit < 0) limit = 100 * dot(h.z, h.z);
-    for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];
-    const double square = dot(h.f, h.f), beta = last > 0 ? square / last : 0;
-    last = square;
-    if (beta > 1) {
-      std::fill(direction.begin(), direction.end(), 0.0);
-      continue;
-    }
-    for (std::size_t i = 0; i < h.x.size(); ++i) {
-      h.z[i] += beta * direction[i];
-      direction[i] = beta * direction[i] + h.f[i];
-    }
-    if (dot(h.z, h.z) <= limit) problem.scatter(h.z);
   }
 }
 
