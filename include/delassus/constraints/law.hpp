@@ -15,8 +15,9 @@ namespace delassus {
 /// prepare(W, memory), or prepare(item, W, h, memory) where a cap on the force makes one on the impulse, and
 /// project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds` (one RowKind a row),
 /// natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) or clamp(item, λ, memory) (into its cone), speed(item)
-/// (what its rows' velocity shall be, m/s), follow(item, world) (once a step, for what an item remembers of its pose), and
-/// λ = meet(item, b, memory), what `project` does, from the free velocity b = u − W λ alone.
+/// (what its rows' velocity shall be, m/s), follow(item, world) (once a step, for what an item remembers of its pose),
+/// λ = meet(item, b, memory), what `project` does, from the free velocity b = u − W λ alone, and tangent(item, local) (for
+/// Newton's method).
 template <class L>
 concept ConstraintLaw = requires {
   typename L::Item;                                   // what the user adds, or collision detection fills
@@ -32,6 +33,27 @@ concept Projects = requires(const L law, const typename L::Item item, Local<L::r
 } || requires(const L law, const typename L::Item item, Local<L::rows>& local,
               typename L::template Memory<double>& memory) {
   { law.project(item, local, memory) } -> std::same_as<void>;
+};
+
+/// tangent(item, local) is `project` for a W that is diagonal, friction rows alike, and without memory: it replaces
+/// local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element of the generalised
+/// derivative will do where there are several. An island with a law that has none is swept.
+template <class L>
+concept Differentiable = requires(const L law, const typename L::Item item, Local<L::rows>& local) {
+  { law.tangent(item, local) } -> std::same_as<Mat<L::rows, L::rows>>;
+};
+
+/// The same of a law that contacts wrap, which gets its parameters in place of the item.
+template <class L>
+concept DifferentiableContact = requires(const L law, const typename L::Parameters p, Local<L::rows>& local) {
+  { law.tangent(p, local) } -> std::same_as<Mat<L::rows, L::rows>>;
+};
+
+/// convex_tangent(parameters, local, slip) is `tangent` with the slip |u_t| of its friction rows given, which makes the
+/// law the projection on a convex set. A law without friction needs none.
+template <class L>
+concept ConvexContact = requires(const L law, const typename L::Parameters p, Local<L::rows>& local) {
+  { law.convex_tangent(p, local, 0.0) } -> std::same_as<Mat<L::rows, L::rows>>;
 };
 
 /// A law whose items are made by collision detection.

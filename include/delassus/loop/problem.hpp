@@ -36,6 +36,7 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver) 
     const SolveReport r = solver.solve(island, workspace);
     worst.status = worse(worst.status, r.status);
     worst.sweeps = std::max(worst.sweeps, r.sweeps);
+    worst.factorizations = std::max(worst.factorizations, r.factorizations);
     if (r.measure.residual >= worst.measure.residual) {
       worst.measure = r.measure;
       worst.ended_by = r.ended_by;

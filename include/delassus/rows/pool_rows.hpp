@@ -14,7 +14,7 @@ namespace delassus {
 /// The blocks of H that one pool has in one body set of width `w` velocities per block.
 ///
 /// Item i owns the entries offset[i] … offset[i+1] − 1; entry e acts on block[e] through H[e] (R × w), and
-/// G[e] = A⁻¹ Hᵀ (w × R) where the set's A is block-diagonal.
+/// G[e] = A⁻¹ Hᵀ (w × R) where the set's A is block-diagonal; G is empty where it is not.
 template <int R, int w, class T>
 struct SetBlocks {
   std::vector<Index> offset{0};
@@ -27,6 +27,7 @@ struct SetBlocks {
     offset.resize(1);
     block.clear();
     H.clear();
+    G.clear();
   }
 };
 

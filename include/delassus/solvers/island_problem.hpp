@@ -39,11 +39,16 @@ class IslandProblem {
  public:
   using T = typename Rows::Scalar;
   using Observes = Observer;
+  using BookType = Book;
   static constexpr int pools = Rows::pool_count;
 
   IslandProblem(Book& book, Rows& rows, Operator& W, const Islands<pools>& islands, Index island, double h,
                 Observer& observer)
       : book_(book), rows_(rows), W_(W), islands_(islands), island_(island), h_(h), observer_(observer) {}
+
+  Index island() const { return island_; }
+  const Rows& rows() const { return rows_; }
+  const Book& book() const { return book_; }
 
   int row_count() const {
     int count = 0;
@@ -91,7 +96,7 @@ class IslandProblem {
   Measure measure() {
     MeasureSums sums;
     for_each_index<pools>([&](auto p) {
-      for (const Index i : islands_.items(p, island_)) add<p>(i, sums);
+      for (const Index i : islands_.items(p, island_)) add<p>(i, local<p>(i), sums);
     });
     Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
@@ -150,7 +155,7 @@ class IslandProblem {
     });
   }
 
- private:
+  /// f(p, i) for every constraint, in order.
   template <class F>
   void each(F&& f) const {
     for_each_index<pools>([&](auto p) {
@@ -163,6 +168,7 @@ class IslandProblem {
     return std::sqrt(double(W_.template diagonal<p>(i).trace()) / Rows::template rows_of<p>);
   }
 
+  /// λ_i ← next, and W is told.
   template <int p>
   void assign(Index i, const Vec<Rows::template rows_of<p>, T>& next) {
     auto& lambda = rows_.template pool<p>().lambda[i];
@@ -171,6 +177,28 @@ class IslandProblem {
     W_.template commit<p>(rows_, i, change);
   }
 
+  /// W_ii, (d + W λ)_i and λ_i.
+  template <int p>
+  Local<Rows::template rows_of<p>, T> local(Index i) const {
+    return {W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), rows_.template pool<p>().lambda[i]};
+  }
+
+  /// What constraint i adds to the measure when its velocity and impulse are those of `c`.
+  template <int p>
+  void add(Index i, const Local<Rows::template rows_of<p>, T>& c, MeasureSums& sums) {
+    const T weight = c.W.trace() / T(Rows::template rows_of<p>);
+    const double square = double(book_.template natural_map<p>(i, c, weight).squaredNorm());
+    const double lambda = double(c.lambda.squaredNorm());
+    sums.residual += square;
+    sums.worst = std::max(sums.worst, square);
+    sums.siconos += double(book_.template natural_map<p>(i, c, T(1)).squaredNorm());
+    sums.d += double(rows_.template pool<p>().d[i].squaredNorm());
+    sums.u += double(c.d.squaredNorm());
+    sums.lambda += lambda;
+    sums.reach = std::max(sums.reach, double(weight) * std::sqrt(lambda));
+  }
+
+ private:
   /// The impulse that meets the law of item i while the others stand still.
   template <int p>
   Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
@@ -213,23 +241,6 @@ class IslandProblem {
     const T share = weight * std::sqrt(square);
     displacement += share;
     most = std::max(most, share);
-  }
-
-  template <int p>
-  void add(Index i, MeasureSums& sums) {
-    constexpr int R = Rows::template rows_of<p>;
-    const auto& pool = rows_.template pool<p>();
-    const Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), pool.lambda[i]};
-    const T weight = c.W.trace() / T(R);
-    const double square = double(book_.template natural_map<p>(i, c, weight).squaredNorm());
-    const double lambda = double(c.lambda.squaredNorm());
-    sums.residual += square;
-    sums.worst = std::max(sums.worst, square);
-    sums.siconos += double(book_.template natural_map<p>(i, c, T(1)).squaredNorm());
-    sums.d += double(pool.d[i].squaredNorm());
-    sums.u += double(c.d.squaredNorm());
-    sums.lambda += lambda;
-    sums.reach = std::max(sums.reach, double(weight) * std::sqrt(lambda));
   }
 
   Book& book_;

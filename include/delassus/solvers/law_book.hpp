@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <concepts>
@@ -80,6 +81,29 @@ class LawBook<Constraints<Laws...>, T> {
       const Vec<R, T> change = c.lambda - trial.lambda;
       return (scale * T(R) / c.W.trace()) * (c.W * change);
     }
+  }
+
+  template <int p>
+  static constexpr auto kinds() {
+    return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
+  }
+  /// −∂λ/∂d of the impulse that meets the law where W is diagonal, and that impulse: see `constraints/law.hpp`.
+  template <int p, int R, class N>
+    requires Differentiable<std::tuple_element_t<p, std::tuple<Laws...>>>
+  Mat<R, R, N> tangent(Index i, Local<R, N>& c) const {
+    const auto& pool = constraints_->template pool<p>();
+    return pool.law.tangent(pool.item(i), c);
+  }
+
+  /// The same with the slip of friction rows given, where the law has a convex form.
+  template <int p, int R, class N>
+    requires Differentiable<std::tuple_element_t<p, std::tuple<Laws...>>>
+  Mat<R, R, N> convex_tangent(Index i, Local<R, N>& c, N slip) const {
+    const auto& pool = constraints_->template pool<p>();
+    if constexpr (requires { pool.law.convex_tangent(pool.item(i), c, slip); })
+      return pool.law.convex_tangent(pool.item(i), c, slip);
+    else
+      return pool.law.tangent(pool.item(i), c);
   }
 
   template <int p, int R>

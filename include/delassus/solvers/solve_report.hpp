@@ -13,6 +13,7 @@ struct SolveReport {
   Status status = Status::converged;
   int sweeps = 0;
   Measure measure{};
+  int factorizations = 0;  ///< of Newton's method, sweeps not counted
   const char* ended_by = "sweeps";  ///< the stage of the solver that came last
 };
 
@@ -33,8 +34,8 @@ bool is_within(const Solver& solver, const Measure& m, int rows) {
   return Criterion::sum(m) <= solver.tolerance * (solver.scale_tolerance ? rows : 1);
 }
 
-/// Sweeps between two measurements: a measurement costs about as much as a sweep, and a sweep too many no more.
-inline int patience(int sweeps) { return sweeps < 4 ? 1 : std::clamp(sweeps / 4, 2, 16); }
+/// Sweeps between two measurements: a measurement costs about as much as a sweep.
+inline int patience(int sweeps) { return sweeps < 16 ? 1 : sweeps < 64 ? 4 : 16; }
 
 /// Converged, at the rounding floor above the tolerance, or out of sweeps.
 template <class Criterion, class Solver>

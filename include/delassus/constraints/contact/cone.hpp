@@ -30,6 +30,24 @@ Vec<3, T> project_on_cone(const Vec<3, T>& x, T friction) {
   return {normal, scale * x[1], scale * x[2]};
 }
 
+/// dP_K/dx of `project_on_cone`, symmetric; on the borders between its cases one of the generalised derivatives.
+template <class T>
+Mat<3, 3, T> project_on_cone_slope(const Vec<3, T>& x, T friction) {
+  const T tangential = inner::length(x[1], x[2]);
+  if (friction * tangential <= -x[0]) return Mat<3, 3, T>::Zero();
+  if (tangential <= friction * x[0]) return Mat<3, 3, T>::Identity();
+  const T over = T(1) / (T(1) + friction * friction), normal = (x[0] + friction * tangential) * over;
+  const Vec<2, T> t = x.template tail<2>() / tangential;
+  const T along = friction * over, across = friction * normal / tangential;
+  Mat<3, 3, T> slope;
+  slope(0, 0) = over;
+  slope.template topRightCorner<1, 2>() = along * t.transpose();
+  slope.template bottomLeftCorner<2, 1>() = along * t;
+  slope.template bottomRightCorner<2, 2>() =
+      across * Mat<2, 2, T>::Identity() + (friction * along - across) * t * t.transpose();
+  return slope;
+}
+
 /// s λ − P_K(s λ − ũ), ũ = u + μ |u_t| e_n: zero exactly when u and λ meet Signorini's and Coulomb's laws
 /// (De Saxcé's form). Source: [AcaryBremondHuber2018].
 template <class T>

@@ -74,6 +74,18 @@ struct Contact {
     return local().meet(item.parameters, b, memory);
   }
   template <class T>
+  Mat<rows, rows, T> tangent(const Item& item, Local<rows, T>& c) const
+    requires DifferentiableContact<inner::innermost_t<Law>>
+  {
+    return local().tangent(item.parameters, c);
+  }
+  template <class T>
+  Mat<rows, rows, T> convex_tangent(const Item& item, Local<rows, T>& c, T slip) const
+    requires ConvexContact<inner::innermost_t<Law>>
+  {
+    return local().convex_tangent(item.parameters, c, slip);
+  }
+  template <class T>
   Vec<rows, T> natural_map(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
     return local().natural_map(item.parameters, lambda, u, scale);
   }

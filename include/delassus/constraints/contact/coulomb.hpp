@@ -85,6 +85,43 @@ struct Coulomb {
     return slip(b, mu, memory);
   }
 
+  /// Where W = diag(w_n, w_t, w_t) the cases are explicit: with b = d − W λ and t = −b_t/|b_t|,
+  ///
+  ///   λ_n = max(0, −b_n/w_n),   λ_t = min(|b_t|/w_t, μ λ_n) t.
+  ///
+  /// Source: [AlartCurnier1991], whose augmented Lagrangian has these terms.
+  template <class T>
+  Mat<3, 3, T> tangent(const Parameters& p, Local<3, T>& c) const {
+    const Vec<3, T> over = c.W.diagonal().cwiseInverse();
+    c.lambda -= over.cwiseProduct(c.d);
+    Mat<3, 3, T> slope = over.asDiagonal().toDenseMatrix();
+    const T normal = c.lambda[0], size = inner::length(c.lambda[1], c.lambda[2]), limit = T(p.friction) * normal;
+    if (!(normal > T(0))) {
+      c.lambda.setZero();
+      return Mat<3, 3, T>::Zero();
+    }
+    if (size <= limit) return slope;
+    const Vec<2, T> t = c.lambda.template tail<2>() / size;
+    c.lambda.template tail<2>() = limit * t;
+    slope.template bottomLeftCorner<2, 1>() = T(p.friction) * over[0] * t;
+    slope.template bottomRightCorner<2, 2>() =
+        (limit / size * over[1]) * (Mat<2, 2, T>::Identity() - t * t.transpose());
+    return slope;
+  }
+
+  /// `tangent` of the convex problem that is left when the slip s = |u_t| of De Saxcé's form is a given number:
+  /// λ = P_K(λ − W⁻¹ (d + μ s e_n)) in the metric W, which one scaling of λ_t makes Euclid's.
+  template <class T>
+  Mat<3, 3, T> convex_tangent(const Parameters& p, Local<3, T>& c, T slip) const {
+    const T mu = T(p.friction), scale = std::sqrt(c.W(1, 1) / c.W(0, 0));
+    const Vec<3, T> metric(T(1), scale, scale), back = metric.cwiseInverse();
+    Vec<3, T> u = c.d;
+    u[0] += mu * slip;
+    const Vec<3, T> x = metric.cwiseProduct(c.lambda - c.W.diagonal().cwiseInverse().cwiseProduct(u));
+    c.lambda = back.cwiseProduct(project_on_cone(x, scale * mu));
+    return back.asDiagonal() * project_on_cone_slope(x, scale * mu) * back.asDiagonal() / c.W(0, 0);
+  }
+
   template <class T>
   Vec<3, T> natural_map(const Parameters& p, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
     return coulomb_natural_map(lambda, u, T(p.friction), scale);

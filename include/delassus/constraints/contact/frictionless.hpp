@@ -23,6 +23,11 @@ struct Frictionless {
   void project(const Parameters&, Local<1, T>& c) const {
     c.lambda[0] = std::max(T(0), c.lambda[0] - c.d[0] / c.W(0, 0));
   }
+  template <class T>
+  Mat<1, 1, T> tangent(const Parameters& p, Local<1, T>& c) const {
+    project(p, c);
+    return Mat<1, 1, T>(c.lambda[0] > T(0) ? T(1) / c.W(0, 0) : T(0));
+  }
   /// s λ − max(0, s λ − u).
   template <class T>
   Vec<1, T> natural_map(const Parameters&, const Vec<1, T>& lambda, const Vec<1, T>& u, T scale) const {

@@ -29,6 +29,12 @@ struct Bilateral {
   void project(const Item&, Local<rows, T>& c, Memory<T>& memory) const {
     c.lambda.noalias() -= memory.inverse * c.d;
   }
+  template <class Item, class T>
+  Mat<rows, rows, T> tangent(const Item&, Local<rows, T>& c) const {
+    const Vec<rows, T> over = c.W.diagonal().cwiseInverse();
+    c.lambda -= over.cwiseProduct(c.d);
+    return over.asDiagonal().toDenseMatrix();
+  }
   /// s λ − P(s λ − u) with P the identity: the velocity itself.
   template <class Item, class T>
   Vec<rows, T> natural_map(const Item&, const Vec<rows, T>&, const Vec<rows, T>& u, T) const {

@@ -29,20 +29,34 @@ class PositionBook<Constraints<Laws...>, T> {
     for (int k = 0; k < R; ++k) out[k] = scale * c.lambda[k] - bound<p>(k, scale * c.lambda[k] - c.d[k]);
     return out;
   }
+  template <int p>
+  static constexpr auto kinds() {
+    return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
+  }
+  /// Row by row: the slope of a bound is 1/W_kk where it lets through, 0 where it holds.
+  template <int p, int R, class N>
+  Mat<R, R, N> tangent(Index, Local<R, N>& c) const {
+    Mat<R, R, N> slope = Mat<R, R, N>::Zero();
+    for (int k = 0; k < R; ++k) {
+      const N free = c.lambda[k] - c.d[k] / c.W(k, k);
+      c.lambda[k] = bound<p>(k, free);
+      if (c.lambda[k] == free) slope(k, k) = N(1) / c.W(k, k);
+    }
+    return slope;
+  }
   template <int p, int R>
   void clamp(Index, Vec<R, T>& lambda) const {
     for (int k = 0; k < R; ++k) lambda[k] = bound<p>(k, lambda[k]);
   }
 
  private:
-  template <int p>
-  static T bound(int k, T x) {
-    constexpr auto kinds = row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
-    switch (kinds[k]) {
+  template <int p, class N>
+  static N bound(int k, N x) {
+    switch (kinds<p>()[k]) {
       case RowKind::equality: return x;
-      case RowKind::lower: return std::max(T(0), x);
-      case RowKind::upper: return std::min(T(0), x);
-      case RowKind::friction: return T(0);
+      case RowKind::lower: return std::max(N(0), x);
+      case RowKind::upper: return std::min(N(0), x);
+      case RowKind::friction: return N(0);
     }
     return x;
   }

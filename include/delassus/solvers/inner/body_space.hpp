@@ -1,0 +1,183 @@
+/// One island as a system of equations for the velocities of its bodies.
+#pragma once
+
+#include <delassus/constraints/law.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/newton_system.hpp>
+#include <delassus/solvers/measure.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace delassus::inner {
+
+/// The unknown y is the change of velocity of the island's moving blocks that impulses λ instead of λ̂ make:
+///
+///   F(y) = y − G (λ(u) − λ̂),   u = d + W λ̂ + H y,   J = 1 + G S H,
+///
+/// λ(u) the impulses that meet the laws with W = diag(R + ε w) at velocity u around λ̂: the proximal point.
+template <class Rows>
+class BodySpace {
+ public:
+  using System = NewtonSystem<NewtonItem, Rows>;
+  using T = typename Rows::Scalar;
+
+  /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
+  template <class Problem>
+  bool gather(const Problem& problem) {
+    if (!system_.gather(problem)) return false;
+    for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
+    return true;
+  }
+
+  /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
+  /// see, in units of energy.
+  template <class Problem>
+  double evaluate(const Problem& problem, double epsilon, double fraction) {
+    for (std::size_t b = 0; b < residual_.size(); ++b) residual_[b] = y_[b] + fraction * change_[b];
+    each([&](auto p, auto& c, auto& sides) {
+      c.trial = c.velocity + fraction * c.move;
+      auto local = proximal(c, epsilon);
+      c.slope = tangent<p>(problem, c.item, local);
+      c.lambda = local.lambda;
+      const auto change = (c.lambda - c.centre).eval();
+      for (Index s = c.first; s < c.last; ++s) residual_[sides[s].block].noalias() -= sides[s].G * change;
+    });
+    double square = 0;
+    each([&](auto, auto& c, auto& sides) {
+      c.error.setZero();
+      for (Index s = c.first; s < c.last; ++s) c.error.noalias() += sides[s].H * residual_[sides[s].block];
+      square += c.error.squaredNorm() / c.weight;
+    });
+    return std::sqrt(square);
+  }
+
+  /// S again, with bounds closer by a thousandth of the error: rows that just touch count as closed. In a
+  /// stack that starts to fall as a whole each row is else found closed by a factorization of its own.
+  template <class Problem>
+  void close_what_touches(const Problem& problem, double epsilon, double error) {
+    each([&](auto p, auto& c, auto&) {
+      constexpr auto kinds = Problem::BookType::template kinds<p>();
+      if (kinds[0] == RowKind::equality) return;
+      auto local = proximal(c, epsilon);
+      for (std::size_t k = 0; k < kinds.size(); ++k)
+        if (kinds[k] == RowKind::lower || kinds[k] == RowKind::upper)
+          local.d[k] += (kinds[k] == RowKind::lower ? -1e-3 : 1e-3) * error;
+      c.slope = tangent<p>(problem, c.item, local);
+    });
+  }
+
+  /// J δ = −F; false when J is singular to working precision.
+  bool find_direction() {
+    if (!system_.factor()) return false;
+    for (std::size_t b = 0; b < change_.size(); ++b) change_[b] = -residual_[b];
+    system_.solve(change_);
+    each([&](auto, auto& c, auto& sides) {
+      c.move.setZero();
+      for (Index s = c.first; s < c.last; ++s) c.move.noalias() += sides[s].H * change_[sides[s].block];
+    });
+    return true;
+  }
+
+  /// Goes where the last evaluation was.
+  void advance(double fraction) {
+    for (std::size_t b = 0; b < y_.size(); ++b) y_[b] += fraction * change_[b], change_[b].setZero();
+    each([](auto, auto& c, auto&) {
+      c.velocity = c.trial;
+      c.move.setZero();
+    });
+  }
+
+  /// √Σ|F_i(w_i)|² of the last measure, m/s: unlike the residual it is not small beside a velocity that has
+  /// grown without bound.
+  double error() const { return error_; }
+
+  /// The measure of λ(u), whose own velocity is d + W λ = u − H F + R (λ − λ̂).
+  template <class Problem>
+  Measure measure(Problem& problem) {
+    MeasureSums sums;
+    each([&](auto p, auto& c, auto&) {
+      constexpr int r = Rows::template rows_of<p>;
+      Local<r, T> local{Mat<r, r, T>::Zero(), own_velocity(c).template cast<T>(),
+                        c.lambda.template cast<T>()};
+      local.W.diagonal().setConstant(T(c.weight));
+      problem.template add<p>(c.item, local, sums);
+    });
+    error_ = std::sqrt(sums.residual);
+    return sums.finish(double(std::numeric_limits<T>::epsilon()));
+  }
+
+  /// λ̂ ← λ(u).
+  void recentre() {
+    each([&](auto, auto& c, auto&) {
+      c.velocity = own_velocity(c);
+      c.centre = c.lambda;
+    });
+    for (auto& y : y_) y.setZero();
+  }
+
+  /// λ̂ ← what the rows have now, its velocity by W; `best` stays. False when that is not finite.
+  template <class Problem>
+  bool restart(const Problem& problem) {
+    bool is_finite = true;
+    each([&](auto p, auto& c, auto&) {
+      const auto local = problem.template local<p>(c.item);
+      c.centre = c.lambda = local.lambda.template cast<double>();
+      c.velocity = local.d.template cast<double>();
+      c.error.setZero();
+      is_finite = is_finite && delassus::is_finite(c.velocity);
+    });
+    for (auto* array : {&y_, &change_})
+      for (auto& x : *array) x.setZero();
+    return is_finite;
+  }
+
+  /// best ← λ(u).
+  void keep() {
+    each([](auto, auto& c, auto&) { c.best = c.lambda; });
+  }
+
+  /// The rows take one of the impulses kept here: `&NewtonItem<R>::best`, by a generic lambda.
+  template <class Problem, class Which>
+  void hand_over(Problem& problem, const Which& which) {
+    each([&](auto p, auto& c, auto&) { problem.template assign<p>(c.item, which(c).template cast<T>()); });
+  }
+
+ private:
+  using Velocity = typename System::Velocities::value_type;
+
+  template <class F>
+  void each(F&& f) {
+    system_.each(f);
+  }
+
+  /// The problem of one law: diag(R + ε w), u and λ̂.
+  template <int r>
+  static Local<r> proximal(const NewtonItem<r>& c, double epsilon) {
+    Local<r> local{Mat<r, r>::Zero(), c.trial, c.centre};
+    local.W.diagonal() = c.compliance.array() + epsilon * c.weight;
+    return local;
+  }
+  template <int r>
+  static Vec<r> own_velocity(const NewtonItem<r>& c) {
+    return c.velocity - c.error + c.compliance.cwiseProduct(c.lambda - c.centre);
+  }
+
+  /// A pool without a tangent is never in an island that is gathered.
+  template <int p, int r, class Problem>
+  static Mat<r, r> tangent(const Problem& problem, Index item, Local<r>& local) {
+    if constexpr (has_tangent<typename Problem::BookType, p, r>)
+      return problem.book().template tangent<p>(item, local);
+    else
+      return Mat<r, r>::Zero();
+  }
+
+  System system_;
+  double error_ = 0;
+  typename System::Velocities y_, change_, residual_;
+};
+
+}  // namespace delassus::inner

@@ -1,0 +1,106 @@
+/// Newton's method on convex problems whose fixed point is Coulomb's law: slow, and independent of the
+/// sweeps.
+#pragma once
+
+#include <delassus/core/status.hpp>
+#include <delassus/solvers/inner/convex_space.hpp>
+#include <delassus/solvers/measure.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus::inner {
+
+/// Proximal points of `ConvexSpace`, each found by Newton's method with a search for the minimum along its
+/// directions; then λ̂ ← λ(u) and s ← |u_t|. At the fixed point nothing is left of ε, nor of the given s. Now
+/// and then proximal points of the laws as they are take over, as far as they lead. No law is solved for one
+/// constraint with the others held. Source: [AcaryEtAl2011] for the fixed point, [Rockafellar1976] for the
+/// proximal point.
+struct ConvexNewton {
+  double tolerance = 1e-10;
+  int max_iterations = 2000;  ///< convex problems
+  double least = 1e-6;        ///< ε where the residual is small: less would magnify the rounding of u
+
+  template <class Rows>
+  using Workspace = ConvexSpace<Rows>;
+
+  template <class Problem, class Work>
+  SolveReport solve(Problem& problem, Work& work) const {
+    Search<Problem, Work> now{problem, work};
+    now.report.measure = now.best = problem.measure();
+    now.report.status = Status::max_iterations;
+    if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
+    if (!work.gather(problem)) return now.report;
+    work.keep(problem);
+    double epsilon = coarse, far = 1, last = 1, polished = 1;
+    for (int k = 0, since = 0; k < max_iterations; ++k) {
+      now.report.factorizations += work.descend(problem, epsilon);
+      if (is_done(now)) return now.report;
+      const double residual = now.report.measure.residual;
+      const bool drifts = residual < 1e-4 && residual > 0.8 * last && residual < 1.05 * last;
+      if (drifts)
+        work.extrapolate(problem, far);
+      else
+        work.template recentre<Problem>();
+      far = drifts ? 2 * far : std::max(0.25 * far, 1.0);
+      last = residual;
+      epsilon = std::clamp(residual, least, coarse);
+      if (drifts || (residual > 0.1 * polished && ++since < 8)) continue;
+      since = 0;
+      polished = residual;
+      if (polish(now)) return now.report;
+    }
+    work.hand_over(
+        problem, [](const auto& c) -> const auto& { return c.best; });
+    now.report.measure = problem.measure();
+    return now.report;
+  }
+
+ private:
+  static constexpr double coarse =
+      0.1;  ///< ε while the residual is large: far off a small one flips rows to and fro
+
+  template <class Problem, class Work>
+  struct Search {
+    Problem& problem;
+    Work& work;
+    SolveReport report{};
+    Measure best{};
+  };
+
+  /// Hands λ over, measures it by W itself, and keeps the best; true when that is within the tolerance.
+  template <class S>
+  bool is_done(S& now) const {
+    now.report.measure = now.work.measure(now.problem);
+    if (now.report.measure.residual < now.best.residual) {
+      now.best = now.report.measure;
+      now.work.keep(now.problem);
+    }
+    if (!(now.report.measure.residual <= tolerance)) return false;
+    now.report.status = Status::converged;
+    return true;
+  }
+
+  /// Proximal points of the laws as they are, while each halves the residual.
+  template <class S>
+  bool polish(S& now) const {
+    now.work.mark(now.problem);
+    double before = now.report.measure.residual, epsilon = 1e-3;
+    for (int k = 0; k < 12; ++k) {
+      now.work.restart(now.problem);
+      now.report.factorizations += now.work.polish(now.problem, epsilon);
+      if (is_done(now)) return true;
+      if (!(now.report.measure.residual < 0.5 * before)) break;
+      before = now.report.measure.residual;
+      now.work.mark(now.problem);
+      epsilon = std::max(0.03 * epsilon, 1e-7);
+    }
+    now.work.hand_over(
+        now.problem, [](const auto& c) -> const auto& { return c.before; });
+    now.work.restart(now.problem);
+    return false;
+  }
+};
+
+}  // namespace delassus::inner

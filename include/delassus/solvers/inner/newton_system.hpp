@@ -1,0 +1,191 @@
+/// The bodies and constraints of one island, and the matrix of a Newton step in the bodies' velocities.
+#pragma once
+
+#include <delassus/linear/block_lu.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/newton_item.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// A book that answers with the tangent of pool p.
+template <class Book, int p, int R>
+inline constexpr bool has_tangent = requires(const Book& book, Local<R>& c) {
+  { book.template tangent<p>(Index(0), c) } -> std::same_as<Mat<R, R>>;
+};
+
+template <template <int> class Item, class Rows>
+class NewtonSystem;
+
+/// One `Item<R>` a constraint, with its H and G on each block that moves, and
+///
+///   J = 1 + G S H,   S = −∂λ/∂u the `slope` of the items.
+///
+/// A⁻¹ J is the matrix of the bodies with a stiff spring in every constraint; without A⁻¹ the system matrix A
+/// itself is not needed.
+template <template <int> class Item, class T, int... w, int... R>
+class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
+ public:
+  using Rows = RowSystem<T, Widths<w...>, R...>;
+  static constexpr int pools = Rows::pool_count;
+  static constexpr int width = std::max({w...});
+  using Velocities = std::vector<Vec<width>>;  ///< one a block, narrower sets filled up with zeros
+
+  /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
+  /// law without a tangent, a set whose A couples blocks, or rows that nothing answers to.
+  template <class Problem>
+  bool gather(const Problem& problem) {
+    if (!can_act(problem)) return false;
+    number_blocks(problem);
+    for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
+    pairs_.clear();
+    bool is_sound = true;
+    problem.each([&](auto p, Index i) { is_sound &= take<p>(problem, i); });
+    if (is_sound) analyse(problem.island());
+    return is_sound;
+  }
+
+  std::size_t blocks() const { return blocks_.size(); }
+
+  /// f(p, item, sides of pool p) for every constraint.
+  template <class F>
+  void each(F&& f) {
+    for_each_index<pools>([&](auto p) {
+      for (auto& c : std::get<p>(items_)) f(p, c, std::get<p>(sides_));
+    });
+  }
+
+  /// Factors J; false when it is singular to working precision.
+  bool factor() {
+    auto& J = *matrix_;
+    J.set_identity();
+    each([&](auto, auto& c, auto& sides) {
+      if (c.slope.isZero(0)) return;
+      for (Index s = c.first; s < c.last; ++s) {
+        const auto SH = (c.slope * sides[s].H).eval();
+        for (Index t = c.first; t < c.last; ++t)
+          J.at(sides[t].block, sides[s].block).noalias() += sides[t].G * SH;
+      }
+    });
+    return J.factor();
+  }
+  /// x ← J⁻¹ x.
+  void solve(Velocities& x) const { matrix_->solve(x); }
+
+ private:
+  /// The graph of an island and the matrix analysed for it.
+  struct Graph {
+    std::size_t blocks = 0;
+    std::vector<std::pair<Index, Index>> pairs;
+    BlockLu<width, double> matrix;
+  };
+
+  template <class Problem>
+  static bool can_act(const Problem& problem) {
+    bool can = true;
+    problem.each([&](auto p, Index i) {
+      constexpr bool differentiable = has_tangent<typename Problem::BookType, p, Rows::template rows_of<p>>;
+      const auto& pool = problem.rows().template pool<p>();
+      for_each_index<Rows::set_count>([&](auto s) {
+        const auto& set = std::get<s>(pool.sets);
+        if (set.offset[i + 1] > set.offset[i] && set.G.size() != set.H.size()) can = false;
+      });
+      if (!differentiable) can = false;
+    });
+    return can;
+  }
+
+  /// f(s, e) for every entry of item i on a block that moves: where A⁻¹ = 0, G is zero.
+  template <class Pool, class F>
+  static void each_side(const Pool& pool, Index i, F&& f) {
+    for_each_index<Rows::set_count>([&](auto s) {
+      const auto& set = std::get<s>(pool.sets);
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
+        if (!set.G[e].isZero(0)) f(s, e);
+    });
+  }
+
+  template <class Problem>
+  void number_blocks(const Problem& problem) {
+    for (const auto& [s, b] : blocks_) number_[s][b] = -1;
+    blocks_.clear();
+    problem.each([&](auto p, Index i) {
+      const auto& pool = problem.rows().template pool<p>();
+      each_side(pool, i, [&](auto s, Index e) {
+        const Index b = std::get<s>(pool.sets).block[e];
+        auto& number = number_[s];
+        if (Index(number.size()) <= b) number.resize(b + 1, -1);
+        if (number[b] >= 0) return;
+        number[b] = 0;
+        blocks_.emplace_back(s, b);
+      });
+    });
+    std::sort(blocks_.begin(), blocks_.end());
+    for (std::size_t k = 0; k < blocks_.size(); ++k) number_[blocks_[k].first][blocks_[k].second] = Index(k);
+  }
+
+  template <int p, class Problem>
+  bool take(const Problem& problem, Index i) {
+    constexpr int r = Rows::template rows_of<p>;
+    const auto& pool = problem.rows().template pool<p>();
+    const Local<r, T> local = problem.template local<p>(i);
+    auto& sides = std::get<p>(sides_);
+    Item<r> c{};
+    c.item = i;
+    c.first = Index(sides.size());
+    c.weight = double(local.W.trace()) / r;
+    for (int k = 0; k < r; ++k) {  // W_kk = (H A⁻¹ Hᵀ)_kk (1 + softness) + compliance
+      const double whole = double(local.W(k, k)), softness = double(pool.softness[i][k]);
+      c.compliance[k] = (whole * softness + double(pool.compliance[i][k])) / (1 + softness);
+    }
+    c.best = c.centre = c.lambda = local.lambda.template cast<double>();
+    c.velocity = local.d.template cast<double>();
+    c.error.setZero();
+    c.move.setZero();
+    each_side(pool, i, [&](auto s, Index e) {
+      const auto& set = std::get<s>(pool.sets);
+      constexpr int narrow = Rows::template width_of<s>;
+      NewtonSide<r, width> side{number_[s][set.block[e]], Mat<r, width>::Zero(), Mat<width, r>::Zero()};
+      side.H.template leftCols<narrow>() = set.H[e].template cast<double>();
+      side.G.template topRows<narrow>() = set.G[e].template cast<double>();
+      for (Index t = c.first; t < Index(sides.size()); ++t)
+        if (sides[t].block != side.block) pairs_.push_back(std::minmax({sides[t].block, side.block}));
+      sides.push_back(side);
+    });
+    c.last = Index(sides.size());
+    std::get<p>(items_).push_back(c);
+    return c.weight > 0 && std::isfinite(c.weight);
+  }
+
+  /// The matrix of the island keeps its analysis while the graph of its bodies stands.
+  void analyse(Index island) {
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    if (Index(graphs_.size()) <= island) graphs_.resize(island + 1);
+    Graph& graph = graphs_[island];
+    if (graph.blocks != blocks_.size() || graph.pairs != pairs_) {
+      graph.blocks = blocks_.size();
+      graph.pairs.assign(pairs_.begin(), pairs_.end());
+      graph.matrix.analyse(Index(blocks_.size()), pairs_);
+    }
+    matrix_ = &graph.matrix;
+  }
+
+  std::array<std::vector<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
+  std::vector<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
+  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<Graph> graphs_;
+  BlockLu<width, double>* matrix_ = nullptr;
+  std::tuple<std::vector<Item<R>>...> items_;
+  std::tuple<std::vector<NewtonSide<R, width>>...> sides_;
+};
+
+}  // namespace delassus::inner

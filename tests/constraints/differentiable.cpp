@@ -1,0 +1,39 @@
+// Every law of the library takes part in Newton's method, with each compiler.
+#include <delassus/constraints/contact/contact.hpp>
+#include <delassus/constraints/contact/coulomb.hpp>
+#include <delassus/constraints/contact/frictionless.hpp>
+#include <delassus/constraints/contact/penalty.hpp>
+#include <delassus/constraints/contact/restitution.hpp>
+#include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/constraints/joints/distance_joint.hpp>
+
+#include "catch.hpp"
+
+using namespace delassus;
+
+static_assert(Differentiable<Contact<Coulomb>> && Differentiable<Contact<Frictionless>>);
+static_assert(Differentiable<Contact<Restitution<Coulomb>>> && Differentiable<Contact<Penalty<Coulomb>>>);
+static_assert(Differentiable<Contact<Restitution<Frictionless>>> && Differentiable<Contact<Penalty<Frictionless>>>);
+static_assert(Differentiable<BallJoint> && Differentiable<DistanceJoint>);
+static_assert(ConvexContact<Coulomb> && !ConvexContact<Frictionless>);
+
+namespace {
+
+struct Mute {
+  static constexpr int rows = 1;
+  static constexpr std::array<RowKind, 1> kinds{RowKind::lower};
+  struct Parameters {};
+};
+static_assert(!Differentiable<Contact<Mute>> && !Differentiable<Contact<Restitution<Mute>>>);
+
+}  // namespace
+
+TEST_CASE("a wrapped law answers with the tangent of what it wraps") {
+  const Coulomb law;
+  Local<3> a{Mat3(Vec3(1, 2, 2).asDiagonal()), Vec3(-1, 0.3, 0.1), Vec3(0.5, 0, 0)}, b = a;
+  const Contact<Restitution<Coulomb>> wrapped{Restitution{law, 0.5}};
+  Contact<Restitution<Coulomb>>::Item item;
+  item.parameters.friction = 0.5;
+  REQUIRE(law.tangent({0.5}, a) == wrapped.tangent(item, b));
+  REQUIRE(a.lambda == b.lambda);
+}
