@@ -55,7 +55,7 @@ template <class Laws, class Rows, class Operator, class F>
 void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
   LawBook<Laws, typename Rows::Scalar> book(problem.laws);
   problem.W.reset(problem.rows);
-  book.prepare(problem.W, problem.rows);
+  book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
   for (Index k = 0; k < problem.islands.count(); ++k) {
     IslandProblem island(book, problem.rows, problem.W, problem.islands, k, problem.h, nobody);
