@@ -43,10 +43,11 @@ inline Vec3 cone_support(double radius, double half, const Vec3& d) {
 
 /// D² d / |D d| with the semi-axes D: where the tangent plane is normal to d.
 inline Vec3 ellipsoid_support(const Vec3& axes, const Vec3& d) {
-  const Vec3 stretched = axes.cwiseProduct(d);
+  Vec3 stretched(axes[0] * d[0], axes[1] * d[1], axes[2] * d[2]);
   const double length = stretched.norm();
   if (!(length > 0)) return {0, 0, axes[2]};
-  return axes.cwiseProduct(stretched / length);
+  for (int k = 0; k < 3; ++k) stretched[k] *= axes[k] / length;
+  return stretched;
 }
 
 inline Index support_vertex(const ConvexHull& h, const Vec3& d) {

@@ -61,7 +61,9 @@ inline Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
 /// True when every entry is finite: 0·x is 0 for finite x and NaN otherwise, so one sum decides.
 template <class T, int R, int C>
 inline bool is_finite(const Eigen::Matrix<T, R, C>& x) {
-  return (x * T(0)).sum() == T(0);
+  T sum = 0;
+  for (int k = 0; k < R * C; ++k) sum += x.data()[k] * T(0);
+  return sum == T(0);
 }
 
 }  // namespace delassus

@@ -16,6 +16,22 @@ inline double half_surface(const Aabb& box) {
   return s[0] * s[1] + s[1] * s[2] + s[2] * s[0];
 }
 
+/// The box around two that are not empty.
+inline Aabb around(const Aabb& a, const Aabb& b) {
+  Aabb both = a;
+  for (int k = 0; k < 3; ++k) {
+    both.min()[k] = std::min(both.min()[k], b.min()[k]);
+    both.max()[k] = std::max(both.max()[k], b.max()[k]);
+  }
+  return both;
+}
+
+inline bool is_same(const Aabb& a, const Aabb& b) {
+  bool same = true;
+  for (int k = 0; k < 3; ++k) same = same && a.min()[k] == b.min()[k] && a.max()[k] == b.max()[k];
+  return same;
+}
+
 /// Each leaf carries a number. A leaf that moves keeps its place, and the boxes above it follow; when their
 /// surfaces have grown by half in sum, the tree is built anew by medians. A visit to k hits among n leaves is
 /// O(k + log n).
@@ -34,7 +50,7 @@ class DynamicTree {
     Index sibling = root_;
     while (!is_leaf(sibling)) {
       const auto growth = [&](Index n) {
-        return half_surface(node_[n].box.merged(box)) - (is_leaf(n) ? 0.0 : half_surface(node_[n].box));
+        return half_surface(around(node_[n].box, box)) - (is_leaf(n) ? 0.0 : half_surface(node_[n].box));
       };
       const auto& [left, right] = node_[sibling].child;
       sibling = growth(left) <= growth(right) ? left : right;
@@ -139,8 +155,8 @@ class DynamicTree {
   void refit(Index n) {
     for (; n >= 0; n = node_[n].parent) {
       Aabb& box = node_[n].box;
-      const Aabb fitted = node_[node_[n].child[0]].box.merged(node_[node_[n].child[1]].box);
-      if (fitted.min() == box.min() && fitted.max() == box.max()) return;
+      const Aabb fitted = around(node_[node_[n].child[0]].box, node_[node_[n].child[1]].box);
+      if (is_same(fitted, box)) return;
       surface_ += half_surface(fitted) - half_surface(box);
       box = fitted;
     }
@@ -152,11 +168,12 @@ class DynamicTree {
       node_[leaves_[first]].parent = parent;
       return leaves_[first];
     }
-    Aabb centres, whole;
-    for (Index i = first; i < last; ++i) {
+    const auto centre_of = [&](const Aabb& box) { return Aabb(Vec3(box.min() + box.max())); };
+    Aabb whole = node_[leaves_[first]].box, centres = centre_of(whole);
+    for (Index i = first + 1; i < last; ++i) {
       const Aabb& box = node_[leaves_[i]].box;
-      centres.extend(Vec3(box.min() + box.max()));
-      whole.extend(box);
+      centres = around(centres, centre_of(box));
+      whole = around(whole, box);
     }
     const int axis = largest_entry(Vec3(centres.max() - centres.min()));
     const Index middle = (first + last) / 2;

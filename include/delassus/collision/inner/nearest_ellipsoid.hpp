@@ -44,7 +44,7 @@ inline double secular_root(const Vec3& a, const Vec3& p, const Vec3& delta, doub
 /// semi-axis. The equation is that of [Eberly2013].
 inline NearestSurface nearest_surface_of_ellipsoid(const Vec3& axes, const Vec3& point, const Vec3& wish) {
   const double size = axes.maxCoeff();
-  const Vec3 a = axes / size, p = point.cwiseAbs() / size;
+  const Vec3 a = axes / size, p = Vec3(std::abs(point[0]), std::abs(point[1]), std::abs(point[2])) / size;
   int least = 0;
   for (const int k : {1, 2})
     if (a[k] < a[least]) least = k;

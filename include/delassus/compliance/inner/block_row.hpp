@@ -4,8 +4,6 @@
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <Eigen/Core>
-
 namespace delassus::inner {
 
 /// r += Σ_e W_e x_{column(e)}, e = 0 … count − 1, in the scalar of r.
@@ -20,18 +18,15 @@ inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const
 /// entries 0, 3 and 6; four entries from 0, 3 and 5 on hold them, the last with its first lane idle, and none
 /// lies outside of the block. Three sums, one a column, so that no addition waits for the one before it.
 inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* column, const Vec<3>* x) {
-  using Lanes = Eigen::Array<double, 4, 1>;
-  using Columns = Eigen::Map<const Lanes>;
-  Lanes first = Lanes::Zero(), second = Lanes::Zero(), third = Lanes::Zero();
+  double first[4] = {}, second[4] = {}, third[4] = {};
   for (Index e = 0; e < count; ++e) {
     const double* w = W[e].data();
     const double* y = x[column[e]].data();
-    first += Columns(w) * y[0];
-    second += Columns(w + 3) * y[1];
-    third += Columns(w + 5) * y[2];
+    for (int k = 0; k < 4; ++k) first[k] += w[k] * y[0];
+    for (int k = 0; k < 4; ++k) second[k] += w[k + 3] * y[1];
+    for (int k = 0; k < 4; ++k) third[k] += w[k + 5] * y[2];
   }
-  const Lanes both = first + second;
-  r[0] += both[0] + third[1], r[1] += both[1] + third[2], r[2] += both[2] + third[3];
+  for (int k = 0; k < 3; ++k) r[k] += (first[k] + second[k]) + third[k + 1];
 }
 
 }  // namespace delassus::inner
