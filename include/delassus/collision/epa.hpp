@@ -96,7 +96,7 @@ inline int independent(const Simplex& s, double size, std::array<DifferencePoint
 /// min over unit n of h(n), by outer approximation: the nearest face of the polytope bounds it below, the
 /// support plane in that face's direction above. Every h(n) met is a valid depth, and the least of them is
 /// the answer, so rounding in the polytope cannot make it wrong, only less than minimal. Ends when the bounds
-/// meet to 3e-10 of the size; when the points are spent before (round bodies about one axis or centre), it
+/// meet to 3e-10 of the size; when points or faces are spent before (round bodies about one axis or centre), it
 /// descends from the best normal. The origin may lie a little outside: then h < 0 is minus the distance.
 /// Source: [VanDenBergen2001].
 template <class D>
@@ -125,21 +125,20 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
     best.normal = normal;
     best_face = face;
   };
-  for (;;) {
+  bool do_bounds_meet = false;
+  while (!do_bounds_meet && !polytope.is_full()) {
     const int f = polytope.nearest_face();
     if (f < 0) break;
     const Polytope::Face& face = polytope.face(f);
-    if (best.h - face.offset <= tolerance) break;
+    do_bounds_meet = best.h - face.offset <= tolerance;
+    if (do_bounds_meet) break;
     const DifferencePoint q = difference.core(face.normal);
     consider(polytope.corners(f), face.normal, q);
-    if (face.normal.dot(q.w) - face.offset <= tolerance) break;
-    if (polytope.is_full()) {
-      descend(difference, best.normal, pierced_face(polytope, best.normal), tolerance, consider);
-      break;
-    }
-    if (!polytope.extend(q, 1e-14 * size)) polytope.retire(f);
+    do_bounds_meet = face.normal.dot(q.w) - face.offset <= tolerance;
+    if (!do_bounds_meet && !polytope.extend(q, 1e-14 * size)) polytope.retire(f);
   }
   if (best.h == std::numeric_limits<double>::infinity()) return best;
+  if (!do_bounds_meet) descend(difference, best.normal, pierced_face(polytope, best.normal), tolerance, consider);
   Simplex carrier{.p = {best_face[0], best_face[1], best_face[2]}, .count = 3};
   nearest_on_triangle(carrier);
   best.point_a = carrier.mix(&DifferencePoint::a);

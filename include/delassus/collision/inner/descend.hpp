@@ -5,15 +5,29 @@
 
 namespace delassus::inner {
 
-/// Three points of A − B whose triangle the ray from the origin along `d` pierces: the face of the polytope
-/// with the least offset / (normal · d).
+/// Whether the ray from the origin along d passes the triangle, whose corners run counter-clockwise about d.
+inline bool is_pierced(const std::array<DifferencePoint, 3>& corner, const Vec3& d) {
+  for (int k = 0; k < 3; ++k)
+    if (d.dot(corner[k].w.cross(corner[(k + 1) % 3].w)) < 0) return false;
+  return true;
+}
+
+/// Three points of A − B whose triangle the ray from the origin along `d` pierces; of several, which rounding makes of
+/// slivers, the nearest. Where rounding leaves none: the face with the least offset / (normal · d).
 inline std::array<DifferencePoint, 3> pierced_face(const Polytope& polytope, const Vec3& d) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   int best = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
+  bool is_through = false;
   for (int f = 0; f < polytope.face_count(); ++f) {
     const Polytope::Face& face = polytope.face(f);
     const double slope = face.normal.dot(d);
-    if (slope > 0 && face.offset / slope < least) least = face.offset / slope, best = f;
+    if (!(slope > 0) || face.offset == infinity) continue;
+    const bool passes = is_pierced(polytope.corners(f), d);
+    if (passes < is_through || (passes == is_through && face.offset / slope >= least)) continue;
+    least = face.offset / slope;
+    best = f;
+    is_through = passes;
   }
   return polytope.corners(best);
 }
