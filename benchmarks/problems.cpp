@@ -36,7 +36,7 @@ void per_block(benchmark::State& state, double blocks) {
 void sweep(benchmark::State& state, const std::string& path) {
   FrictionProblem p = read_problem(path);
   Book book(p.laws);
-  book.prepare(p.W, p.rows);
+  book.prepare(p.W, p.rows, p.h);
   NoObserver nobody;
   IslandProblem island(book, p.rows, p.W, p.islands, 0, p.h, nobody);
   for (int k = 0; k < 50; ++k) island.sweep();

@@ -69,7 +69,7 @@ Result run(FrictionProblem& problem, const Solver& solver, double time_limit) {
     LawBook<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
     typename WithDeadline<Solver, ThreadClock>::template Workspace<FrictionProblem::Rows> workspace;
     workspace.reset(problem.rows);
-    book.prepare(problem.W, problem.rows);
+    book.prepare(problem.W, problem.rows, problem.h);
     const double built = clock.now();
     NoObserver nobody;
     IslandProblem island(book, problem.rows, problem.W, problem.islands, 0, problem.h, nobody);

@@ -212,7 +212,7 @@ class Sleepers {
   template <class Set, class Body>
   static bool is_stirred(const Set& set, const Body& body) {
     const Pose now = set.pose(body.block);
-    return !set.velocity()[body.block].isZero(0) || !set.load(body.block).isZero(0) ||
+    return !is_zero(set.velocity()[body.block]) || !is_zero(set.load(body.block)) ||
            now.position != body.pose.position || now.rotation != body.pose.rotation;
   }
 
@@ -255,7 +255,7 @@ class Sleepers {
           world.each([&](const auto& set, auto s) {
             const auto& blocks = std::get<s>(pool.sets);
             for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-              if (!set.moves(blocks.block[e]) && !set.velocity()[blocks.block[e]].isZero(0)) island_quiet_[k] = 0;
+              if (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]])) island_quiet_[k] = 0;
           });
       });
   }

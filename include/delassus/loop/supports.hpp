@@ -23,7 +23,7 @@ class Supports {
           const Pose pose = set.pose(b);
           now_.push_back({s, b, set.handle(b).generation, pose, Dormant<World, Laws>::box_of(set, b, pose)});
           const auto& v = set.velocity()[b];
-          if (v.isZero(0)) continue;
+          if (is_zero(v)) continue;
           Aabb box = now_.back().box;
           const Vec3 way = h * v.template head<3>().template cast<double>();
           near(box.isEmpty() ? box : box.extend(Aabb(box).translate(way)));

@@ -58,6 +58,14 @@ inline Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
   return T(1) / x.dot(yz) * columns<T>({yz[0], zx[0], xy[0]}, {yz[1], zx[1], xy[1]}, {yz[2], zx[2], xy[2]});
 }
 
+/// True when every entry is zero, in fewer instructions than Eigen's isZero(0).
+template <class T, int R, int C>
+inline bool is_zero(const Eigen::Matrix<T, R, C>& x) {
+  for (int k = 0; k < R * C; ++k)
+    if (x.data()[k] != T(0)) return false;
+  return true;
+}
+
 /// True when every entry is finite: 0·x is 0 for finite x and NaN otherwise, so one sum decides.
 template <class T, int R, int C>
 inline bool is_finite(const Eigen::Matrix<T, R, C>& x) {

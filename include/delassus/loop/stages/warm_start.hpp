@@ -27,7 +27,7 @@ void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double step_rat
       } else {
         const auto& item = pool.item(i);
         const Vec3 impulse = step_ratio * book.remembered(item.record, 0.02);
-        if (impulse.isZero(0)) continue;
+        if (is_zero(impulse)) continue;
         constexpr int R = Rows::template rows_of<p>;
         lambda[i] = (item.frame.template topRows<R>() * impulse).template cast<T>();
         if constexpr (requires { pool.law.clamp(item, lambda[i]); }) pool.law.clamp(item, lambda[i]);
