@@ -20,7 +20,7 @@ GATHERING = {"delassus.hpp": 7, "fwd.hpp": 7, "loop/defaults.hpp": 7}
 FREE = {"version.hpp", "fwd.hpp"}
 
 EIGEN = {"Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"}
-EIGEN_LINEAR = {"Eigen/SparseCore", "Eigen/OrderingMethods"}
+EIGEN_LINEAR = {"Eigen/LU", "Eigen/OrderingMethods", "Eigen/SparseCore"}
 HEAVY = {"iostream", "ranges", "regex", "execution"}
 STANDARD = re.compile(r"^[a-z_0-9]+(\.h)?$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -26,6 +26,14 @@ TEST_CASE("the stack of ten boxes agrees with the reference, and the loop is lef
   CHECK(state_hash(loop) == before);
 }
 
+// Four contacts of one face do not lie in a plane to rounding: in all steps but the first Gauss-Seidel stays
+// at 1e-8.
+TEST_CASE("the stack reaches the reference's tolerance at every step tried") {
+  auto loop = contact_loop(0.6);
+  demonstration::add_stack_of_boxes(bodies<RigidBodies>(loop.world()));
+  compare_at(loop, 1.0 / 120, {1, 2, 3, 50, 200, 500});
+}
+
 TEST_CASE("one wrong impulse in the stack is found and named") {
   auto loop = contact_loop(0.6);
   demonstration::add_stack_of_boxes(bodies<RigidBodies>(loop.world()));
@@ -51,11 +59,9 @@ TEST_CASE("one wrong impulse in the stack is found and named") {
 }
 
 TEST_CASE("blocks that slide down a slope and blocks that stick agree with the reference") {
-  for (const int step : {1, 60, 300}) {
-    auto loop = contact_loop(0.5);
-    add_slope(loop);
-    compare(loop, 1.0 / 240, step);
-  }
+  auto loop = contact_loop(0.5);
+  add_slope(loop);
+  compare_at(loop, 1.0 / 240, {1, 2, 10, 60, 150, 300, 600});
 }
 
 TEST_CASE("a reference that did not get there says so") {

@@ -87,6 +87,21 @@ class LawBook<Constraints<Laws...>, T> {
   static constexpr auto kinds() {
     return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
   }
+  /// Whether the law of pool p is a round cone, and its μ.
+  template <int p>
+  static constexpr bool has_cone() {
+    using Pool = std::remove_cvref_t<decltype(std::declval<const Constraints<Laws...>&>().template pool<p>())>;
+    constexpr auto law_kinds = kinds<p>();
+    if constexpr (law_kinds.size() != 3 || !requires(const Pool& pool) { pool.item(0).parameters.friction; })
+      return false;
+    else
+      return law_kinds[0] == RowKind::lower && law_kinds[1] == RowKind::friction && law_kinds[2] == RowKind::friction;
+  }
+  template <int p>
+  double friction(Index i) const {
+    return double(constraints_->template pool<p>().item(i).parameters.friction);
+  }
+
   /// −∂λ/∂d of the impulse that meets the law where W is diagonal, and that impulse: see `constraints/law.hpp`.
   template <int p, int R, class N>
     requires Differentiable<std::tuple_element_t<p, std::tuple<Laws...>>>
