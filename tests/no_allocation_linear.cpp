@@ -1,9 +1,11 @@
 // A program of its own: it counts every call of operator new.
+#include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
 #include <vector>
 
 #include "catch.hpp"
+#include "compliance/coupled_grid.hpp"
 #include "count_allocations.hpp"
 #include "linear/block_graphs.hpp"
 
@@ -32,4 +34,24 @@ TEST_CASE("factoring, refactoring, solving and compliances allocate nothing the 
     REQUIRE(f.refactor(region));
   }
   CHECK(allocations == before);
+}
+
+TEST_CASE("building W from the compliance of nodes allocates nothing the second time") {
+  using Rows = RowSystem<double, Widths<3>, 3>;
+  coupled_grid::Alone<coupled_grid::CompliantGrids> world;
+  world.set.add(grid<3>(5, 5, 5, 42));
+  world.set.add(grid<3>(4, 4, 4, 43));
+  Rows rows;
+  rows.pool<0>().reset(30);
+  std::mt19937 random(1);
+  for (Index i = 0; i < 30; ++i)
+    coupled_grid::add_item(rows.pool<0>(), std::vector<Index>{i, i + 1, 150}, random);
+  AssembledCompliance::Operator<Rows> W;
+  long before = 0;
+  for (int n = 0; n < 2; ++n) {
+    before = allocations;
+    W.build(world, rows);
+  }
+  CHECK(allocations == before);
+  CHECK(before > 0);
 }
