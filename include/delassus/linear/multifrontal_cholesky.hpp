@@ -157,23 +157,14 @@ class MultifrontalCholesky {
     const inner::FrontPlace& front = layout_.fronts[s];
     const Index height = w * Index(x.rows.size()), width = w * x.width, below = height - width;
     const Columns<T> L{&factor_[front.factor], std::size_t(height)};
-    // On the stack it is made on top of the children's parts; moved down to the first of them when they are
-    // used.
-    T* const place = (front.is_kept ? kept_.data() : stack_.data()) + front.update;
-    T* const top = front.is_kept || x.children.empty()
-                       ? place
-                       : part(x.children.back()).at(0, below_of(x.children.back()));
-    const Columns<T> U{top, std::size_t(below)};
+    const Columns<T> U = part(s);
     std::fill_n(L.data, std::size_t(height) * width, T(0));
-    for (Index j = 0; j < below; ++j) std::fill_n(U.at(j, j), below - j, T(0));
     enter(x, L);
-    for (const Index child : x.children) add_child(child, L, U, width);
+    for (const Index child : x.children) add_child(child, L, 0, width);
     if (!kernel_.factor(L, height, width)) return false;
     const Columns<const T> L21{L.at(width, 0), L.stride};
-    kernel_.subtract(U, L21, L21, below, below, width, true);
-    if (top != place)
-      for (Index j = 0; j < below; ++j)
-        std::copy_n(U.at(j, j), below - j, place + std::size_t(j) * (below + 1));
+    kernel_.negated_product(U, L21, L21, below, below, width, true);
+    for (const Index child : x.children) add_child(child, U, width, height);
     return true;
   }
 
@@ -199,15 +190,17 @@ class MultifrontalCholesky {
     for (int c = 0; c < w; ++c) std::copy_n(block.data() + w * c, w, to.at(0, c));
   }
 
-  /// L and U += what a child left, lower triangles.
-  void add_child(Index child, Columns<T> L, Columns<T> U, Index width) {
+  /// The front's columns first … last − 1 += what a child left, lower triangle; `to` begins with entry
+  /// (first, first).
+  void add_child(Index child, Columns<T> to, Index first, Index last) {
     const auto& runs = layout_.fronts[child].runs;
     const Columns<T> from = part(child);
     for (std::size_t b = 0; b < runs.size(); ++b)
       for (Index c = 0; c < w * runs[b].length; ++c) {
         const Index column = w * runs[b].to + c;
+        if (column < first || column >= last) continue;
         const T* source = from.at(0, w * runs[b].from + c);
-        T* target = column < width ? L.at(0, column) : U.at(0, column - width) - width;
+        T* target = to.at(0, column - first) - first;
         for (std::size_t a = b; a < runs.size(); ++a) {
           const Index skip = a == b ? c : 0, length = w * runs[a].length - skip;
           Line(target + w * runs[a].to + skip, length) += ConstLine(source + w * runs[a].from + skip, length);

@@ -63,9 +63,9 @@ class NodeCompliance {
                Index columns) {
     const Index width = w * x.width, below = w * x.below();
     kernel_.solve_right(Y, L, used, width);
-    gather_.assign(std::size_t(used) * below, T(0));
+    gather_.resize(std::size_t(used) * below);
     const inner::Columns<T> G{gather_.data(), std::size_t(used)};
-    kernel_.subtract(G, {Y.data, Y.stride}, L.from(width, 0), used, below, width, false);
+    kernel_.negated_product(G, {Y.data, Y.stride}, L.from(width, 0), used, below, width, false);
     for (Index i = 0; i < below; ++i)
       Line(line(x.rows[x.width + i / w], i % w, columns, first), used) += ConstLine(G.at(0, i), used);
   }

@@ -21,9 +21,10 @@ struct FrontPlace {
   std::vector<FrontRun> runs;
 };
 
-/// Columns of L lie one after the other; parts for parents are a stack, as children stand before their
-/// parents. What goes to a parent among the last nodes is kept from one factorization to the next. Sizes are
-/// in numbers.
+/// Columns of L lie one after the other. Parts for parents are on two stacks, as children stand before their
+/// parents: those of even depth on one, those of odd depth on the other, so that a front takes its children's
+/// from the top of one and leaves its own on top of the other. What goes to a parent among the last nodes is
+/// kept from one factorization to the next. Sizes are in numbers.
 struct FrontLayout {
   std::vector<FrontPlace> fronts;
   std::size_t factor_size = 0, stack_size = 0, kept_size = 0;
@@ -32,23 +33,29 @@ struct FrontLayout {
   void analyse(const SupernodalPattern& pattern, int w) {
     const auto& supernodes = pattern.supernodes();
     fronts.assign(supernodes.size(), {});
-    factor_size = stack_size = kept_size = 0;
-    std::size_t top = 0;
+    factor_size = kept_size = 0;
+    std::vector<char> depth(fronts.size(), 0);  // modulo 2
+    for (Index s = Index(fronts.size()); s-- > 0;)
+      if (supernodes[s].parent >= 0) depth[s] = !depth[supernodes[s].parent];
+    std::size_t top[2] = {}, highest[2] = {};
     for (Index s = 0; s < Index(fronts.size()); ++s) {
       const Supernode& x = supernodes[s];
       FrontPlace& front = fronts[s];
-      const std::size_t below = std::size_t(w) * x.below(), size = below * below;
+      const std::size_t below = std::size_t(w) * x.below();
       front.factor = factor_size;
       factor_size += std::size_t(w) * x.rows.size() * w * x.width;
       front.is_kept = x.parent >= 0 && pattern.is_last(supernodes[x.parent].first);
-      // It is made on top of the children's parts, and takes the place of the first of them.
-      if (!front.is_kept) stack_size = std::max(stack_size, top + size);
-      if (!x.children.empty() && !fronts[x.children[0]].is_kept) top = fronts[x.children[0]].update;
-      std::size_t& end = front.is_kept ? kept_size : top;
+      if (!x.children.empty() && !fronts[x.children[0]].is_kept)
+        top[!depth[s]] = fronts[x.children[0]].update;
+      std::size_t& end = front.is_kept ? kept_size : top[int(depth[s])];
       front.update = end;
-      end += size;
+      end += below * below;
+      for (const int k : {0, 1}) highest[k] = std::max(highest[k], top[k]);
       if (x.parent >= 0) find_runs(x, supernodes[x.parent], front.runs);
     }
+    stack_size = highest[0] + highest[1];
+    for (std::size_t s = 0; s < fronts.size(); ++s)
+      if (depth[s] && !fronts[s].is_kept) fronts[s].update += highest[0];
   }
 
  private:
