@@ -1,9 +1,10 @@
 // Needs: cholmod (apt-get install libsuitesparse-dev)
 // Also built with: -march=native
 //
-// Factorization of a soft box and the compliance of nodes of its top, against CHOLMOD's supernodal factorization with METIS'
-// order and its solve with many right-hand sides, turn by turn in one run; CPU time of one thread (set OPENBLAS_NUM_THREADS=1).
-// The BLAS is whichever the system has. Arguments: nodes (of tetrahedral_box.hpp), touched nodes.
+// Factorization of a soft box and the compliance of nodes of its top, against CHOLMOD's supernodal
+// factorization with METIS' order and its solve with many right-hand sides, turn by turn in one run; CPU time
+// of one thread (set OPENBLAS_NUM_THREADS=1). The BLAS is whichever the system has. Arguments: nodes (of
+// tetrahedral_box.hpp), touched nodes.
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
 #include <cholmod.h>

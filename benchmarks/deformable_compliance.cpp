@@ -1,9 +1,10 @@
 // Also built with: -march=native
 //
-// W = H A⁻¹ Hᵀ of contacts on a soft box, and what it needs: factorization, refactorization of a region, assembly. Each
-// against another way, turn by turn in one run; CPU time of one thread. "The model's way" is the algorithm of the component
-// that is modelled: forward substitution of every row of H through all columns of an LDLᵀ factor, then a dot product a pair of
-// rows. Arguments: nodes (of tetrahedral_box.hpp), contacts, nodes a contact.
+// W = H A⁻¹ Hᵀ of contacts on a soft box, and what it needs: factorization, refactorization of a region,
+// assembly. Each against another way, turn by turn in one run; CPU time of one thread. "The model's way" is
+// the algorithm of the component that is modelled: forward substitution of every row of H through all columns
+// of an LDLᵀ factor, then a dot product a pair of rows. Arguments: nodes (of tetrahedral_box.hpp), contacts,
+// nodes a contact.
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
@@ -24,7 +25,6 @@ using Rows = RowSystem<double, Widths<3>, 3>;
 /// One soft body as a builder of W sees it.
 struct SoftBox {
   using Scalar = double;
-  static constexpr int width = 3;
   Box box;
   MultifrontalCholesky<3, double> factor;
 
