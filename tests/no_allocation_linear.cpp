@@ -1,22 +1,26 @@
 // A program of its own: it counts every call of operator new.
+#include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
 #include <vector>
 
 #include "catch.hpp"
+#include "compliance/coupled_grid.hpp"
 #include "count_allocations.hpp"
 #include "linear/block_graphs.hpp"
 
 using namespace delassus;
 using namespace block_graphs;
 
-TEST_CASE("factoring, solving and compliances allocate nothing the second time") {
+TEST_CASE("factoring, refactoring, solving and compliances allocate nothing the second time") {
   const auto g = grid<3>(9, 9, 9, 41);
   MultifrontalCholesky<3, double> f;
-  f.analyse(g.n, g.pairs, g.positions);
+  const std::vector<Index> region{0, 1, 9, 10, 81, 82};
+  f.analyse(g.n, g.pairs, g.positions, region);
   std::vector<Vec3> x(g.n, Vec3(1, 2, 3));
   const std::vector<Index> nodes{1, 5, 700, 300};
   std::vector<double> C(144);
+  NodeCompliance<3, double> compliance;
   long before = 0;
   for (int n = 0; n < 2; ++n) {
     before = allocations;
@@ -24,6 +28,30 @@ TEST_CASE("factoring, solving and compliances allocate nothing the second time")
     f.factor();
     f.solve(x);
     f.compliance(nodes, C);
+    compliance.find(f, nodes, C);
+    f.set_zero(region);
+    for (const Index i : region) f.add_diagonal(i, 1e3 * Mat3::Identity());
+    REQUIRE(f.refactor(region));
   }
   CHECK(allocations == before);
+}
+
+TEST_CASE("building W from the compliance of nodes allocates nothing the second time") {
+  using Rows = RowSystem<double, Widths<3>, 3>;
+  coupled_grid::Alone<coupled_grid::CompliantGrids> world;
+  world.set.add(grid<3>(5, 5, 5, 42));
+  world.set.add(grid<3>(4, 4, 4, 43));
+  Rows rows;
+  rows.pool<0>().reset(30);
+  std::mt19937 random(1);
+  for (Index i = 0; i < 30; ++i)
+    coupled_grid::add_item(rows.pool<0>(), std::vector<Index>{i, i + 1, 150}, random);
+  AssembledCompliance::Operator<Rows> W;
+  long before = 0;
+  for (int n = 0; n < 2; ++n) {
+    before = allocations;
+    W.build(world, rows);
+  }
+  CHECK(allocations == before);
+  CHECK(before > 0);
 }

@@ -4,6 +4,7 @@
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/compliance/inner/block_row.hpp>
 #include <delassus/compliance/inner/incidence.hpp>
+#include <delassus/compliance/inner/nodal_rows.hpp>
 
 #include <tuple>
 #include <type_traits>
@@ -57,7 +58,12 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   void build(const World& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
       if constexpr (couples<decltype(set)>)
-        if (set.is_coupled()) return columns_.template prepare<s>(set, rows);
+        if (set.is_coupled()) {
+          if constexpr (NodeCompliantSet<std::remove_cvref_t<decltype(set)>>)
+            return nodal_.template prepare<s>(set, rows);
+          else
+            return columns_.template prepare<s>(set, rows);
+        }
       if constexpr (!Inverse::is_whole && inner::may_couple<std::remove_cvref_t<decltype(set)>>) {
         if (set.is_coupled())
           inner::apply_mass_inverse(set, rows, s);
@@ -164,7 +170,13 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
       diagonal[i].setZero();
       world.each([&](const auto& set, auto s) {
         if constexpr (couples<decltype(set)>)
-          if (set.is_coupled()) return add_coupled<a, s>(rows, i);
+          if (set.is_coupled()) {
+            if constexpr (NodeCompliantSet<std::remove_cvref_t<decltype(set)>>)
+              return nodal_.template each<s, a>(rows, i,
+                                                [&](auto b, Index j, const auto& W) { add<a, b>(i, j, W); });
+            else
+              return add_coupled<a, s>(rows, i);
+          }
         add_row<a, s>(rows, i);
       });
       inner::add_compliance(diagonal[i], pool.compliance[i], pool.softness[i]);
@@ -228,6 +240,7 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   std::array<std::vector<Index>, sizeof...(R)> place_;
   inner::Incidence<Rows> incidence_;
   inner::CoupledColumns<Rows> columns_;
+  inner::NodalRows<Rows> nodal_;
 };
 
 }  // namespace delassus

@@ -26,9 +26,13 @@ struct Supernode {
 /// of each column, then supernodes, merged with their parents where that adds few zeros.
 class SupernodalPattern {
  public:
-  /// `order[k]`: the node eliminated at place k; the postorder may permute it further.
-  void analyse(const NodeGraph& graph, std::vector<Index> order) {
+  /// `order[k]`: the node eliminated at place k; the postorder may permute it further. The last `last` nodes
+  /// of it are not merged with others: what lies above them in the tree are nodes of their kind.
+  void analyse(const NodeGraph& graph, std::vector<Index> order, Index last = 0) {
     node_ = std::move(order);
+    is_last_.clear();
+    if (last > 0) is_last_.assign(node_.size(), false);
+    for (Index k = nodes() - last; k < nodes(); ++k) is_last_[node_[k]] = true;
     number_places();
     find_tree(graph);
     postorder();
@@ -43,6 +47,7 @@ class SupernodalPattern {
   Index place(Index node) const { return place_[node]; }
   Index node(Index place) const { return node_[place]; }
   Index supernode_of(Index place) const { return owner_[place]; }
+  bool is_last(Index place) const { return !is_last_.empty() && is_last_[node_[place]]; }
   const std::vector<Supernode>& supernodes() const { return supernodes_; }
 
  private:
@@ -111,9 +116,11 @@ class SupernodalPattern {
     for (Index k = 0, next = 0; k < nodes(); k = next) {
       next = k + 1;
       while (next < nodes() && parent_[next - 1] == next && child_count_[next] == 1 &&
-             rows_[next].size() + 1 == rows_[next - 1].size())
+             rows_[next].size() + 1 == rows_[next - 1].size() && is_last(next) == is_last(k))
         ++next;
-      Supernode s{.first = k, .width = next - k};
+      Supernode s;
+      s.first = k;
+      s.width = next - k;
       for (Index i = k; i < next; ++i) s.rows.push_back(i);
       s.rows.insert(s.rows.end(), rows_[next - 1].begin(), rows_[next - 1].end());
       supernodes_.push_back(std::move(s));
@@ -142,8 +149,9 @@ class SupernodalPattern {
     }
   }
 
-  static bool pays(const Supernode& a, const Supernode& b) {
+  bool pays(const Supernode& a, const Supernode& b) const {
     if (a.below() == 0 || a.rows[a.width] >= b.first + b.width) return false;  // b is not the parent
+    if (is_last(a.first) != is_last(b.first)) return false;
     const double width = a.width + b.width, height = a.width + double(b.rows.size());
     const double zeros = a.width * (height - double(a.rows.size())),
                  all = width * height - 0.5 * width * width;
@@ -167,6 +175,7 @@ class SupernodalPattern {
   }
 
   std::vector<Index> node_, place_, parent_, owner_, child_count_;
+  std::vector<bool> is_last_;  ///< by node; empty without last nodes
   std::vector<std::vector<Index>> rows_;
   std::vector<Supernode> supernodes_;
 };
@@ -185,10 +194,11 @@ struct LowerEntries {
       start.push_back(Index(row.size()));
     }
   }
-  /// The entry of a row in a column; it exists.
+  /// The entry of a row in a column; −1 where there is none.
   Index find(Index at, Index column) const {
     const auto first = row.begin() + start[column], last = row.begin() + start[column + 1];
-    return Index(std::lower_bound(first, last, at) - row.begin());
+    const auto e = std::lower_bound(first, last, at);
+    return e != last && *e == at ? Index(e - row.begin()) : -1;
   }
 };
 

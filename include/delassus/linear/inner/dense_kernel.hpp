@@ -28,25 +28,22 @@ template <class T>
 class DenseKernel {
   using Packet = typename Eigen::internal::packet_traits<T>::type;
   static constexpr Index lanes = Eigen::internal::unpacket_traits<Packet>::size;
-  static constexpr Index tile_rows = 3 * lanes, tile_columns = 4;  ///< twelve sums in registers
-  static constexpr Index depth = 128;                              ///< columns of A packed at a time
+  /// Twelve sums in sixteen registers, or twenty-four in thirty-two.
+  static constexpr Index tile_rows = 3 * lanes,
+                         tile_columns = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
+  static constexpr Index depth = 128;  ///< columns of A packed at a time
 
  public:
   /// C −= A Bᵀ, C is m × n, A is m × k, B is n × k. With `is_lower` only entries i ≥ j are needed (others may
   /// change).
   void subtract(Columns<T> C, Columns<const T> A, Columns<const T> B, Index m, Index n, Index k,
                 bool is_lower) {
-    for (Index done = 0; done < k; done += depth) {
-      const Index width = std::min(depth, k - done);
-      pack(a_, A.from(0, done), m, width, tile_rows);
-      pack(b_, B.from(0, done), n, width, tile_columns);
-      for (Index i = 0; i < m; i += tile_rows) {
-        const Index last = is_lower ? std::min(n, i + tile_rows) : n;
-        for (Index j = 0; j < last; j += tile_columns)
-          tile(C.from(i, j), std::min(tile_rows, m - i), std::min(tile_columns, n - j),
-               &a_[std::size_t(i) * width], &b_[std::size_t(j) * width], width);
-      }
-    }
+    multiply(C, A, B, m, n, k, is_lower, false);
+  }
+  /// C = −A Bᵀ, likewise, k > 0: what C was is not read.
+  void negated_product(Columns<T> C, Columns<const T> A, Columns<const T> B, Index m, Index n, Index k,
+                       bool is_lower) {
+    multiply(C, A, B, m, n, k, is_lower, true);
   }
 
   /// The first `columns` columns of the m × columns matrix C become those of its Cholesky factor; false when
@@ -70,25 +67,46 @@ class DenseKernel {
   }
 
  private:
+  void multiply(Columns<T> C, Columns<const T> A, Columns<const T> B, Index m, Index n, Index k,
+                bool is_lower, bool is_new) {
+    for (Index done = 0; done < k; done += depth) {
+      const Index width = std::min(depth, k - done);
+      pack<tile_rows>(a_, A.from(0, done), m, width);
+      pack<tile_columns>(b_, B.from(0, done), n, width);
+      for (Index i = 0; i < m; i += tile_rows) {
+        const Index last = is_lower ? std::min(n, i + tile_rows) : n;
+        for (Index j = 0; j < last; j += tile_columns)
+          tile(C.from(i, j), std::min(tile_rows, m - i), std::min(tile_columns, n - j),
+               &a_[std::size_t(i) * width], &b_[std::size_t(j) * width], width, is_new && done == 0);
+      }
+    }
+  }
+
   using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
   using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
   /// Strips of `height` rows, each column by column; missing rows are zero.
-  static void pack(std::vector<T>& to, Columns<const T> from, Index rows, Index columns, Index height) {
+  template <Index height>
+  static void pack(std::vector<T>& to, Columns<const T> from, Index rows, Index columns) {
     const Index strips = (rows + height - 1) / height;
     if (to.size() < std::size_t(strips) * height * columns) to.resize(std::size_t(strips) * height * columns);
     T* p = to.data();
     for (Index i = 0; i < rows; i += height) {
       const Index there = std::min(height, rows - i);
       for (Index j = 0; j < columns; ++j, p += height) {
-        std::copy_n(from.at(i, j), there, p);
-        std::fill(p + there, p + height, T(0));
+        const T* source = from.at(i, j);
+        if (there == height) {
+          for (Index r = 0; r < height; ++r) p[r] = source[r];
+        } else {
+          for (Index r = 0; r < there; ++r) p[r] = source[r];
+          for (Index r = there; r < height; ++r) p[r] = T(0);
+        }
       }
     }
   }
 
-  /// One tile of C −= a bᵀ over packed strips; a tile at the edge goes through a copy.
-  static void tile(Columns<T> C, Index rows, Index columns, const T* a, const T* b, Index k) {
+  /// One tile of C −= a bᵀ, or of C = −a bᵀ, over packed strips; a tile at the edge goes through a copy.
+  static void tile(Columns<T> C, Index rows, Index columns, const T* a, const T* b, Index k, bool is_new) {
     using namespace Eigen::internal;
     Packet s[tile_columns][3];
     for (auto& column : s)
@@ -106,7 +124,7 @@ class DenseKernel {
       for (int c = 0; c < tile_columns; ++c)
         for (int r = 0; r < 3; ++r) {
           T* to = C.at(r * lanes, c);
-          pstoreu(to, psub(ploadu<Packet>(to), s[c][r]));
+          pstoreu(to, is_new ? pnegate(s[c][r]) : psub(ploadu<Packet>(to), s[c][r]));
         }
       return;
     }
@@ -115,7 +133,7 @@ class DenseKernel {
       for (int r = 0; r < 3; ++r) pstoreu(edge + c * tile_rows + r * lanes, s[c][r]);
     for (Index c = 0; c < columns; ++c) {
       T* to = C.at(0, c);
-      for (Index r = 0; r < rows; ++r) to[r] -= edge[c * tile_rows + r];
+      for (Index r = 0; r < rows; ++r) to[r] = (is_new ? T(0) : to[r]) - edge[c * tile_rows + r];
     }
   }
 

@@ -1,0 +1,107 @@
+/// The compliance of chosen nodes: their rows and columns of A⁻¹ from a multifrontal factor of A.
+#pragma once
+
+#include <delassus/linear/inner/dense_kernel.hpp>
+#include <delassus/linear/supernodes.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// C = S A⁻¹ Sᵀ, S the rows of the identity that belong to n nodes:
+///
+///   P A Pᵀ = L Lᵀ,   C = Yᵀ Y,   Y = L⁻¹ P Sᵀ.
+///
+/// Y is zero but on the paths from the nodes to the roots of the elimination tree, and no more is visited.
+/// The nodes are taken in the order of elimination: those below a supernode are then a run, and its part of Y
+/// is dense. Its buffers keep their capacity: a warm call with as many nodes allocates nothing. Source: J. R.
+/// Gilbert, T. Peierls, "Sparse partial pivoting in time proportional to arithmetic operations" (the reach of
+/// a right-hand side).
+template <int w, class T>
+class NodeCompliance {
+ public:
+  /// C, (w n) × (w n) numbers by columns, of the nodes, each named once. `factor` offers `pattern()` and
+  /// `columns_of(supernode)`.
+  template <class Factor>
+  void find(const Factor& factor, std::span<const Index> nodes, std::span<T> C) {
+    const SupernodalPattern& pattern = factor.pattern();
+    const Index columns = w * Index(nodes.size());
+    find_reach(pattern, nodes);
+    y_.assign(std::size_t(columns) * rows_, T(0));
+    result_.assign(std::size_t(columns) * columns, T(0));
+    for (Index k = 0; k < Index(nodes.size()); ++k) {
+      const Index place = wanted_[k].first;
+      for (int c = 0; c < w; ++c) *line(place, c, columns, w * k + c) = T(1);
+    }
+    const inner::Columns<T> minus{result_.data(), std::size_t(columns)};
+    for (const Index s : visited_) {
+      const Supernode& x = pattern.supernodes()[s];
+      const Index lo = w * first_wanted(x.first_descendant), hi = w * first_wanted(x.first + x.width);
+      const inner::Columns<T> Y{line(x.first, 0, columns, lo), std::size_t(columns)};
+      forward(x, factor.columns_of(s), Y, lo, hi - lo, columns);
+      const inner::Columns<const T> same{Y.data, Y.stride};
+      kernel_.subtract(minus.from(lo, lo), same, same, hi - lo, hi - lo, w * x.width, true);
+    }
+    for (Index j = 0; j < columns; ++j)
+      for (Index i = j; i < columns; ++i) {
+        const std::size_t a = w * wanted_[i / w].second + i % w, b = w * wanted_[j / w].second + j % w;
+        C[a + b * columns] = C[b + a * columns] = -*minus.at(i, j);
+      }
+  }
+
+ private:
+  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
+  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
+
+  /// Y ← L⁻¹ Y, the share of one supernode. Y is stored transposed, one column a row of L, `used` of its
+  /// columns from `first` on.
+  void forward(const Supernode& x, inner::Columns<const T> L, inner::Columns<T> Y, Index first, Index used,
+               Index columns) {
+    const Index width = w * x.width, below = w * x.below();
+    kernel_.solve_right(Y, L, used, width);
+    gather_.resize(std::size_t(used) * below);
+    const inner::Columns<T> G{gather_.data(), std::size_t(used)};
+    kernel_.negated_product(G, {Y.data, Y.stride}, L.from(width, 0), used, below, width, false);
+    for (Index i = 0; i < below; ++i)
+      Line(line(x.rows[x.width + i / w], i % w, columns, first), used) += ConstLine(G.at(0, i), used);
+  }
+
+  /// The wanted nodes by place, the supernodes above them, and where the rows of those are kept.
+  void find_reach(const SupernodalPattern& pattern, std::span<const Index> nodes) {
+    const auto& supernodes = pattern.supernodes();
+    wanted_.clear();
+    visited_.clear();
+    slot_.assign(pattern.nodes(), -1);
+    for (Index k = 0; k < Index(nodes.size()); ++k) wanted_.emplace_back(pattern.place(nodes[k]), k);
+    std::sort(wanted_.begin(), wanted_.end());
+    for (auto [place, k] : wanted_)
+      for (Index s = pattern.supernode_of(place); s >= 0 && slot_[supernodes[s].first] < 0;
+           s = supernodes[s].parent) {
+        slot_[supernodes[s].first] = 0;
+        visited_.push_back(s);
+      }
+    std::sort(visited_.begin(), visited_.end());
+    rows_ = 0;
+    for (const Index s : visited_)
+      for (Index c = 0; c < supernodes[s].width; ++c, rows_ += w) slot_[supernodes[s].first + c] = rows_;
+  }
+  Index first_wanted(Index place) const {
+    return Index(std::lower_bound(wanted_.begin(), wanted_.end(), std::pair<Index, Index>(place, -1)) -
+                 wanted_.begin());
+  }
+  T* line(Index place, int c, Index columns, Index at) {
+    return &y_[std::size_t(slot_[place] + c) * columns + at];
+  }
+
+  inner::DenseKernel<T> kernel_;
+  std::vector<T> y_, gather_, result_;
+  std::vector<std::pair<Index, Index>> wanted_;  ///< (place, number)
+  std::vector<Index> visited_, slot_;
+  Index rows_ = 0;
+};
+
+}  // namespace delassus
