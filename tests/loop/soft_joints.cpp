@@ -240,3 +240,14 @@ TEST_CASE("a soft body that is given a force that is no number stays where it wa
   };
   CHECK(run(false) == run(true));
 }
+
+TEST_CASE("a soft body that is taken out takes its joints with it, and the others go on") {
+  Hanging s;
+  for (int n = 0; n < 5; ++n) s.loop.step(0.01);
+  CHECK(s.loop.report().rows == 9);
+  s.loop.remove(s.second);
+  s.loop.step(0.01);
+  CHECK(s.loop.report().rows == 3);
+  CHECK(s.loop.report().status == Status::converged);
+  CHECK_THROWS_AS(s.loop.remove(s.second), InvalidArgument);
+}

@@ -200,7 +200,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   }
 
  private:
-  std::string body_name(Index k) const { return "soft body #" + std::to_string(k); }
+  std::string body_name(Index k) const { return std::string("soft body #") + std::to_string(k); }
   std::string name(Index b) const { return body_name(body_[b]) + ", " + who(b); }
   Index checked_body(BodyHandle body) const {
     DELASSUS_EXPECT(body.owner == this->owner(), "this soft body's handle belongs to another world");

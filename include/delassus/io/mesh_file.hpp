@@ -56,7 +56,7 @@ class GmshReader {
       } else if (section.empty() || section[0] != '$') {
         in_.refuse_here("'" + section.substr(0, 40) + "' stands where a section, $Nodes say, should begin");
       }
-      const std::string end = "$End" + section.substr(1);
+      const std::string end = std::string("$End").append(section, 1);
       while (in_.word(end) != end) {
       }
     }
