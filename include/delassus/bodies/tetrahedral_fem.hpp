@@ -95,12 +95,9 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   /// The share of the elements around a node, kg; fixed nodes have theirs too.
   T mass(Index b) const { return mass_[b]; }
   /// ∫Ψ of all bodies where they are now, J. Evaluates every element.
-  double elastic_energy() {
+  double elastic_energy() const {
     double sum = 0;
-    each_body([&](auto& body) {
-      body.factor({.mass = 1}, x_, mass_, inverse_mass_);
-      sum += body.energy();
-    });
+    each_body([&](const auto& body) { sum += body.energy(x_); });
     return sum;
   }
   /// A material point of a body, by where it is now (world, m): a joint's end, held by the four nodes around
@@ -296,3 +293,5 @@ Anchor TetrahedralFem<M, T>::anchor_at(BodyHandle body, const Vec3& point) const
 }
 
 }  // namespace delassus
+
+#include <delassus/bodies/soft_invariants.hpp>  // its energy and momentum

@@ -80,7 +80,6 @@ class ElasticBody {
     const bool is_implicit = scale.stiffness != 0;
     const bool keeps_stiffness = has_constant_stiffness && has_stiffness_;
     if (is_implicit && !keeps_stiffness) matrix_.set_zero();
-    energy_ = 0;
     for (Velocity& f : force_) f.setZero();
     for (Index e = 0; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
     has_stiffness_ = has_stiffness_ || is_implicit;
@@ -89,8 +88,14 @@ class ElasticBody {
     factored_ = scale;
   }
 
-  /// J, and N by node, at the positions of the last `factor`.
-  double energy() const { return energy_; }
+  /// ∫Ψ at the positions x, J.
+  double energy(const std::vector<Velocity>& x) const {
+    double sum = 0;
+    for (Index e = 0; e < Index(elements_.size()); ++e)
+      sum += elements_[e].volume * material_.at(deformation(e, x)).energy();
+    return sum;
+  }
+  /// N by node, at the positions of the last `factor`.
   const std::vector<Velocity>& force() const { return force_; }
 
   /// p += −s K v by blocks of the set.
@@ -136,18 +141,21 @@ class ElasticBody {
     has_stiffness_ = is_factored_ = false;
   }
 
-  void add_element(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
-    const LinearTetrahedron& element = elements_[e];
-    const auto& t = mesh_.tetrahedra[e];
-    const auto position = [&](int a) { return Vec3(x[blocks_[t[a]]].template cast<double>()); };
+  Mat3 deformation(Index e, const std::vector<Velocity>& x) const {
+    const auto position = [&](int a) { return Vec3(x[block_of(e, a)].template cast<double>()); };
     Mat3 F = Mat3::Zero();
     for (int a = 1; a < 4; ++a) {
-      const Vec3 edge = position(a) - position(0), &b = element.gradient[a];
+      const Vec3 edge = position(a) - position(0), &b = elements_[e].gradient[a];
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
     }
-    const auto point = material_.at(F);
-    energy_ += element.volume * point.energy();
+    return F;
+  }
+
+  void add_element(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+    const LinearTetrahedron& element = elements_[e];
+    const auto& t = mesh_.tetrahedra[e];
+    const auto point = material_.at(deformation(e, x));
     const Mat3 pull = -element.volume * Mat3(point.stress());
     Vec3 rest = Vec3::Zero();
     for (int a = 1; a < 4; ++a) {
@@ -196,7 +204,6 @@ class ElasticBody {
   std::vector<char> is_held_;
   NodeMatrix<T> matrix_;
   SystemScale factored_;
-  double energy_ = 0;
   bool has_stiffness_ = false, is_factored_ = false;
   mutable std::vector<Velocity> work_, product_;
 };
