@@ -207,8 +207,9 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
     if (mine.offset[i] == mine.offset[i + 1]) return;
     for_each_index<pools>([&](auto b) {
       columns_.template each<s, b>([&](Index j, const auto& column) {
+        // Zero where the two act on bodies that A does not couple: there W has no block.
         for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
-          add<a, b>(i, j, mine.H[e] * column[mine.block[e]]);
+          if (!is_zero(column[mine.block[e]])) add<a, b>(i, j, mine.H[e] * column[mine.block[e]]);
       });
     });
   }

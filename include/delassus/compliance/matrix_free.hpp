@@ -29,8 +29,8 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   void build(const World& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
       DELASSUS_EXPECT(!inner::is_coupled(set),
-                      "MatrixFreeCompliance: springs between particles couple A under an implicit integrator; "
-                      "use AssembledCompliance");
+                      "MatrixFreeCompliance: springs between particles couple A under an implicit integrator, and so do "
+                      "the elements of soft bodies; use AssembledCompliance");
       inner::apply_inverse(set, rows, s);
       std::get<s>(y_).resize(set.blocks());
     });

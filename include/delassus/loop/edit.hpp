@@ -7,6 +7,7 @@
 #include <delassus/rows/row_system.hpp>
 
 #include <type_traits>
+#include <utility>
 
 namespace delassus::inner {
 
@@ -77,10 +78,13 @@ template <class World, class Laws, class Set>
 void remove_body(World& world, Laws& laws, Handle<Set> body) {
   bool is_found = false;
   world.each([&](auto& set, auto) {
-    if constexpr (std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
+    if constexpr (requires { set.remove(body); })
       if (set.owner() == body.owner) {
         is_found = true;
         set.remove(body);
+        // Where a body is more than its block, joints are found by the ends that have become stale.
+        if constexpr (!std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
+          drop_stale(std::as_const(world), laws);
         for_each_index<Laws::pool_count>([&](auto p) {
           auto& pool = laws.template pool<p>();
           if constexpr (requires { pool.remove_on(body.owner, body.index); }) pool.remove_on(body.owner, body.index);

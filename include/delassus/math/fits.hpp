@@ -26,7 +26,7 @@ bool has_inverse(double x) {
 }
 
 inline std::string text(const Vec3& x) {
-  return "(" + text(x[0]) + ", " + text(x[1]) + ", " + text(x[2]) + ")";
+  return std::string("(") + text(x[0]) + ", " + text(x[1]) + ", " + text(x[2]) + ")";
 }
 
 /// `(1e+300, 0, 0) m is beyond 3.40282e+38, …`, after the name of what was given.

@@ -9,6 +9,11 @@
 
 namespace delassus {
 
+/// No two blocks are coupled but by constraints.
+struct NoTies {
+  constexpr void operator()(auto&&) const {}
+};
+
 /// Union-find over the blocks of H. Blocks that do not move (A⁻¹ = 0) join nothing.
 ///
 /// Islands are numbered by their lowest block, items inside go by pool and insertion: a body far away changes
@@ -27,11 +32,14 @@ class Islands {
   /// The island of a block, or −1 when no constraint holds it. `block` counts through the sets in order.
   Index island_of(Index block) const { return island_[block]; }
 
-  /// `first_block[s]` is the number of the first block of set s; moves(s, b) tells whether A⁻¹ ≠ 0 there.
-  template <class Rows, class Moves>
-  void find(const Rows& rows, std::span<const Index> first_block, Index blocks, const Moves& moves) {
+  /// `first_block[s]` is the number of the first block of set s; moves(s, b) tells whether A⁻¹ ≠ 0 there; ties(f) calls
+  /// f(a, b) for numbers of blocks that A couples without a constraint.
+  template <class Rows, class Moves, class Ties = NoTies>
+  void find(const Rows& rows, std::span<const Index> first_block, Index blocks, const Moves& moves,
+            const Ties& ties = {}) {
     parent_.resize(blocks);
     for (Index b = 0; b < blocks; ++b) parent_[b] = b;
+    ties([this](Index a, Index b) { unite(a, b); });
     for_each_index<Rows::pool_count>([&](auto p) {
       const auto& pool = rows.template pool<p>();
       lowest_[p].assign(pool.items(), -1);

@@ -73,7 +73,7 @@ class CoupledColumns<RowSystem<T, Widths<w...>, R...>> {
       out.items.clear();
       for (Index i = 0; i + 1 < Index(mine.offset.size()); ++i)
         if (mine.offset[i] < mine.offset[i + 1]) out.items.push_back(i);
-      out.columns.resize(out.items.size());
+      if (out.columns.size() < out.items.size()) out.columns.resize(out.items.size());  // never fewer: columns keep their room
       for (std::size_t n = 0; n < out.items.size(); ++n) {
         const Index i = out.items[n];
         out.columns[n].resize(set.blocks());

@@ -102,8 +102,14 @@ void AnimationLoop<Policies...>::find_islands() {
       first[s] = blocks;
       blocks += set.blocks();
     });
-    work_.islands.find(work_.rows, std::span<const Index>(first), blocks,
-                       [&](auto s, Index b) { return world().template set<s>().moves(b); });
+    const auto moves = [&](auto s, Index b) { return world().template set<s>().moves(b); };
+    const auto ties = [&](const auto& tie) {
+      world().each([&](const auto& set, auto s) {
+        const auto both = [&](Index a, Index b) { tie(first[s] + a, first[s] + b); };
+        if constexpr (requires { set.each_tie(both); }) set.each_tie(both);
+      });
+    };
+    work_.islands.find(work_.rows, std::span<const Index>(first), blocks, moves, ties);
     report_.islands = work_.islands.count();
   }
   tell<stage::Islands>();

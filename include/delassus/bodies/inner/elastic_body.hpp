@@ -1,0 +1,211 @@
+/// One deformable body of a set: its elements, its elastic forces and its system matrix.
+#pragma once
+
+#include <delassus/bodies/elasticity/material.hpp>
+#include <delassus/bodies/inner/node_matrix.hpp>
+#include <delassus/geometry/tetrahedral_mesh.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// A tetrahedron with linear shape functions N_a: gradients ∇N_a at rest (1/m), volume at rest (m³).
+///
+///   F = Σ_a x_a ∇N_aᵀ,   f_a = −V P ∇N_a,   K_ab = V ∇N_a · ∂P/∂F · ∇N_b.
+struct LinearTetrahedron {
+  std::array<Vec3, 4> gradient;
+  double volume;
+
+  LinearTetrahedron() = default;
+  LinearTetrahedron(const TetrahedralMesh& mesh, Index e) : volume(delassus::volume(mesh, e)) {
+    const auto& t = mesh.tetrahedra[e];
+    const Vec3& o = mesh.points[t[0]];
+    const Mat3 edges =
+        columns(Vec3(mesh.points[t[1]] - o), Vec3(mesh.points[t[2]] - o), Vec3(mesh.points[t[3]] - o));
+    const Mat3 rows = inverse(edges);
+    for (int a = 1; a < 4; ++a) gradient[a] = Vec3(rows(a - 1, 0), rows(a - 1, 1), rows(a - 1, 2));
+    gradient[0] = -(gradient[1] + gradient[2] + gradient[3]);
+  }
+};
+
+/// Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double, whatever T is.
+template <class M, class T>
+class ElasticBody {
+ public:
+  using Velocity = Vec<3, T>;
+  static constexpr bool has_constant_stiffness = requires { requires M::has_constant_stiffness; };
+
+  ElasticBody() = default;
+  /// Node k of the mesh is block blocks[k]; `mesh` is at rest.
+  ElasticBody(TetrahedralMesh mesh, const M& material, std::vector<Index> blocks)
+      : mesh_(std::move(mesh)), material_(material), blocks_(std::move(blocks)) {
+    prepare();
+  }
+
+  std::span<const Index> blocks() const { return blocks_; }
+  const TetrahedralMesh& mesh() const { return mesh_; }
+  /// The block of corner `corner` of tetrahedron e.
+  Index block_of(Index e, int corner) const { return blocks_[mesh_.tetrahedra[e][corner]]; }
+
+  /// The tetrahedron a point of the world is in, and how much of its corners 1, 2, 3 the point is; −1 where
+  /// it is outside of all of them by more than 1e-6 of one.
+  Index locate(const Vec3& point, const std::vector<Velocity>& x, Vec3& weights) const {
+    Index found = -1;
+    double best = -1e-6;
+    for (Index e = 0; e < Index(elements_.size()); ++e) {
+      const auto corner = [&](int k) { return Vec3(x[block_of(e, k)].template cast<double>()); };
+      const Vec3 o = corner(0);
+      const Mat3 edges = columns(Vec3(corner(1) - o), Vec3(corner(2) - o), Vec3(corner(3) - o));
+      const Vec3 w = inverse(edges) * (point - o);
+      const double least = std::min({1 - w[0] - w[1] - w[2], w[0], w[1], w[2]});
+      if (!(least > best)) continue;
+      best = least;
+      weights = w;
+      found = e;
+    }
+    return found;
+  }
+
+  /// Makes elastic forces and A at the positions x of the set's blocks. Where A has no factor, as where x is
+  /// not finite, `solve` answers with numbers that are none, and the body stays where it was.
+  void factor(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
+              const std::vector<T>& inverse_mass) {
+    const bool is_implicit = scale.stiffness != 0;
+    const bool keeps_stiffness = has_constant_stiffness && has_stiffness_;
+    if (is_implicit && !keeps_stiffness) matrix_.set_zero();
+    for (Velocity& f : force_) f.setZero();
+    for (Index e = 0; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
+    has_stiffness_ = has_stiffness_ || is_implicit;
+    if (!is_implicit || is_factored_for(scale, mass, inverse_mass)) return;
+    is_factored_ = matrix_.factor(T(scale.mass), T(scale.stiffness), mass_, is_held_);
+    factored_ = scale;
+  }
+
+  /// ∫Ψ at the positions x, J.
+  double energy(const std::vector<Velocity>& x) const {
+    double sum = 0;
+    for (Index e = 0; e < Index(elements_.size()); ++e)
+      sum += elements_[e].volume * material_.at(deformation(e, x)).energy();
+    return sum;
+  }
+  /// N by node, at the positions of the last `factor`.
+  const std::vector<Velocity>& force() const { return force_; }
+
+  /// p += −s K v by blocks of the set.
+  void add_stiffness_times_velocity(std::vector<Velocity>& p, const std::vector<Velocity>& v, T s) const {
+    if (!has_stiffness_) return;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) work_[k] = v[blocks_[k]], product_[k].setZero();
+    matrix_.add_product(-s, work_, product_);
+    for (std::size_t k = 0; k < blocks_.size(); ++k) p[blocks_[k]] += product_[k];
+  }
+
+  /// x ← A⁻¹ x on the body's blocks; held nodes become zero. A body on which nothing acts is passed over.
+  void solve(std::vector<Velocity>& x) const {
+    bool is_still = true;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      if (is_held_[k]) x[blocks_[k]].setZero();
+      work_[k] = x[blocks_[k]];
+      is_still = is_still && is_zero(work_[k]);
+    }
+    if (is_still) return;
+    if (is_factored_)
+      matrix_.solve(work_);
+    else
+      for (Velocity& w : work_) w.setConstant(std::numeric_limits<T>::quiet_NaN());
+    for (std::size_t k = 0; k < blocks_.size(); ++k)
+      if (!is_held_[k]) x[blocks_[k]] = work_[k];
+  }
+
+  void memory(auto& archive) {
+    archive(mesh_.points, mesh_.tetrahedra, material_, blocks_);
+    if constexpr (std::remove_reference_t<decltype(archive)>::reads) prepare();
+  }
+
+ private:
+  void prepare() {
+    const std::size_t n = blocks_.size();
+    elements_.clear();
+    for (Index e = 0; e < Index(mesh_.tetrahedra.size()); ++e) elements_.emplace_back(mesh_, e);
+    force_.assign(n, Velocity::Zero());
+    work_ = product_ = force_;
+    mass_.assign(n, T(0));
+    is_held_.assign(n, 0);
+    if (n > 0) matrix_.analyse(Index(n), mesh_.tetrahedra, mesh_.points);
+    has_stiffness_ = is_factored_ = false;
+  }
+
+  Mat3 deformation(Index e, const std::vector<Velocity>& x) const {
+    const auto position = [&](int a) { return Vec3(x[block_of(e, a)].template cast<double>()); };
+    Mat3 F = Mat3::Zero();
+    for (int a = 1; a < 4; ++a) {
+      const Vec3 edge = position(a) - position(0), &b = elements_[e].gradient[a];
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
+    }
+    return F;
+  }
+
+  void add_element(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+    const LinearTetrahedron& element = elements_[e];
+    const auto& t = mesh_.tetrahedra[e];
+    const auto point = material_.at(deformation(e, x));
+    const Mat3 pull = -element.volume * Mat3(point.stress());
+    Vec3 rest = Vec3::Zero();
+    for (int a = 1; a < 4; ++a) {
+      const Vec3 f = pull * element.gradient[a];
+      force_[t[a]] += f.template cast<T>();
+      rest += f;
+    }
+    force_[t[0]] -= rest.template cast<T>();
+    if (with_stiffness) add_stiffness(e, point);
+  }
+
+  void add_stiffness(Index e, const auto& point) {
+    const double V = elements_[e].volume;
+    const auto& t = mesh_.tetrahedra[e];
+    std::array<Vec3, 4> b;
+    for (int a = 0; a < 4; ++a) {
+      b[a] = point.pull(elements_[e].gradient[a]);
+      matrix_.add_diagonal(t[a], (V * point.block(b[a], b[a])).template cast<T>());
+    }
+    for (int k = 0; k < 6; ++k) {
+      const auto& [i, j] = pair_of_four[k];
+      const bool is_upper = t[i] < t[j];
+      matrix_.add_pair(e, k, (V * point.block(b[is_upper ? i : j], b[is_upper ? j : i])).template cast<T>());
+    }
+  }
+
+  /// Whether the factor there is is the one that is wanted; takes over the masses.
+  bool is_factored_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
+    bool is_same = has_constant_stiffness && is_factored_ && factored_.mass == scale.mass &&
+                   factored_.stiffness == scale.stiffness;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const char is_held = inverse_mass[blocks_[k]] > T(0) ? 0 : 1;
+      is_same = is_same && is_held == is_held_[k];
+      is_held_[k] = is_held;
+      mass_[k] = mass[blocks_[k]];
+    }
+    return is_same;
+  }
+
+  TetrahedralMesh mesh_;
+  M material_{};
+  std::vector<Index> blocks_;
+  std::vector<LinearTetrahedron> elements_;
+  std::vector<Velocity> force_;
+  std::vector<T> mass_;
+  std::vector<char> is_held_;
+  NodeMatrix<T> matrix_;
+  SystemScale factored_;
+  bool has_stiffness_ = false, is_factored_ = false;
+  mutable std::vector<Velocity> work_, product_;
+};
+
+}  // namespace delassus::inner

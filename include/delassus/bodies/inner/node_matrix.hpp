@@ -1,0 +1,86 @@
+/// The matrix of a deformable body: 3 × 3 blocks where two nodes share an element, in places found once.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/linear/multifrontal_cholesky.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// The six pairs of an element's four nodes.
+inline constexpr int pair_of_four[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+/// Symmetric: the diagonal, and K_ij of the pairs i < j. `slots(e)[k]` is where pair k of element e goes.
+template <class T>
+class NodeMatrix {
+ public:
+  using Block = Mat<3, 3, T>;
+  using Velocity = Vec<3, T>;
+
+  void analyse(Index nodes, std::span<const std::array<Index, 4>> elements, std::span<const Vec3> positions) {
+    pairs_.clear();
+    for (const auto& t : elements)
+      for (const auto& [a, b] : pair_of_four) pairs_.emplace_back(std::minmax(t[a], t[b]));
+    const auto all = pairs_;
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    slots_.resize(elements.size());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      slots_[k / 6][k % 6] = Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[k]) - pairs_.begin());
+    diagonal_.resize(nodes);
+    upper_.resize(pairs_.size());
+    factor_.analyse(nodes, pairs_, positions);
+  }
+
+  void set_zero() {
+    for (Block& b : diagonal_) b.setZero();
+    for (Block& b : upper_) b.setZero();
+  }
+  void add_diagonal(Index i, const Block& block) { diagonal_[i] += block; }
+  /// Pair k of element e; the block is of the lower node's row and the higher one's column.
+  void add_pair(Index e, int k, const Block& block) { upper_[slots_[e][k]] += block; }
+
+  /// y += s K x.
+  void add_product(T s, const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
+    for (std::size_t i = 0; i < diagonal_.size(); ++i) y[i] += s * (diagonal_[i] * x[i]);
+    for (std::size_t e = 0; e < pairs_.size(); ++e) {
+      const auto [i, j] = pairs_[e];
+      y[i] += s * (upper_[e] * x[j]);
+      y[j] += s * (upper_[e].transpose() * x[i]);
+    }
+  }
+
+  /// Factors scale.mass M + scale.stiffness K on the nodes whose inverse mass is not 0; false where there is
+  /// no factor.
+  bool factor(T mass_share, T stiffness_share, std::span<const T> mass, std::span<const char> is_held) {
+    factor_.set_zero();
+    for (Index i = 0; i < Index(diagonal_.size()); ++i) {
+      Block A = Block::Identity();
+      if (!is_held[i]) {
+        A = stiffness_share * diagonal_[i];
+        for (int k = 0; k < 3; ++k) A(k, k) += mass_share * mass[i];
+      }
+      factor_.add_diagonal(i, A);
+    }
+    for (std::size_t e = 0; e < pairs_.size(); ++e) {
+      const auto [i, j] = pairs_[e];
+      if (!is_held[i] && !is_held[j]) factor_.add_pair(i, j, Block(stiffness_share * upper_[e]));
+    }
+    return factor_.factor();
+  }
+  void solve(std::vector<Velocity>& x) const { factor_.solve(x); }
+
+ private:
+  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<std::array<Index, 6>> slots_;
+  std::vector<Block> diagonal_, upper_;
+  MultifrontalCholesky<3, T> factor_;
+};
+
+}  // namespace delassus::inner

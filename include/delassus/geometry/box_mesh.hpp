@@ -1,0 +1,66 @@
+/// A box cut into cells, and the cells into tetrahedra.
+#pragma once
+
+#include <delassus/geometry/tetrahedral_mesh.hpp>
+
+#include <array>
+#include <string>
+#include <utility>
+
+namespace delassus {
+
+/// How a cell is cut. six: around its long diagonal, all cells alike (Kuhn's subdivision). five: four corners
+/// around one regular tetrahedron, neighbours mirrored; fewer elements, and no direction is preferred over
+/// its mirror image.
+enum class CellSplit { five, six };
+
+namespace inner {
+
+/// Corner c of a cell has its x, y, z offsets in the bits 0, 1, 2.
+inline constexpr int five_tetrahedra[5][4] = {
+    {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}};
+inline constexpr int six_tetrahedra[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7},
+                                             {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
+
+}  // namespace inner
+
+/// The box [0, size] (m) in cells[0] × cells[1] × cells[2] cells. Point (i, j, k) has number i + (cells[0] +
+/// 1)(j + (cells[1] + 1) k).
+inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& cells,
+                                CellSplit split = CellSplit::six) {
+  const auto sizes = inner::text(size[0]) + " × " + inner::text(size[1]) + " × " + inner::text(size[2]);
+  for (int k = 0; k < 3; ++k) {
+    DELASSUS_EXPECT(std::isfinite(size[k]) && size[k] > 0,
+                    "box_mesh: every size of " + sizes + " m must be finite and > 0");
+    DELASSUS_EXPECT(cells[k] > 0,
+                    "box_mesh: the number of cells " + std::to_string(cells[k]) + " must be > 0");
+  }
+  TetrahedralMesh mesh;
+  for (Index k = 0; k <= cells[2]; ++k)
+    for (Index j = 0; j <= cells[1]; ++j)
+      for (Index i = 0; i <= cells[0]; ++i)
+        mesh.points.push_back({size[0] * i / cells[0], size[1] * j / cells[1], size[2] * k / cells[2]});
+  const auto point = [&](Index i, Index j, Index k) { return i + (cells[0] + 1) * (j + (cells[1] + 1) * k); };
+  for (Index k = 0; k < cells[2]; ++k)
+    for (Index j = 0; j < cells[1]; ++j)
+      for (Index i = 0; i < cells[0]; ++i) {
+        // A mirrored cell has its corners exchanged along x, so that its diagonals meet those of its
+        // neighbours.
+        const int mirror = split == CellSplit::five && (i + j + k) % 2 == 1 ? 1 : 0;
+        const auto add = [&](const int(&corners)[4]) {
+          std::array<Index, 4> t;
+          for (int a = 0; a < 4; ++a) {
+            const int c = corners[a] ^ mirror;
+            t[a] = point(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2 & 1));
+          }
+          mesh.tetrahedra.push_back(t);
+        };
+        if (split == CellSplit::five)
+          for (const auto& t : inner::five_tetrahedra) add(t);
+        else
+          for (const auto& t : inner::six_tetrahedra) add(t);
+      }
+  return oriented(std::move(mesh));
+}
+
+}  // namespace delassus

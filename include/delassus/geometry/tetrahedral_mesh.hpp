@@ -1,0 +1,110 @@
+/// Tetrahedral meshes: checks, volumes, the outer surface.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// Points (m) and tetrahedra of four points each, ordered so that (x₁ − x₀) · ((x₂ − x₀) × (x₃ − x₀)) > 0.
+struct TetrahedralMesh {
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 4>> tetrahedra;
+};
+
+/// Of tetrahedron e, m³; negative where its points are ordered inside out.
+inline double volume(const TetrahedralMesh& mesh, Index e) {
+  const auto& t = mesh.tetrahedra[e];
+  const Vec3 &o = mesh.points[t[0]], a = mesh.points[t[1]] - o, b = mesh.points[t[2]] - o,
+             c = mesh.points[t[3]] - o;
+  return a.dot(b.cross(c)) / 6;
+}
+
+namespace inner {
+
+inline double longest_edge(const TetrahedralMesh& mesh, Index e) {
+  const auto& t = mesh.tetrahedra[e];
+  double longest = 0;
+  for (int a = 0; a < 4; ++a)
+    for (int b = a + 1; b < 4; ++b)
+      longest = std::max(longest, (mesh.points[t[a]] - mesh.points[t[b]]).norm());
+  return longest;
+}
+
+/// The four faces of a tetrahedron, each seen from outside against the clock.
+inline constexpr int tetrahedron_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+}  // namespace inner
+
+/// Refuses a mesh that is no body: points that are not finite or in no tetrahedron, numbers of points that
+/// are not there, tetrahedra that are flat (height below 1e-9 of the size) or inside out.
+inline void check_mesh(const TetrahedralMesh& mesh, const std::string& who) {
+  const Index count = Index(mesh.points.size());
+  DELASSUS_EXPECT(!mesh.tetrahedra.empty(), who + ": the mesh has no tetrahedron");
+  for (Index i = 0; i < count; ++i)
+    DELASSUS_EXPECT(is_finite(mesh.points[i]),
+                    who + ": point #" + std::to_string(i) + " of the mesh is not finite");
+  std::vector<char> is_used(count, 0);
+  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e) {
+    const std::string name = who + ": tetrahedron #" + std::to_string(e);
+    for (const Index i : mesh.tetrahedra[e]) {
+      DELASSUS_EXPECT(i >= 0 && i < count, name + " names point " + std::to_string(i) +
+                                               ", but the mesh has points 0 to " + std::to_string(count - 1));
+      is_used[i] = 1;
+    }
+    const double V = volume(mesh, e), longest = inner::longest_edge(mesh, e);
+    DELASSUS_EXPECT(std::abs(6 * V) > 1e-9 * longest * longest * longest,
+                    name + " is flat: its volume is " + inner::text(V) + " m³, its longest edge " +
+                        inner::text(longest) + " m");
+    DELASSUS_EXPECT(V > 0, name + " is inside out, its volume is " + inner::text(V) +
+                               " m³; exchange two of its points, as oriented(mesh) does");
+  }
+  for (Index i = 0; i < count; ++i)
+    DELASSUS_EXPECT(is_used[i], who + ": point #" + std::to_string(i) +
+                                    " belongs to no tetrahedron; take it out of the mesh");
+}
+
+/// The same mesh with two points exchanged in every tetrahedron that is inside out.
+inline TetrahedralMesh oriented(TetrahedralMesh mesh) {
+  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e)
+    if (volume(mesh, e) < 0) std::swap(mesh.tetrahedra[e][2], mesh.tetrahedra[e][3]);
+  return mesh;
+}
+
+/// The triangles that belong to one tetrahedron only, normals outwards, in the order of the tetrahedra.
+inline std::vector<std::array<Index, 3>> surface(const TetrahedralMesh& mesh) {
+  struct Side {
+    std::array<Index, 3> sorted, triangle;
+    std::size_t number;
+  };
+  std::vector<Side> faces;
+  for (const auto& t : mesh.tetrahedra)
+    for (const auto& [a, b, c] : inner::tetrahedron_face) {
+      Side face{{t[a], t[b], t[c]}, {t[a], t[b], t[c]}, faces.size()};
+      std::sort(face.sorted.begin(), face.sorted.end());
+      faces.push_back(face);
+    }
+  const auto by_points = [](const Side& a, const Side& b) {
+    return a.sorted != b.sorted ? a.sorted < b.sorted : a.number < b.number;
+  };
+  std::sort(faces.begin(), faces.end(), by_points);
+  std::vector<Side> outer;
+  for (std::size_t k = 0, next = 0; k < faces.size(); k = next) {
+    for (next = k; next < faces.size() && faces[next].sorted == faces[k].sorted;) ++next;
+    if (next == k + 1) outer.push_back(faces[k]);
+  }
+  std::sort(outer.begin(), outer.end(), [](const Side& a, const Side& b) { return a.number < b.number; });
+  std::vector<std::array<Index, 3>> triangles;
+  for (const Side& face : outer) triangles.push_back(face.triangle);
+  return triangles;
+}
+
+}  // namespace delassus

@@ -1,0 +1,251 @@
+#include <delassus/bodies/tetrahedral_fem.hpp>
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "catch.hpp"
+#include "soft_scenes.hpp"
+
+using namespace delassus;
+using namespace soft_scenes;
+
+namespace {
+
+const Mat3 stretch = columns<double>({1.1, 0.02, -0.03}, {0.05, 0.93, 0.04}, {-0.02, 0.01, 1.06});
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("patch test: inside a cube whose surface is deformed affinely the nodes follow", "",
+                   Linear, Corotational, StableNeoHookean, StVenantKirchhoff) {
+  TetrahedralFem<TestType> set;
+  set.gravity.setZero();
+  const auto body = set.add({.mesh = cube(4, 0.2), .elasticity = {.young = 1000, .poisson = 0.4}});
+  const auto rest = set.mesh(body).points;
+  set.fix(body, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
+  for (Index k = 0; k < set.node_count(body); ++k)
+    if (!set.moves(k)) set.place(set.node(body, k), stretch * rest[k]);
+  settle(set, 12);  // from rest; Newton's method doubles its digits
+  double worst = 0;
+  int inner = 0;
+  for (Index k = 0; k < set.node_count(body); ++k) {
+    if (!set.moves(k)) continue;
+    worst = std::max(worst, (set.position(set.node(body, k)) - stretch * rest[k]).norm());
+    ++inner;
+  }
+  CHECK(inner == 27);
+  CHECK(worst < 1e-12);
+  // A homogeneous state has no force inside, and every element the same energy per volume.
+  const auto f = elastic_forces(set);
+  for (Index k = 0; k < set.blocks(); ++k)
+    if (set.moves(k))
+      CHECK(f[k].norm() < 1e-11);  // E times the area of a face, times ε and some tens of terms
+  CHECK(std::abs(set.elastic_energy() - TestType{.young = 1000, .poisson = 0.4}.at(stretch).energy()) <
+        1e-11);
+}
+
+TEMPLATE_TEST_CASE("a body turned and moved as a whole has no elastic force and no energy", "", Corotational,
+                   StableNeoHookean, StVenantKirchhoff) {
+  for (const double angle : {0.3, 179 * M_PI / 180}) {
+    TetrahedralFem<TestType> set;
+    const auto body = set.add({.mesh = cube(2, 0.2), .elasticity = {.young = 1}});
+    const Quat turn = exponential(Vec3(angle * Vec3(1, 2, -2) / 3));
+    for (Index k = 0; k < set.node_count(body); ++k) {
+      const auto node = set.node(body, k);
+      set.place(node, Vec3(3, -1, 2) + turn * set.position(node));
+    }
+    for (const Vec3& f : elastic_forces(set)) CHECK(f.norm() < 1e-14);
+    CHECK(std::abs(set.elastic_energy()) < 1e-15);
+  }
+}
+
+TEMPLATE_TEST_CASE("elastic forces sum to nothing, and their moments too", "", Corotational, StableNeoHookean,
+                   StVenantKirchhoff) {
+  TetrahedralFem<TestType> set;
+  const auto body = set.add({.mesh = cube(2), .elasticity = {.young = 1}});
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> draw(-0.3, 0.3);
+  for (Index k = 0; k < set.node_count(body); ++k)
+    set.displace(k, {draw(random), draw(random), draw(random)});
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  double size = 0;
+  const auto f = elastic_forces(set);
+  for (Index k = 0; k < set.blocks(); ++k) {
+    sum += f[k];
+    moment += set.position(set.handle(k)).cross(f[k]);
+    size += f[k].norm();
+  }
+  CHECK(size > 1);
+  CHECK(sum.norm() < 1e-14 * size);
+  CHECK(moment.norm() < 1e-14 * size);
+}
+
+TEMPLATE_TEST_CASE("A = M + h^2 K of the nodes is the derivative of their forces", "", Linear, Corotational,
+                   StableNeoHookean, StVenantKirchhoff) {
+  TetrahedralFem<TestType> set;
+  set.gravity.setZero();
+  const auto body = set.add({.mesh = cube(2, 0.2), .elasticity = {.young = 1e4}, .density = 800});
+  const auto rest = set.mesh(body).points;
+  // Stretched in every direction: nothing of K is cut.
+  for (Index k = 0; k < set.node_count(body); ++k)
+    set.place(set.node(body, k), 1.15 * (stretch * rest[k]) +
+                                     0.005 * Vec3(std::sin(9 * rest[k][1]), std::cos(7 * rest[k][0]), 0));
+  set.fix(body, [](const Vec3& x) { return x[0] < 0.1; });
+  const double h2 = 1e-3, step = 1e-5;
+  std::vector<Vec3> direction(set.blocks(), Vec3::Zero());
+  for (Index k = 0; k < set.blocks(); ++k)
+    if (set.moves(k)) direction[k] = Vec3(std::cos(3 * k), std::sin(5 * k), std::cos(7 * k));
+  // A d, from forces: M d − h² (f(x + s d) − f(x − s d))/2s.
+  const auto moved = [&](double s) {
+    for (Index k = 0; k < set.blocks(); ++k) set.displace(k, s * direction[k]);
+    return elastic_forces(set);
+  };
+  const auto up = moved(step), down = moved(-2 * step);
+  moved(step);
+  std::vector<Vec3> y(set.blocks());
+  for (Index k = 0; k < set.blocks(); ++k)
+    y[k] = double(set.mass(k)) * direction[k] - h2 / (2 * step) * (up[k] - down[k]);
+  set.factor({.mass = 1, .stiffness = h2});
+  set.solve(y);
+  double worst = 0;
+  for (Index k = 0; k < set.blocks(); ++k) worst = std::max(worst, (y[k] - direction[k]).norm());
+  CHECK(worst > 0);
+  CHECK(worst < 1e-7);  // step² of the third derivative
+}
+
+TEST_CASE(
+    "tip deflection and first frequency of a cantilever of linear tetrahedra are the known, too stiff ones") {
+  // Timoshenko's beam with κ = 5/6, and the known ratios of linear tetrahedra in Kuhn's order to four digits.
+  const double P = 0.01, E = Cantilever<Linear>::E, G = E / 2.6, area = 0.01;
+  const double deflection = P / (3 * E * Cantilever<Linear>::second_moment) + P / (5.0 / 6 * G * area);
+  CHECK(std::abs(deflection - 4.0312e-4) < 1e-8);
+  const double known[][3] = {{1, 0.2194, 0.9521}, {2, 0.5037, 0.6592}, {4, 0.7871, 0.5528}};
+  for (const auto& [cells, ratio, hertz] : known) {
+    Cantilever<Linear> beam{Index(cells)};
+    auto& set = beam.set;
+    set.factor({.mass = 0, .stiffness = 1});
+    auto u = beam.end_load(P);
+    set.solve(u);
+    CHECK(std::abs(-beam.at_end(u)[1] / deflection - ratio) < 1e-4);
+    // Inverse iteration, v ← K⁻¹ M v, ω² = v·Mv/(v·MK⁻¹Mv), once along each of the section's diagonals: the
+    // mesh is its own mirror image about both, so they are apart, and their frequencies differ.
+    double omega2 = 1e9;
+    for (const double side : {1.0, -1.0}) {
+      std::vector<Vec3> v = beam.end_load(1);
+      for (Vec3& x : v) x[2] = side * x[1];
+      double found = 0;
+      for (int n = 0; n < 12; ++n) {
+        auto z = v;
+        double before = 0, after = 0, size = 0;
+        for (Index b = 0; b < set.blocks(); ++b) z[b] *= set.moves(b) ? set.mass(b) : 0.0;
+        auto y = z;
+        set.solve(y);
+        for (Index b = 0; b < set.blocks(); ++b) {
+          before += v[b].dot(z[b]);
+          after += y[b].dot(z[b]);
+          size = std::max(size, y[b].norm());
+        }
+        found = before / after;
+        for (Index b = 0; b < set.blocks(); ++b) v[b] = y[b] / size;
+      }
+      omega2 = std::min(omega2, found);
+    }
+    CHECK(std::abs(std::sqrt(omega2) / (2 * M_PI) - hertz) < 1e-4);
+  }
+}
+
+TEST_CASE("a column under its own weight shortens by rho g L^2 / 2E") {
+  TetrahedralFem<Linear> set;
+  const auto column = set.add({.mesh = box_mesh({0.2, 0.2, 1}, {1, 1, 8}),
+                               .elasticity = {.young = 1e6, .poisson = 0},
+                               .density = 500});
+  set.fix(column, [](const Vec3& x) { return x[2] < 1e-9; });
+  settle(set, 1);
+  double top = 0;
+  int count = 0;
+  for (Index k = 0; k < set.node_count(column); ++k)
+    if (set.mesh(column).points[k][2] == 1) top += set.position(set.node(column, k))[2] - 1, ++count;
+  // The elements sample the linear strain at their middles, the lumped masses carry half an element each:
+  // exact at nodes for one dimension; the tetrahedra's unequal corner masses bend the cells a little, by
+  // (1/8)² of it.
+  CHECK(std::abs(top / count / (-500 * 9.81 / 2e6) - 1) < 1.0 / 64);
+}
+
+TEMPLATE_TEST_CASE("forces do not depend on the order in which a tetrahedron names its points", "",
+                   Corotational, StableNeoHookean) {
+  const std::vector<Vec3> rest{{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0}, {0, 0.1, 1}};
+  // Stretched, flat, and inside out.
+  const std::vector<Vec3> places[3] = {{{0, 0, 0}, {1.5, 0, 0}, {0, 0.8, 0.1}, {0.1, 0, 1.2}},
+                                       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.4, 0.3, 0}},
+                                       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.3, -0.7}}};
+  for (const auto& place : places) {
+    std::vector<Vec3> first;
+    std::array<Index, 4> order{0, 1, 2, 3};
+    int bodies = 0;
+    do {
+      TetrahedralMesh mesh{rest, {order}};
+      if (volume(mesh, 0) < 0) mesh = oriented(mesh);
+      TetrahedralFem<TestType> set;
+      const auto body = set.add({.mesh = mesh, .elasticity = {.young = 1}});
+      for (Index k = 0; k < 4; ++k) set.place(set.node(body, k), place[k]);
+      const auto f = elastic_forces(set);
+      if (first.empty()) first = f;
+      for (Index k = 0; k < 4; ++k) CHECK((f[k] - first[k]).norm() < 1e-14);
+      ++bodies;
+    } while (std::next_permutation(order.begin(), order.end()));
+    CHECK(bodies == 24);
+    CHECK(first[0].norm() > 1e-3);
+  }
+}
+
+TEST_CASE("a body that cannot be one is refused, and says why") {
+  TetrahedralFem<Corotational> set;
+  using Body = SoftBody<Corotational>;
+  const auto refusal = [&](const Body& body) -> std::string {
+    try {
+      set.add(body);
+    } catch (const InvalidArgument& e) {
+      return e.what();
+    }
+    return {};
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  CHECK(refusal({.mesh = {}}).find("soft body #0: the mesh has no tetrahedron") != std::string::npos);
+  CHECK(refusal({.mesh = cube(1), .density = 0}).find("density 0") != std::string::npos);
+  CHECK(refusal({.mesh = cube(1), .elasticity = {.poisson = 0.5}}).find("Poisson's ratio 0.5") !=
+        std::string::npos);
+  CHECK(refusal({.mesh = cube(1), .position = {0, infinity, 0}}).find("not finite") != std::string::npos);
+  CHECK(refusal({.mesh = cube(1), .orientation = Quat(2, 0, 0, 0)}).find("unit quaternion") !=
+        std::string::npos);
+  CHECK(refusal({.mesh = cube(1), .contact_radius = 0.1, .collides_with = ~0u})
+            .find("collide with each other") != std::string::npos);
+  CHECK(set.blocks() == 0);  // nothing of them is left
+
+  const auto body = set.add({.mesh = cube(1), .contact_radius = 0.1});
+  CHECK_THROWS_AS(set.node(body, 8), InvalidArgument);
+  CHECK_THROWS_AS(set.anchor_at(body, {2, 0, 0}), InvalidArgument);
+  const auto node = set.node(body, 3);
+  set.fix(node);
+  CHECK_THROWS_AS(set.set_velocity(node, {1, 0, 0}), InvalidArgument);
+  set.remove(body);
+  CHECK_THROWS_AS(set.node(body, 0), InvalidArgument);
+  CHECK_THROWS_AS(set.position(node), InvalidArgument);
+  // The places of its nodes are used again, and the new body is free.
+  const auto second = set.add({.mesh = cube(1)});
+  CHECK(set.blocks() == 8);
+  for (Index k = 0; k < 8; ++k) CHECK(set.moves(k));
+  CHECK(set.position(set.node(second, 7)) == Vec3(1, 1, 1));
+}
+
+TEST_CASE("an anchor in an element moves with the point of the body it was put on") {
+  TetrahedralFem<Corotational> set;
+  const auto body = set.add({.mesh = cube(2, 0.2), .position = {1, 0, 0}});
+  const auto rest = set.mesh(body).points;
+  Anchor a = set.anchor_at(body, {1.3, 0.6, 0.2});
+  CHECK((set.point(a) - Vec3(1.3, 0.6, 0.2)).norm() < 1e-15);
+  for (Index k = 0; k < set.blocks(); ++k) set.place(set.node(body, k), stretch * rest[k]);
+  CHECK((set.point(a) - stretch * Vec3(1.3, 0.6, 0.2)).norm() < 1e-15);
+  Vec3 sum = Vec3::Zero();  // of the shares of the four nodes
+  for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
+  CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-15);
+}

@@ -1,0 +1,183 @@
+#include <delassus/io/mesh_file.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "catch.hpp"
+
+using namespace delassus;
+
+namespace {
+
+// Two tetrahedra with the corners of a cube and, between them, a node of a curve, an edge and a triangle;
+// tags with gaps.
+const std::string version_2 = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+3 7 "a $Nodes name"
+$EndPhysicalNames
+$Nodes
+6
+10 0 0 0
+2 1 0 0
+30 0 1 0
+4 0 0 1
+99 5 5 5
+5 1 1 1.5
+$EndNodes
+$Elements
+5
+1 15 2 0 1 99
+2 1 2 0 1 10 99
+3 2 2 0 1 10 2 30
+4 4 2 7 1 10 2 30 4
+5 4 2 7 1 2 30 4 5
+$EndElements
+)";
+
+const std::string version_4 = R"($MeshFormat
+4.1 0 8
+$EndMeshFormat
+$Entities
+1 0 0 1
+99 5 5 5 0
+1 0 0 0 1 1 1.5 0 0
+$EndEntities
+$Nodes
+2 6 2 99
+1 1 1 1
+99
+5 5 5 0.25
+3 1 0 5
+10
+2
+30
+4
+5
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+1 1 1.5
+$EndNodes
+$Elements
+2 3 1 3
+2 1 2 1
+3 10 2 30
+3 1 4 2
+4 10 2 30 4
+5 2 30 4 5
+$EndElements
+)";
+
+const std::string vtk_lists = R"(# vtk DataFile Version 3.0
+a title of many words, ASCII or not
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 6 double
+0 0 0  1 0 0  0 1 0
+0 0 1  5 5 5  1 1 1.5
+METADATA
+INFORMATION 0
+
+CELLS 3 14
+3 0 1 2
+4 0 1 2 3
+4 1 2 3 5
+CELL_TYPES 3
+5 10 10
+POINT_DATA 6
+SCALARS x double 1
+)";
+
+const std::string vtk_offsets = R"(# vtk DataFile Version 5.1
+title
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 6 float
+0 0 0  1 0 0  0 1 0
+0 0 1  5 5 5  1 1 1.5
+CELLS 4 11
+OFFSETS vtktypeint64
+0 3 7 11
+CONNECTIVITY vtktypeint64
+0 1 2 0 1 2 3 1 2 3 5
+CELL_TYPES 3
+5 10 10
+)";
+
+void check_is_the_pair(const TetrahedralMesh& mesh) {
+  REQUIRE(mesh.points.size() == 5);
+  REQUIRE(mesh.tetrahedra.size() == 2);
+  CHECK(mesh.points[4] == Vec3(1, 1, 1.5));
+  CHECK(mesh.tetrahedra[0] == std::array<Index, 4>{0, 1, 2, 3});
+  CHECK(mesh.tetrahedra[1] == std::array<Index, 4>{1, 2, 3, 4});
+  CHECK(std::abs(volume(mesh, 0) - 1.0 / 6) < 1e-15);
+  CHECK(std::abs(volume(mesh, 1) - 2.5 / 6) < 1e-15);  // its face's plane is x + y + z = 1
+  check_mesh(mesh, "mesh");
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), by);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    text.starts_with("# vtk") ? parse_vtk(text, "m") : parse_gmsh(text, "m");
+  } catch (const InvalidArgument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+bool refuses(const std::string& text, const std::string& because) {
+  return refusal(text).find(because) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "tetrahedra are read from Gmsh's versions 2.2 and 4.1 and from VTK's lists and offsets, the rest is left "
+    "out") {
+  check_is_the_pair(parse_gmsh(version_2, "m"));
+  check_is_the_pair(parse_gmsh(version_4, "m"));
+  check_is_the_pair(parse_vtk(vtk_lists, "m"));
+  check_is_the_pair(parse_vtk(vtk_offsets, "m"));
+}
+
+TEST_CASE("a mesh file is told apart by how it begins") {
+  const std::string path = "mesh_file_test.msh";
+  for (const std::string& text : {version_4, vtk_lists}) {
+    std::ofstream(path) << text;
+    check_is_the_pair(read_tetrahedral_mesh(path));
+  }
+  std::remove(path.c_str());
+  CHECK_THROWS_AS(read_tetrahedral_mesh(path), InvalidArgument);
+}
+
+TEST_CASE("a mesh file that cannot be used is refused with its line and the reason") {
+  CHECK(refuses(replaced(version_2, "2.2 0 8", "2.2 1 8"), "binary"));
+  CHECK(refuses(replaced(version_2, "2.2 0 8", "4.0 0 8"), "neither 2.2 nor 4.1"));
+  CHECK(refuses(replaced(version_2, "10 2 30 4\n", "10 2 31 4\n"),
+                "m, line 22: there is no node with the tag 31"));
+  CHECK(refuses(replaced(version_2, "0 0 1\n", "0 nan 1\n"), "line 13"));
+  CHECK(refuses(replaced(version_2, "4 4 2 7 1 10 2 30 4", "4 11 2 7 1 10 2 30 4"), "ten nodes"));
+  CHECK(refuses(replaced(version_4, "3 1 4 2", "3 1 77 2"), "type 77"));
+  CHECK(refuses(version_4.substr(0, 200), "the file ends where"));
+  CHECK(refuses("hello", "'hello' stands where a section"));
+  CHECK(refuses(version_2.substr(0, version_2.find("$Elements")), "no tetrahedron"));
+  CHECK(refuses(version_4.substr(version_4.find("$Elements")), "before $Nodes"));
+  CHECK(refuses(replaced(vtk_lists, "ASCII\nDATASET", "BINARY\nDATASET"), "binary"));
+  CHECK(refuses(replaced(vtk_lists, "UNSTRUCTURED_GRID", "POLYDATA"), "UNSTRUCTURED_GRID"));
+  CHECK(refuses(replaced(vtk_lists, "4 1 2 3 5", "4 1 2 3 6"), "the number of a point"));
+  CHECK(refuses(replaced(vtk_lists, "CELL_TYPES 3\n5 10 10", "CELL_TYPES 2\n10 10"),
+                "do not speak of the same cells"));
+  CHECK(refuses(replaced(vtk_lists, "CELLS 3 14\n3 0 1 2", "CELLS 3 14\nx 0 1 2"), "corners of a cell"));
+  CHECK(refuses(replaced(vtk_offsets, "0 3 7 11", "0 3 7 12"), "an offset"));
+  CHECK(refuses("# vtk DataFile Version 3.0", "'ASCII'"));
+}
