@@ -64,10 +64,10 @@ void compare(Loop& loop, double h, int steps) {
   compare(loop);
 }
 
-/// At `steps`, ascending: the reference gets to its 1e-10 at each, and where Gauss-Seidel does, they agree;
-/// else its velocities are off by its own residual, to the same factor.
+/// At `steps`, ascending: the reference gets to its 1e-10 at each. Gauss-Seidel's velocities are off by its own
+/// residual, to the same factor, if the motion is unique: with friction in a heap it need not be.
 template <class Loop>
-void compare_at(Loop& loop, double h, std::initializer_list<int> steps) {
+void compare_at(Loop& loop, double h, std::initializer_list<int> steps, bool is_unique = true) {
   int done = 0;
   for (const int step : steps) {
     run(loop, h, step - done);
@@ -78,7 +78,7 @@ void compare_at(Loop& loop, double h, std::initializer_list<int> steps) {
     CAPTURE(step, check.text());
     CHECK(check.reached);
     CHECK(check.reference.measure.residual <= 1e-10);
-    CHECK(check.velocity <= 1e4 * std::max(check.residual, 1e-10));
+    if (is_unique) CHECK(check.velocity <= 1e4 * std::max(check.residual, 1e-10));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <delassus/math/pose.hpp>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -148,6 +149,13 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   void solve(std::vector<Velocity>& x) const {
     each_body([&](const auto& body) { body.solve(x); });
   }
+  Index body_of(Index b) const { return body_[b]; }
+  /// A⁻¹ at nodes of one body: what its rows of W are made of.
+  void node_compliance(std::span<const Index> blocks, std::span<T> C) const {
+    touched_.clear();
+    for (const Index b : blocks) touched_.push_back(node_[b]);
+    bodies_[body_[blocks.front()]].compliance(touched_, C);
+  }
   template <int C>
   Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
     return (T(1 / scale_.mass) * inverse_mass_[b]) * x;
@@ -193,7 +201,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   /// What outlives a step; the handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
     Places::memory(archive);
-    archive(body_slots_, x_, shifted_x_, mass_, inverse_mass_, radius_, is_fixed_, body_, bodies_);
+    archive(body_slots_, x_, shifted_x_, mass_, inverse_mass_, radius_, is_fixed_, body_, node_, bodies_);
   }
 
  private:
@@ -243,7 +251,9 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   std::vector<T> mass_, inverse_mass_;
   std::vector<double> radius_;
   std::vector<char> is_fixed_;
-  std::vector<Index> body_;  ///< of each node
+  std::vector<Index> body_;  ///< of each block
+  std::vector<Index> node_;  ///< its number in that body's mesh
+  mutable std::vector<Index> touched_;
 };
 
 template <ElasticMaterial M, class T>
@@ -263,12 +273,13 @@ auto TetrahedralFem<M, T>::add(const Body& body) -> BodyHandle {
     const std::size_t n = std::size_t(slots_.size());
     for (auto* array : {&x_, &shifted_x_}) array->resize(n);
     for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
-    radius_.resize(n), is_fixed_.resize(n), body_.resize(n);
+    radius_.resize(n), is_fixed_.resize(n), body_.resize(n), node_.resize(n);
     x_[b] = p.template cast<T>();
     mass_[b] = T(0);
     radius_[b] = 0;
     is_fixed_[b] = 0;
     body_[b] = k;
+    node_[b] = Index(blocks.size());
     blocks.push_back(b);
   }
   for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e)

@@ -123,6 +123,20 @@ class ElasticBody {
       if (!is_held_[k]) x[blocks_[k]] = work_[k];
   }
 
+  /// The rows and columns of A⁻¹ of some nodes, 3n × 3n by columns; those of held nodes are zero.
+  void compliance(std::span<const Index> nodes, std::span<T> C) const {
+    const std::size_t rows = 3 * nodes.size();
+    if (!is_factored_) {
+      std::fill(C.begin(), C.end(), std::numeric_limits<T>::quiet_NaN());
+      return;
+    }
+    matrix_.compliance(nodes, C);
+    for (std::size_t i = 0; i < rows; ++i) {
+      if (!is_held_[nodes[i / 3]]) continue;
+      for (std::size_t j = 0; j < rows; ++j) C[i + rows * j] = C[j + rows * i] = T(0);
+    }
+  }
+
   void memory(auto& archive) {
     archive(mesh_.points, mesh_.tetrahedra, material_, blocks_);
     if constexpr (std::remove_reference_t<decltype(archive)>::reads) prepare();

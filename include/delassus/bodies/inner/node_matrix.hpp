@@ -75,6 +75,8 @@ class NodeMatrix {
     return factor_.factor();
   }
   void solve(std::vector<Velocity>& x) const { factor_.solve(x); }
+  /// The rows and columns of the inverse that belong to `nodes`, 3n × 3n by columns.
+  void compliance(std::span<const Index> nodes, std::span<T> C) const { factor_.compliance(nodes, C); }
 
  private:
   std::vector<std::pair<Index, Index>> pairs_;
