@@ -16,8 +16,8 @@ inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const
     r.noalias() += W[e].template cast<Sum>() * x[column[e]].template cast<Sum>();
 }
 
-/// Two numbers that one instruction adds or multiplies. From arrays and loops compilers made nine scalar products of a 3 × 3
-/// block, at almost twice the time.
+/// Two numbers that one instruction adds or multiplies. Of arrays and loops compilers made nine scalar
+/// products of a 3 × 3 block.
 typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
 
 inline Pair pair_at(const double* x) {

@@ -1,4 +1,5 @@
-/// What the stages of one solve share: the count of sweeps, the best measured impulses, and when a stage has stalled.
+/// What the stages of one solve share: the count of sweeps, the best measured impulses, and when a stage has
+/// stalled.
 #pragma once
 
 #include <delassus/solvers/solve_report.hpp>
@@ -9,19 +10,22 @@
 
 namespace delassus::inner {
 
-/// Sweeps are counted and measured here; a stage asks after each of its sweeps whether to go on. A stage has stalled when
-/// the best measured error did not halve within `patience` sweeps, or half as many as it took to get there if that is more.
+/// Sweeps are counted and measured here; a stage asks after each of its sweeps whether to go on. A stage has
+/// stalled when the best measured error did not halve within `patience` sweeps, or half as many as it took to
+/// get there if that is more.
 template <class Criterion, class Solver, class Problem, class Impulses>
 class Pursuit {
  public:
   Pursuit(const Solver& solver, Problem& problem, Impulses& best)
       : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {}
 
-  /// False: there is nothing to sweep. The start itself is measured only where that can end the solve or somebody asks for
-  /// every sweep: a measure costs about a sweep, and most warm starts are within the tolerance after their first.
+  /// False: there is nothing to sweep. The start itself is measured only where that can end the solve or
+  /// somebody asks for every sweep: a measure costs about a sweep, and most warm starts are within the
+  /// tolerance after their first.
   bool begin() {
     problem_.save(best_set_);
-    if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !Problem::Observes::every_sweep) return true;
+    if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !Problem::Observes::every_sweep)
+      return true;
     report_.measure = best_ = problem_.measure();
     problem_.tell(0, report_.measure);
     if (is_not_finite()) return false;
@@ -41,7 +45,8 @@ class Pursuit {
     ++report_.sweeps;
     is_last_ = report_.sweeps >= solver_.max_iterations ||
                (report_.sweeps >= solver_.min_iterations && problem_.is_out_of_time());
-    const int batch = Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report_.sweeps);
+    const int batch =
+        Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report_.sweeps);
     if (report_.sweeps - measured_ < batch && !is_last_) return true;
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
