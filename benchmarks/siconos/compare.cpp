@@ -282,23 +282,28 @@ class Table {
   std::FILE* out_ = nullptr;
 };
 
-/// `iterations` becomes N of the N and 2 N sweeps whose difference in time is taken, `seconds` the time of
-/// one.
-void time_sweep(FrictionProblem& p, const Entry& e, double limit, Result& result) {
-  const int blocks = int(p.W.blocks<0, 0>().column.size()) + int(p.rows.pool<0>().items());
-  const int N = std::clamp(2000000 / (50 * blocks), 20, 2000);
+/// The median of five differences between 2 N and N sweeps, over N; false when a solve ended before.
+bool time_sweeps(FrictionProblem& p, const Entry& e, int N, double limit, Result& result) {
   std::vector<double> times;
   for (int k = 0; k < 5; ++k) {
     start_alarm(limit);
     const double once = run_once(p, e, 0, N, result);
-    if (result.iterations != N) return;  // it ended before: nothing to be told
+    if (result.iterations != N) return false;
     const double twice = run_once(p, e, 0, 2 * N, result);
-    if (result.iterations != 2 * N) return;
+    if (result.iterations != 2 * N) return false;
     times.push_back((twice - once) / N);
   }
   result.seconds = median(times);
   result.runs = int(times.size());
   result.iterations = N;
+  return true;
+}
+
+/// With the longest N that the problem is not solved in.
+void time_sweep(FrictionProblem& p, const Entry& e, double limit, Result& result) {
+  const int blocks = int(p.W.blocks<0, 0>().column.size()) + int(p.rows.pool<0>().items());
+  for (int N = std::clamp(400000 / blocks, 50, 2000); N >= 10; N /= 2)
+    if (time_sweeps(p, e, N, limit, result)) return;
 }
 
 void compare(const std::filesystem::path& file, const Options& o, Table& table) {
