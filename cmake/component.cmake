@@ -1,5 +1,6 @@
-# delassus_component(<name> PACKAGE <cmake package> VERSION <v> TARGET <its target> DEBIAN <apt package>)
+# delassus_component(<name> PACKAGE <cmake package> VERSION <v> TARGET <its target> DEBIAN <apt package> [FIND <how>...])
 #
+# <how> goes to find_package: CONFIG, or MODULE and what else CMake's own module wants.
 # A component is the adapter headers of one third party, include/delassus/adapters/<name>*.hpp, and a link to it.
 # DELASSUS_WITH_<NAME> says what this build does: AUTO takes the package if it is found, ON insists, OFF drops the
 # component. Whether the package is found here decides nothing about installing: headers do not depend on the builder's
@@ -8,18 +9,23 @@
 set(DELASSUS_COMPONENTS "")
 
 macro(delassus_component name)
-  cmake_parse_arguments(component "" "PACKAGE;VERSION;TARGET;DEBIAN" "" ${ARGN})
+  cmake_parse_arguments(component "" "PACKAGE;VERSION;TARGET;DEBIAN" "FIND" ${ARGN})
+  if(NOT component_FIND)
+    set(component_FIND CONFIG)
+  endif()
   string(TOUPPER ${name} NAME)
   set(DELASSUS_WITH_${NAME} AUTO CACHE STRING "The component ${name}: AUTO, ON or OFF")
   set_property(CACHE DELASSUS_WITH_${NAME} PROPERTY STRINGS AUTO ON OFF)
   set(DELASSUS_${name}_PACKAGE ${component_PACKAGE})
   set(DELASSUS_${name}_VERSION ${component_VERSION})
   set(DELASSUS_${name}_DEBIAN ${component_DEBIAN})
+  set(DELASSUS_${name}_TARGET ${component_TARGET})
+  set(DELASSUS_${name}_FIND ${component_FIND})
   list(APPEND DELASSUS_COMPONENTS ${name})
 
   if(DELASSUS_WITH_${NAME})
     set(missing "delassus: component '${name}' needs ${component_PACKAGE} ${component_VERSION}; on Debian: apt-get install ${component_DEBIAN}")
-    find_package(${component_PACKAGE} ${component_VERSION} CONFIG QUIET)
+    find_package(${component_PACKAGE} ${component_VERSION} QUIET ${component_FIND})
     if(NOT ${component_PACKAGE}_FOUND)
       if(DELASSUS_WITH_${NAME} STREQUAL "AUTO")
         message(STATUS "${missing}")

@@ -9,7 +9,7 @@ install(EXPORT delassus-core NAMESPACE delassus:: DESTINATION ${package_dir})
 # What the config must know of each component, as lines of CMake.
 set(component_table "set(delassus_known_components ${DELASSUS_COMPONENTS})\n")
 foreach(name IN LISTS DELASSUS_COMPONENTS)
-  foreach(fact PACKAGE VERSION DEBIAN)
+  foreach(fact PACKAGE VERSION DEBIAN FIND)
     string(APPEND component_table "set(delassus_${name}_${fact} ${DELASSUS_${name}_${fact}})\n")
   endforeach()
   if(TARGET delassus_${name})

@@ -20,6 +20,8 @@ set(absent "")
 foreach(component IN LISTS DELASSUS_COMPONENTS)
   if(NOT TARGET delassus::${component})
     list(APPEND absent ${component})
+  else()
+    list(APPEND include_dirs $<TARGET_PROPERTY:${DELASSUS_${component}_TARGET},INTERFACE_INCLUDE_DIRECTORIES>)
   endif()
 endforeach()
 

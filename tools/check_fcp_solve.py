@@ -35,6 +35,16 @@ def main():
         expect(status == 0 and text.splitlines()[1].split()[5] == "0", f"warm start without a sweep: {text}")
         status, text, _ = run(program, problem, problem, "--solver", "plain", "--stop", "err")
         expect(status == 0 and len(text.splitlines()) == 3, f"two problems: {text}")
+        fclib = Path(folder, "slips.hdf5")
+        status, text, error = run(program, problem, "--save", fclib)
+        if "without HDF5" in error:
+            expect(status == 2, f"no HDF5: {status}")
+        else:
+            expect(status == 0, f"saved in FCLIB's form: {status} {error}")
+            again, back = run(program, fclib), Path(folder, "back.fcp")
+            expect(again[0] == 0 and again[1].split()[11:16] == text.split()[11:16], f"the same solve: {again[1]} {text}")
+            run(program, fclib, "--save", back)
+            expect(back.read_text() == SLIPS, f"the same problem: {back.read_text()}")
         bad.write_text(SLIPS.replace("0.5", "-0.5"))
         status, _, error = run(program, bad)
         expect(status == 2 and f"{bad}, line 3: friction -0.5 must be >= 0" in error, f"a bad file: {status} {error}")

@@ -1,13 +1,16 @@
 // Solves friction problems from files, one line each:
 //
 //   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|plain] [--warm FILE] [--out FILE]
-//             [--time-limit S]
+//             [--save FILE] [--time-limit S]
 //
 // err is Siconos' error, err_s the scale-free one; by default both must be within the tolerance. `build` is the own blocks'
 // factors and the workspace, `solve` the median of repeated solves, both in ms of this thread's processor time. --warm starts
-// from a file of impulses, --out writes them; both go with one problem.
+// from a file of impulses, --out writes them, --save the problem; all three go with one problem. Files named .hdf5 or .h5 are in the
+// form of FCLIB, where the tool is built with HDF5: `fcp_solve a.fcp --save a.hdf5` turns one form into the other.
 //
 // Exit status 1 when a problem did not reach the tolerance, 2 when the arguments or a file are wrong.
+#include "read_any.hpp"
+
 #include <delassus/io/problem_file.hpp>
 #include <delassus/loop/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
@@ -39,7 +42,7 @@ struct ThreadClock {
 struct Options {
   std::vector<std::string> files;
   double tolerance = 1e-8, time_limit = 10;
-  std::string solver = "accelerated", stop = "both", warm, out;
+  std::string solver = "accelerated", stop = "both", warm, out, save;
 };
 
 /// The criterion of this tool: both errors within the tolerance.
@@ -130,16 +133,19 @@ Options parse(int count, char** words) {
     else if (word == "--stop") o.stop = value;
     else if (word == "--warm") o.warm = value;
     else if (word == "--out") o.out = value;
+    else if (word == "--save") o.save = value;
     else inner::refuse("there is no option " + word);
   }
   DELASSUS_EXPECT(!o.files.empty(), "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] "
-                                    "[--solver accelerated|plain] [--warm FILE] [--out FILE] [--time-limit S]");
-  DELASSUS_EXPECT(o.files.size() == 1 || (o.warm.empty() && o.out.empty()), "--warm and --out go with one problem");
+                                    "[--solver accelerated|plain] [--warm FILE] [--out FILE] [--save FILE] [--time-limit S]");
+  DELASSUS_EXPECT(o.files.size() == 1 || (o.warm.empty() && o.out.empty() && o.save.empty()),
+                  "--warm, --out and --save go with one problem");
   return o;
 }
 
 bool solve_file(const std::string& file, const Options& o) {
-  FrictionProblem problem = read_problem(file);
+  FrictionProblem problem = read_any(file);
+  if (!o.save.empty()) write_any(o.save, problem);
   auto& lambda = problem.rows.pool<0>().lambda;
   if (!o.warm.empty()) lambda = read_impulses(o.warm, Index(lambda.size()));
   DELASSUS_EXPECT(o.stop == "err" || o.stop == "err_s" || o.stop == "both", "--stop '" + o.stop + "' is none of err, err_s, both");

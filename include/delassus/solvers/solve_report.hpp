@@ -34,8 +34,11 @@ bool is_within(const Solver& solver, const Measure& m, int rows) {
   return Criterion::sum(m) <= solver.tolerance * (solver.scale_tolerance ? rows : 1);
 }
 
-/// Sweeps between two measurements: a measurement costs about as much as a sweep.
-inline int patience(int sweeps) { return sweeps < 16 ? 1 : sweeps < 64 ? 4 : 16; }
+/// Sweeps between two measurements. With a measurement at the price of c sweeps, one every m sweeps costs n c/m on the way to
+/// n sweeps and m/2 sweeps too many at the end: least for m = √(2 c n). c lies between 1 and 2.
+inline int patience(int sweeps) {
+  return sweeps < 4 ? 1 : sweeps < 8 ? 2 : sweeps < 24 ? 4 : sweeps < 64 ? 8 : sweeps < 512 ? 16 : 32;
+}
 
 /// Converged, at the rounding floor above the tolerance, or out of sweeps.
 template <class Criterion, class Solver>

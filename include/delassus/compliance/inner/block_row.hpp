@@ -4,6 +4,8 @@
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
+#include <cstring>
+
 namespace delassus::inner {
 
 /// r += Σ_e W_e x_{column(e)}, e = 0 … count − 1, in the scalar of r.
@@ -14,19 +16,36 @@ inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const
     r.noalias() += W[e].template cast<Sum>() * x[column[e]].template cast<Sum>();
 }
 
-/// The same for the 3 × 3 blocks of contacts, column by column in four lanes: the columns of W begin at its
-/// entries 0, 3 and 6; four entries from 0, 3 and 5 on hold them, the last with its first lane idle, and none
-/// lies outside of the block. Three sums, one a column, so that no addition waits for the one before it.
+/// Two numbers that one instruction adds or multiplies. Of arrays and loops compilers made nine scalar
+/// products of a 3 × 3 block.
+typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
+
+inline Pair pair_at(const double* x) {
+  Pair p;
+  std::memcpy(&p, x, sizeof p);
+  return p;
+}
+
+/// The same for the 3 × 3 blocks of contacts, two entries at a time as they lie, column by column:
+///
+///   (w₀₀ w₁₀) x₀,  (w₂₀ w₀₁) (x₀ x₁),  (w₁₁ w₂₁) x₁,  (w₀₂ w₁₂) x₂,  w₂₂ x₂,
+///
+/// each into a sum of its own, so that no addition waits for the one before it.
 inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* column, const Vec<3>* x) {
-  double first[4] = {}, second[4] = {}, third[4] = {};
+  Pair first{}, across{}, second{}, third{};
+  double last = 0;
   for (Index e = 0; e < count; ++e) {
     const double* w = W[e].data();
     const double* y = x[column[e]].data();
-    for (int k = 0; k < 4; ++k) first[k] += w[k] * y[0];
-    for (int k = 0; k < 4; ++k) second[k] += w[k + 3] * y[1];
-    for (int k = 0; k < 4; ++k) third[k] += w[k + 5] * y[2];
+    first += pair_at(w) * y[0];
+    across += pair_at(w + 2) * pair_at(y);
+    second += pair_at(w + 4) * y[1];
+    third += pair_at(w + 6) * y[2];
+    last += w[8] * y[2];
   }
-  for (int k = 0; k < 3; ++k) r[k] += (first[k] + second[k]) + third[k + 1];
+  r[0] += (first[0] + across[1]) + third[0];
+  r[1] += (first[1] + second[0]) + third[1];
+  r[2] += (across[0] + second[1]) + last;
 }
 
 }  // namespace delassus::inner

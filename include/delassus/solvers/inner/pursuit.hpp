@@ -1,4 +1,5 @@
-/// What the stages of one solve share: the count of sweeps, the best measured impulses, and when a stage has stalled.
+/// What the stages of one solve share: the count of sweeps, the best measured impulses, and when a stage has
+/// stalled.
 #pragma once
 
 #include <delassus/solvers/solve_report.hpp>
@@ -9,28 +10,27 @@
 
 namespace delassus::inner {
 
-/// Sweeps are counted and measured here; a stage asks after each of its sweeps whether to go on. A stage has stalled when
-/// the best measured error did not halve within `patience` sweeps, or half as many as it took to get there if that is more.
+/// Sweeps are counted and measured here; a stage asks after each of its sweeps whether to go on. A stage has
+/// stalled when the best measured error did not halve within `patience` sweeps, or half as many as it took to
+/// get there if that is more.
 template <class Criterion, class Solver, class Problem, class Impulses>
 class Pursuit {
  public:
   Pursuit(const Solver& solver, Problem& problem, Impulses& best)
       : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {}
 
-  /// The first measure, before any sweep. False: there is nothing to sweep.
+  /// False: there is nothing to sweep. The start itself is measured only where that can end the solve or
+  /// somebody asks for every sweep: a measure costs about a sweep, and most warm starts are within the
+  /// tolerance after their first.
   bool begin() {
+    problem_.save(best_set_);
+    if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !Problem::Observes::every_sweep)
+      return true;
     report_.measure = best_ = problem_.measure();
     problem_.tell(0, report_.measure);
-    if (!std::isfinite(report_.measure.residual)) {
-      report_.status = Status::quarantined;
-      return false;
-    }
-    if (solver_.min_iterations == 0 && is_done(best_)) {
-      is_met_ = true;
-      return false;
-    }
-    problem_.save(best_set_);
-    return solver_.max_iterations > 0;
+    if (is_not_finite()) return false;
+    is_met_ = solver_.min_iterations == 0 && is_done(best_);
+    return !is_met_ && solver_.max_iterations > 0;
   }
 
   void open(const char* stage, int patience) {
@@ -45,11 +45,13 @@ class Pursuit {
     ++report_.sweeps;
     is_last_ = report_.sweeps >= solver_.max_iterations ||
                (report_.sweeps >= solver_.min_iterations && problem_.is_out_of_time());
-    const int batch = Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report_.sweeps);
+    const int batch =
+        Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report_.sweeps);
     if (report_.sweeps - measured_ < batch && !is_last_) return true;
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
     problem_.tell(report_.sweeps, report_.measure);
+    if (std::isinf(best_.residual) && is_not_finite()) return false;
     is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
     if (is_met_) return false;
     if (Criterion::needs_measure ? Criterion::sum(report_.measure) < Criterion::sum(best_)
@@ -65,7 +67,7 @@ class Pursuit {
   }
 
   /// The tolerance is met, or no sweep is left.
-  bool is_over() const { return is_met_ || is_last_; }
+  bool is_over() const { return is_met_ || is_last_ || is_quarantined(); }
   bool is_quarantined() const { return report_.status == Status::quarantined; }
 
   /// λ ← the best measured.
@@ -82,6 +84,13 @@ class Pursuit {
   }
 
  private:
+  /// A first measure that is no number: the start stays as it was, and the island is told apart.
+  bool is_not_finite() {
+    if (std::isfinite(report_.measure.residual)) return false;
+    report_.status = Status::quarantined;
+    if (report_.sweeps > 0) back_to_best();
+    return true;
+  }
   bool is_done(const Measure& m) const {
     return inner::is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
   }
@@ -90,13 +99,16 @@ class Pursuit {
            report_.sweeps - progressed_ > std::max(patience_, (progressed_ - opened_) / 2);
   }
 
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
+
   const Solver& solver_;
   Problem& problem_;
   Impulses& best_set_;
   SolveReport report_{};
-  Measure best_{};
+  Measure best_ = unmeasured;
   int rows_, measured_ = 0, patience_ = 0, opened_ = 0, progressed_ = 0;
-  double mark_ = std::numeric_limits<double>::infinity();
+  double mark_ = infinity;
   bool is_met_ = false, is_last_ = false;
 };
 
