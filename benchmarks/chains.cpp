@@ -1,4 +1,5 @@
-// A step of hanging chains, the last link 10^range(1) times as heavy: the time of a link, which does not grow with their number.
+// A step of hanging chains, the last link 10^range(1) times as heavy: the time of a link, which does not grow
+// with their number.
 #include "scenes.hpp"
 
 #include <delassus/loop/newton_midpoint.hpp>
