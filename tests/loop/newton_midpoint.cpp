@@ -4,6 +4,8 @@
 #include "convergence_order.hpp"
 #include "loop/chains.hpp"
 
+#include <limits>
+
 #include "catch.hpp"
 
 using namespace chains;
@@ -126,4 +128,15 @@ TEST_CASE("a heavy chain swings with the period of its first mode") {
     last = x;
   }
   CHECK(std::abs((second - first) * first_frequency(links, ratio) / EIGEN_PI - 1) <= 0.005);
+}
+
+TEST_CASE("a force that is no number leaves the bodies where they were, and the report says so") {
+  auto loop = rods(3, 1, 0.3, NewtonMidpoint{});
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  loop.step(0.01);
+  const Vec3 before = end_of(loop);
+  rigid.apply_force(rigid.handle(1), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  CHECK(loop.step(0.01).status == Status::quarantined);
+  CHECK((end_of(loop) - before).norm() == 0);
+  CHECK(loop.step(0.01).status == Status::converged);
 }

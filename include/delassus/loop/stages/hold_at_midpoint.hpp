@@ -120,7 +120,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   /// P − h f − Hᵀλ with the geometric stiffness, and φ + R λ + c; returns the largest of both, in units of
   /// the speed.
   double balance(World& world, const Laws& laws, Rows& rows, double h) {
-    double most = 0;
+    double most = 0, spoilt = 0;
     load_ = 0;
     impulse_ = force_;
     for_each_index<Rows::pool_count>([&](auto p) {
@@ -141,12 +141,13 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
         if (set.moves(b)) {
           const double missing =
               double(std::get<s>(bodies_).balance(set.midpoint_state(), b, std::get<s>(impulse_)[b], T(h)));
-          most = missing <= most ? most : missing;  // and so for one that is no number
+          most = std::max(most, missing);
+          spoilt += 0 * missing;  // NaN for one that is no number, which a maximum would lose
         }
     });
     const double unit = speed_ > 0 ? speed_ : 1;
     load_ /= unit;
-    return most / unit;
+    return most / unit + spoilt;
   }
   /// impulse += Hᵀλ; the force at each end of an item stiffens its body.
   template <int p, class Set, class S, class Item, class Lambda>
