@@ -2,6 +2,8 @@
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "allocation_scenes.hpp"
 
+#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 TEST_CASE("a warm step of a standing stack with a pendulum beside it allocates nothing under Newton's method") {
@@ -10,5 +12,30 @@ TEST_CASE("a warm step of a standing stack with a pendulum beside it allocates n
   add_stack(set, 10, Box{1, 1, 1});
   const auto rod = set.add({.position = {3, 0, 5}, .velocity = {1, 0, 0}, .mass = 0.2, .shape = Box{0.1, 0.1, 2}});
   loop.add(BallJoint::Item{anchor(set, rod, {0, 0, 1}), world_anchor({3, 0, 6})});
+  REQUIRE(allocations_of(loop, 100, 1000) == 0);
+}
+
+TEST_CASE("a warm step of a chain that lies on the ground allocates nothing under the direct path") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}, DirectGaussSeidel{}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  RigidBodies::Handle last;
+  for (int k = 0; k < 6; ++k) {
+    const auto link = set.add({.position = {0.5 * k, 0, 0.1}, .mass = 1.0, .shape = Box{0.4, 0.2, 0.2}});
+    if (k > 0) loop.add(BallJoint::Item{anchor(set, last, {0.25, 0, 0}), anchor(set, link, {-0.25, 0, 0})});
+    last = link;
+  }
+  REQUIRE(allocations_of(loop, 100, 1000) == 0);
+}
+
+TEST_CASE("a warm step of a swinging chain allocates nothing under the midpoint rule by Newton's method") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+  auto& set = rigid_bodies(loop);
+  Anchor end = world_anchor({0, 0, 0});
+  for (int k = 0; k < 6; ++k) {
+    const auto link = set.add({.position = {0.5 * k + 0.25, 0, 0}, .mass = 1.0, .shape = Box{0.5, 0.2, 0.2}});
+    loop.add(BallJoint::Item{end, anchor(set, link, {-0.25, 0, 0})});
+    end = anchor(set, link, {0.25, 0, 0});
+  }
   REQUIRE(allocations_of(loop, 100, 1000) == 0);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "convergence_order.hpp"
 
 using namespace delassus;
 
@@ -66,8 +67,8 @@ TEMPLATE_TEST_CASE("the Euler top meets Jacobi's closed form with second order",
   // step; Cayley's turn on rotations, which is what keeps L exactly, by (h ω)³/12, four times as much.
   CHECK(runs[2].angle <= 4 * 5.86e-5);
   for (int pair : {1, 2}) {
-    const double order = std::log2(runs[pair].angle / runs[pair + 1].angle);
-    const double rate_order = std::log2(runs[pair].rate / runs[pair + 1].rate);
+    const double order = convergence_order(runs[pair].angle, runs[pair + 1].angle);
+    const double rate_order = convergence_order(runs[pair].rate, runs[pair + 1].rate);
     CAPTURE(pair, order, rate_order);
     CHECK((order >= 1.85 && order <= 2.5));
     CHECK((rate_order >= 1.85 && rate_order <= 2.5));

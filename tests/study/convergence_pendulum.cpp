@@ -1,5 +1,6 @@
 // Physical errors of a study against closed forms: the orders that the integrators promise.
 #include "catch.hpp"
+#include "convergence_order.hpp"
 
 #include <delassus/delassus.hpp>
 #include <delassus/study/sweep.hpp>
@@ -11,12 +12,6 @@ using namespace delassus;
 namespace {
 
 constexpr double g = 9.81;
-
-/// p = log2 e(h)/e(h/2) of two runs that follow each other.
-double order(const Study& study, int first, int m = 0) {
-  const auto error = [&](int k) { return study.runs[std::size_t(k)].errors[std::size_t(m)]; };
-  return std::log2(error(first) / error(first + 1));
-}
 
 }  // namespace
 
@@ -61,8 +56,8 @@ TEST_CASE(
       plan, Measures{Compared{"place", "m", place, exact}, energy_change()});
   // Orders within the band of a measured slope: one tenth below, where the next term of the expansion is
   // still seen.
-  CHECK(order(study, 1) == Approx(1).margin(0.1));
-  CHECK(order(study, 4) == Approx(2).margin(0.1));
+  CHECK(convergence_order(study, 1) == Approx(1).margin(0.1));
+  CHECK(convergence_order(study, 4) == Approx(2).margin(0.1));
   // Of the midpoint rule with gaps closed by projection the energy is off in second order too.
-  CHECK(order(study, 4, 1) == Approx(2).margin(0.1));
+  CHECK(convergence_order(study, 4, 1) == Approx(2).margin(0.1));
 }

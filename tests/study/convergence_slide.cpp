@@ -1,5 +1,6 @@
 // Physical errors of a study against closed forms: the orders that the integrators promise.
 #include "catch.hpp"
+#include "convergence_order.hpp"
 
 #include <delassus/delassus.hpp>
 #include <delassus/study/sweep.hpp>
@@ -11,12 +12,6 @@ using namespace delassus;
 namespace {
 
 constexpr double g = 9.81;
-
-/// p = log2 e(h)/e(h/2) of two runs that follow each other.
-double order(const Study& study, int first, int m = 0) {
-  const auto error = [&](int k) { return study.runs[std::size_t(k)].errors[std::size_t(m)]; };
-  return std::log2(error(first) / error(first + 1));
-}
 
 }  // namespace
 
@@ -53,6 +48,6 @@ TEST_CASE(
     CHECK(run.errors[1] < 1e-9 * v0);
   }
   // The error is linear in h to 1e-6, so the order is 1 to twice that over ln 2.
-  CHECK(order(study, 0) == Approx(1).margin(3e-6));
-  CHECK(order(study, 1) == Approx(1).margin(3e-6));
+  CHECK(convergence_order(study, 0) == Approx(1).margin(3e-6));
+  CHECK(convergence_order(study, 1) == Approx(1).margin(3e-6));
 }

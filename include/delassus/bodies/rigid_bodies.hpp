@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/body_input.hpp>
 #include <delassus/bodies/inner/places.hpp>
+#include <delassus/bodies/inner/rigid_midpoint.hpp>
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/bodies/inner/shapes.hpp>
 #include <delassus/bodies/inner/targets.hpp>
@@ -150,6 +151,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
         .template cast<double>();
   }
   Quat frame(const Anchor& a) const { return state_.q[a.block].template cast<double>() * a.frame; }
+  Mat3 axes(const Anchor& a) const { return state_.R[a.block].template cast<double>() * a.frame.toRotationMatrix(); }
 
   /// Kick and drift: x₊ = x + h v_next, and free rotation from ω_next. A body whose state after it is not finite stays
   /// as it is.
@@ -191,6 +193,10 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
       if (motion_[b] != Motion::fixed) state_.displace(b, T(h) * linear_part(v_[b]), T(h) * angular_part(v_[b]));
   }
   void restore() { state_.take_poses_back(slots_.active()); }
+
+  /// What a midpoint rule that is solved by Newton's method does with each body.
+  using Midpoint = inner::RigidMidpoint<T>;
+  auto& midpoint_state() { return state_; }
 
   /// What collision detection needs of each body.
   bool has_collider(Index b) const { return this->is_alive(b) && shapes_.kind(b) != ShapeKind::none; }

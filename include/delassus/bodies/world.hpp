@@ -105,6 +105,16 @@ class World {
     return q;
   }
 
+  /// The same as a matrix: its axes are the columns. Between the ends of a step of the midpoint rule it is no rotation.
+  Mat3 axes(const Anchor& a) const {
+    Mat3 R;
+    bool is_found = false;
+    visit(a.set, [&](const auto& set, auto) {
+      if constexpr (requires { set.axes(a); }) R = set.axes(a), is_found = true;
+    });
+    return is_found ? R : Mat3(frame(a).toRotationMatrix());
+  }
+
   /// Whether the body behind an anchor is still there; the world always is.
   bool is_current(const Anchor& a) const {
     bool is_there = true;

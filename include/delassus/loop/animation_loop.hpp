@@ -33,6 +33,9 @@ class AnimationLoop {
   using Scalar = typename WorldType::Scalar;
   static constexpr bool has_constraints = Laws::pool_count > 0;
   static constexpr bool may_rest = has_constraints && has_dormant<typename Parts::Activity>;
+  /// The integrator solves for joints and bodies together: there is no W, and no problem to hand out.
+  static constexpr bool solves_whole_step =
+      has_constraints && requires { requires Parts::Integrator::solves_whole_step; };
   /// A policy of the list, by type.
   template <class P>
   static constexpr bool has = (std::is_same_v<P, Policies> || ...);
@@ -135,7 +138,7 @@ class AnimationLoop {
 
   /// The constraint problem of the last step, whole and apart from the loop: laws, rows, W, islands.
   auto problem() const
-    requires(has_constraints)
+    requires(has_constraints && !solves_whole_step)
   {
     return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
   }
@@ -194,7 +197,7 @@ class AnimationLoop {
   /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
   template <class F>
   void each_constraint(F&& f) const {
-    if constexpr (has_constraints) inner::each_constraint(work_, laws(), h_, f);
+    if constexpr (has_constraints && !solves_whole_step) inner::each_constraint(work_, laws(), h_, f);
   }
   /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
@@ -234,6 +237,8 @@ class AnimationLoop {
   void solve();
   void correct();
   void advance();
+  /// Linearize to Correct at once, for an integrator that solves for joints and bodies together.
+  void solve_whole_step();
   /// All of them at once, for a loop without constraints: the same bits, fewer passes.
   void move_freely();
 

@@ -6,8 +6,10 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/activity.hpp>
 #include <delassus/loop/channels.hpp>
 #include <delassus/loop/policies.hpp>
+#include <delassus/loop/scheme.hpp>
 #include <delassus/loop/stage.hpp>
 #include <delassus/loop/workspace.hpp>
 #include <delassus/rows/writer.hpp>
@@ -199,6 +201,43 @@ consteval bool constraints_are_sound() {
   }
 }
 
+/// A law whose rows are all equalities.
+template <class Law>
+consteval bool holds_exactly() {
+  for (const RowKind kind : row_kinds<Law>())
+    if (kind != RowKind::equality) return false;
+  return true;
+}
+
+/// An integrator that solves for joints and bodies together leaves no room for parts between FreeMotion and Correct.
+template <class Parts, class... Policies>
+consteval bool whole_step_fits() {
+  if constexpr (Parts::Laws::pool_count == 0 || !requires { requires Parts::Integrator::solves_whole_step; }) {
+    return true;
+  } else {
+    constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
+      return (holds_exactly<L>() && ...);
+    }(static_cast<const typename Parts::Laws*>(nullptr));
+    constexpr bool are_rigid = []<class... S>(const delassus::World<S...>*) {
+      return (requires { typename S::Midpoint; } && ...);
+    }(static_cast<const typename Parts::World*>(nullptr));
+    constexpr bool is_plain = std::is_same_v<typename Parts::Scheme, PlainOrder> &&
+                              std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...);
+    static_assert(are_equal,
+                  "delassus: NewtonMidpoint solves equalities; contacts, limits, motors and drives need another integrator, "
+                  "such as ImplicitMidpoint, or take their laws out");
+    if constexpr (are_equal)
+      static_assert(are_rigid,
+                    "delassus: NewtonMidpoint moves rigid bodies only; take the other sets out of World{...}, or use "
+                    "ImplicitMidpoint");
+    if constexpr (are_equal && are_rigid)
+      static_assert(is_plain,
+                    "delassus: NewtonMidpoint makes its step at once, without W; take out the scheme, the activity and the "
+                    "listeners that publish the problem");
+    return are_equal && are_rigid && is_plain;
+  }
+}
+
 template <class Scheme, class Loop>
 consteval bool scheme_runs() {
   constexpr bool runs = requires(const Scheme& scheme, Loop& loop) {
@@ -239,6 +278,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!has_bodies<typename Parts::World>()) return false;
   else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
   else if constexpr (!constraints_are_sound<Parts>()) return false;
+  else if constexpr (!whole_step_fits<Parts, Policies...>()) return false;
   else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;
   else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
 }

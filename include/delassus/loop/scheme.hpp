@@ -34,6 +34,10 @@ struct PlainOrder {
   void run(auto& loop) const {
     if constexpr (std::remove_reference_t<decltype(loop)>::moves_freely) {
       loop.move_freely();
+    } else if constexpr (std::remove_reference_t<decltype(loop)>::solves_whole_step) {
+      loop.detect();
+      loop.solve_whole_step();
+      loop.advance();
     } else {
       loop.detect();
       inner::linearize_to_build(loop);

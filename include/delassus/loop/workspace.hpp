@@ -16,6 +16,14 @@
 #include <type_traits>
 #include <vector>
 
+namespace delassus {
+
+/// With `NewtonMidpoint`, which brings it.
+template <class World, class Laws, class Rows>
+class MidpointHold;
+
+}  // namespace delassus
+
 namespace delassus::inner {
 
 template <class World>
@@ -61,6 +69,15 @@ struct activity_state<Activity, World, Laws> {
   using type = typename Activity::template State<World, Laws>;
 };
 
+template <bool holds, class World, class Laws, class Rows>
+struct midpoint_hold {
+  using type = Nothing<7>;
+};
+template <class World, class Laws, class Rows>
+struct midpoint_hold<true, World, Laws, Rows> {
+  using type = MidpointHold<World, Laws, Rows>;
+};
+
 /// Arrays of a step; `reset` keeps their capacity, so a warm step allocates nothing.
 template <class World, class Laws, class Compliance, class Solver, class Integrator, class Stabilisation,
           class Scheme, class Activity>
@@ -69,6 +86,7 @@ struct Workspace {
   using Operator = typename Compliance::template Operator<Rows>;
   static constexpr bool restitutes = rows_of<World, Laws>::restitutes;
   static constexpr bool at_midpoint = requires { requires Integrator::linearises_at_midpoint; };
+  static constexpr bool holds_at_midpoint = requires { requires Integrator::solves_whole_step; };
   static constexpr bool has_dormant = delassus::has_dormant<Activity>;
   static constexpr bool predicts = requires { requires Scheme::predicts; };
   static constexpr bool projects_position = requires { requires Stabilisation::projects_position; };
@@ -89,6 +107,7 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<restitutes || projects_position, std::array<Impulses<Rows>, 2>, Nothing<3>> aside;
   [[no_unique_address]] typename activity_state<Activity, World, Laws>::type activity;
   [[no_unique_address]] std::conditional_t<predicts, Impulses<Rows>, Nothing<5>> predicted;
+  [[no_unique_address]] typename midpoint_hold<holds_at_midpoint, World, Laws, Rows>::type hold;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
 };
 

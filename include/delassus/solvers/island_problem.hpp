@@ -34,7 +34,8 @@ struct NoObserver {
   void operator()(int, const Measure&) const {}
 };
 
-template <class Book, class Rows, class Operator, class Observer = NoObserver>
+/// `Groups` lists the items of an island; a solver that treats some of them by itself shows the others as a problem.
+template <class Book, class Rows, class Operator, class Observer = NoObserver, class Groups = Islands<Rows::pool_count>>
 class IslandProblem {
  public:
   using T = typename Rows::Scalar;
@@ -42,12 +43,28 @@ class IslandProblem {
   using BookType = Book;
   static constexpr int pools = Rows::pool_count;
 
-  IslandProblem(Book& book, Rows& rows, Operator& W, const Islands<pools>& islands, Index island, double h,
-                Observer& observer)
+  IslandProblem(Book& book, Rows& rows, Operator& W, const Groups& islands, Index island, double h, Observer& observer)
       : book_(book), rows_(rows), W_(W), islands_(islands), island_(island), h_(h), observer_(observer) {}
+
+  /// The same laws and impulses with another W and other items.
+  template <class OtherOperator, class OtherGroups>
+  IslandProblem<Book, Rows, OtherOperator, Observer, OtherGroups> with(OtherOperator& W, const OtherGroups& items) const {
+    return {book_, rows_, W, items, island_, h_, observer_};
+  }
+  /// Laws that keep something of their own block of W make it anew from `own_block`.
+  template <int p, class Own>
+  void prepare(Index i, const Own& own_block) {
+    if constexpr (requires { book_.template prepare_item<p>(i, own_block, h_); })
+      book_.template prepare_item<p>(i, own_block, h_);
+  }
 
   Index island() const { return island_; }
   const Rows& rows() const { return rows_; }
+  /// λ_i to write to; W is not told.
+  template <class Pool>
+  auto& impulse(Pool p, Index i) {
+    return rows_.template pool<p>().lambda[i];
+  }
   const Book& book() const { return book_; }
 
   int row_count() const {
@@ -246,7 +263,7 @@ class IslandProblem {
   Book& book_;
   Rows& rows_;
   Operator& W_;
-  const Islands<pools>& islands_;
+  const Groups& islands_;
   Index island_;
   double h_;
   Observer& observer_;

@@ -37,14 +37,16 @@ class LawBook<Constraints<Laws...>, T> {
     for_each_index<sizeof...(Laws)>([&](auto p) {
       auto& memory = std::get<p>(memory_);
       memory.resize(rows.template pool<p>().items());
-      const auto& pool = constraints_->template pool<p>();
-      for (Index i = 0; i < Index(memory.size()); ++i) {
-        const auto& own_block = W.template diagonal<p>(i);
-        if constexpr (requires { pool.law.prepare(pool.item(i), own_block, h, memory[i]); })
-          pool.law.prepare(pool.item(i), own_block, h, memory[i]);
-        else inner::prepare(pool.law, own_block, memory[i]);
-      }
+      for (Index i = 0; i < Index(memory.size()); ++i) prepare_item<p>(i, W.template diagonal<p>(i), h);
     });
+  }
+  template <int p, class Own>
+  void prepare_item(Index i, const Own& own_block, double h) {
+    auto& memory = std::get<p>(memory_);
+    const auto& pool = constraints_->template pool<p>();
+    if constexpr (requires { pool.law.prepare(pool.item(i), own_block, h, memory[i]); })
+      pool.law.prepare(pool.item(i), own_block, h, memory[i]);
+    else inner::prepare(pool.law, own_block, memory[i]);
   }
 
   template <int p, int R>

@@ -18,8 +18,8 @@ struct JointFrames {
   JointFrames(const Anchor& a, const Anchor& b, const auto& world)
       : xa(world.point(a)),
         xb(world.point(b)),
-        A(world.frame(a).toRotationMatrix()),
-        B(world.frame(b).toRotationMatrix()) {}
+        A(world.axes(a)),
+        B(world.axes(b)) {}
 
   Vec3 a(int k) const { return A.col(k); }
   Vec3 b(int k) const { return B.col(k); }

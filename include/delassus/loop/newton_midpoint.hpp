@@ -1,0 +1,41 @@
+/// The implicit midpoint rule solved to rounding, joints and bodies together, by Newton's method.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/stages/hold_at_midpoint.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// q₊ = q ⊕ h (v + v₊)/2 with φ(q₊) = 0 and constraint forces along H at the mean of q and q₊. Second order;
+/// where φ is quadratic in q (all joints but couplings, screws and lengths; a rigid length too) it keeps
+/// energy to rounding, and nothing drifts. The matrix of Newton's method has the geometric stiffness of
+/// forces at points, so that light links under a heavy load hold at any step: see docs/decisions/0010. For
+/// rigid bodies and laws whose rows are equalities.
+///
+/// Forces are those of the start of the step. All islands are solved as one. The solver, the compliance and
+/// the stabilisation of the loop are not asked.
+struct NewtonMidpoint {
+  using plays = role::Integrator;
+  using each_block_alone = NewtonMidpoint;
+  static constexpr bool solves_whole_step = true;
+  double tolerance = 1e-10;  ///< of what is missing in every equation, in units of the largest velocity
+  int max_iterations = 20;   ///< factorizations; reaching it is a status
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0, "NewtonMidpoint: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations > 0,
+                    "NewtonMidpoint: max_iterations " + inner::text(max_iterations) + " must be > 0");
+  }
+  SystemScale scale(double) const { return {.mass = 1}; }
+  void impulse(const auto& set, auto& p, double h) const {
+    set.add_forces(p);
+    times(p, h);
+  }
+  void advance(auto& set, double h) const { set.advance_midpoint(h); }
+};
+static_assert(Integrator<NewtonMidpoint>);
+
+}  // namespace delassus

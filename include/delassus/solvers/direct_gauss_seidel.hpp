@@ -1,0 +1,205 @@
+/// Joints by one sparse factorization, contacts and limits by sweeps on what the joints leave them.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/direct_system.hpp>
+#include <delassus/solvers/inner/schur_complement.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace delassus {
+
+/// The constraints b of an island whose rows are all equalities are met exactly, W_bb δ = −(d + W λ)_b, by
+/// `inner::DirectSystem`: O(n) for chains, trees and loops of n joints, at any ratio of masses. The others c
+/// are swept on
+///
+///   S = W_cc − W_cb W_bb⁻¹ W_bc,   u_c = d_c + W_cb λ_b + W_cc λ_c with λ_b such that the joints hold,
+///
+/// by `AcceleratedGaussSeidel`; S is dense, and an island with more than `max_swept_rows` rows of them is
+/// swept whole, as is one whose A couples bodies by springs. Impulses of joints start from zero: where rows
+/// depend on each other they come out the smallest that do. Rows that contradict each other get a compromise,
+/// as springs of 1e-4 of their compliance would give, and the status says so. Cannot mend what an explicit
+/// constraint force does to a heavy chain: see docs/decisions/0009.
+template <class Criterion = Residual>
+struct BasicDirectGaussSeidel {
+  static_assert(
+      Criterion::needs_measure,
+      "delassus: DirectGaussSeidel stops on a measured error; use the criterion Residual or SiconosError");
+  using plays = role::Solver;
+  double tolerance = 1e-8;       ///< of the criterion
+  int max_iterations = 4000;     ///< sweeps over contacts and limits
+  int min_iterations = 1;        ///< of the same
+  int max_swept_rows = 900;      ///< 6.5 MB of S at three rows a constraint
+  bool scale_tolerance = false;  ///< tolerance × number of rows
+  bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+
+  template <class Rows>
+  struct Workspace {
+    inner::DirectSystem<Rows> joints;
+    inner::SchurComplement<Rows> others;
+    Impulses<Rows> before;
+    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    void reset(const Rows& rows) {
+      sweeps.reset(rows);
+      before.resize_like(rows);
+    }
+  };
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0,
+                    "DirectGaussSeidel: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations >= 0,
+                    "DirectGaussSeidel: max_iterations " + inner::text(max_iterations) + " must be >= 0");
+    DELASSUS_EXPECT(max_swept_rows >= 0,
+                    "DirectGaussSeidel: max_swept_rows " + inner::text(max_swept_rows) + " must be >= 0");
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work) const {
+    SolveReport report{.measure = problem.measure()};
+    if (!std::isfinite(report.measure.residual))
+      return {.status = Status::quarantined, .measure = report.measure};
+    auto& joints = work.joints;
+    if (!gather(problem, joints)) return sweeper(max_iterations).solve(problem, work.sweeps);
+    problem.tell(0, report.measure);
+    report.ended_by = "factorization";
+    for (const double epsilon : {fine, coarse}) {
+      release(problem, joints);
+      ++report.factorizations;
+      if (joints.factor(epsilon) && (settle(problem, joints) || epsilon == coarse)) break;
+    }
+    report.measure = problem.measure();
+    for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round) {
+      sweep_others(problem, work, report);
+      settle(problem, joints);
+      report.measure = problem.measure();
+      if (is_done(report.measure, problem.row_count()) || problem.is_out_of_time()) break;
+    }
+    problem.tell(report.sweeps + report.factorizations, report.measure);
+    report.status = inner::verdict<Criterion>(*this, report.measure, problem.row_count());
+    return report;
+  }
+
+ private:
+  static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
+
+  /// A law whose rows are all equalities.
+  template <class Problem, int p>
+  static constexpr bool holds_exactly() {
+    for (const RowKind kind : Problem::BookType::template kinds<p>())
+      if (kind != RowKind::equality) return false;
+    return true;
+  }
+
+  BasicAcceleratedGaussSeidel<Criterion> sweeper(int most) const {
+    return {.tolerance = tolerance,
+            .max_iterations = most,
+            .min_iterations = min_iterations,
+            .scale_tolerance = scale_tolerance,
+            .all_verified = all_verified};
+  }
+  bool is_done(const Measure& m, int rows) const {
+    return inner::is_within<Criterion>(*this, m, rows) || m.residual <= m.floor;
+  }
+
+  /// The bilateral constraints first; false where there are none, or the direct path cannot act.
+  template <class Problem, class System>
+  bool gather(const Problem& problem, System& joints) const {
+    joints.begin();
+    bool can = true;
+    int swept = 0;
+    for (const bool is_bilateral : {true, false})
+      problem.each([&](auto p, Index i) {
+        if (holds_exactly<Problem, p>() != is_bilateral) return;
+        can &= joints.template take<p>(problem.rows(), i, is_bilateral);
+        if (!is_bilateral) swept += System::Rows::template rows_of<p>;
+      });
+    if (!can || joints.bilateral() == 0 || swept > max_swept_rows) return false;
+    joints.analyse(std::size_t(problem.island()));
+    return true;
+  }
+
+  /// λ_b ← 0.
+  template <class Problem, class System>
+  static void release(Problem& problem, System& joints) {
+    joints.each([&](auto p, Index k) {
+      const Index item = joints.node(k).item;
+      problem.template assign<p>(item, 0 * problem.rows().template pool<p>().lambda[item]);
+    });
+  }
+
+  /// λ_b ← λ_b − W_bb⁻¹ (d + W λ)_b, repeated while that halves the velocity of the joints' rows: what ε and
+  /// rounding left goes. A repetition that makes it worse is taken back. False when rows contradict each
+  /// other: a thousandth stays.
+  template <class Problem, class System>
+  static bool settle(Problem& problem, System& joints) {
+    const double first = joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
+    double size = first;
+    for (int repetition = 0; repetition < 8 && size > 0; ++repetition) {
+      joints.solve();
+      joints.keep();
+      push(problem, joints, 1);
+      const double next = joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
+      if (!(next < size)) {
+        push(problem, joints, -1);
+        break;
+      }
+      const bool goes_on = next < 0.5 * size;
+      size = next;
+      if (!goes_on) break;
+    }
+    return size <= 1e-3 * first;
+  }
+  /// λ_b ← λ_b + sign δ.
+  template <class Problem, class System>
+  static void push(Problem& problem, const System& joints, double sign) {
+    using T = typename Problem::T;
+    joints.each([&](auto p, Index k) {
+      const Index item = joints.node(k).item;
+      auto lambda = problem.rows().template pool<p>().lambda[item];
+      for (int r = 0; r < int(lambda.size()); ++r) lambda[r] += T(sign * joints.step(k)[r]);
+      problem.template assign<p>(item, lambda);
+    });
+  }
+
+  /// The others with S in place of W, from the λ they have; W is told in the end.
+  template <class Problem, class Workspace>
+  void sweep_others(Problem& problem, Workspace& work, SolveReport& report) const {
+    work.others.build(work.joints, problem);
+    problem.save(work.before);
+    Rest<Problem, decltype(work.others)> rest(problem, work.others);
+    rest.each([&](auto p, Index i) { rest.template prepare<p>(i, work.others.template diagonal<p>(i)); });
+    const SolveReport swept = sweeper(max_iterations - report.sweeps).solve(rest, work.sweeps);
+    report.sweeps += swept.sweeps;
+    rest.each([&](auto p, Index i) {
+      auto& lambda = problem.impulse(p, i);
+      const auto found = lambda;
+      lambda = std::get<p>(work.before.pools)[i];
+      problem.template assign<p>(i, found);
+      problem.template prepare<p>(i, problem.template local<p>(i).W);
+    });
+  }
+
+  /// The island without its joints, which asks the whole one for the time.
+  template <class Problem, class Others>
+  using RestOf =
+      decltype(std::declval<const Problem&>().with(std::declval<Others&>(), std::declval<const Others&>()));
+  template <class Problem, class Others>
+  struct Rest : RestOf<Problem, Others> {
+    Problem& whole;
+    Rest(Problem& problem, Others& others)
+        : RestOf<Problem, Others>(problem.with(others, others)), whole(problem) {}
+    bool is_out_of_time() { return whole.is_out_of_time(); }
+  };
+};
+
+using DirectGaussSeidel = BasicDirectGaussSeidel<>;
+
+}  // namespace delassus

@@ -1,0 +1,10 @@
+// expect: delassus: NewtonMidpoint moves rigid bodies only
+#include <delassus/delassus.hpp>
+#include <delassus/loop/newton_midpoint.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}, Particles{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+  loop.step(1e-3);
+}

@@ -1,0 +1,10 @@
+// expect: delassus: NewtonMidpoint makes its step at once, without W
+#include <delassus/delassus.hpp>
+#include <delassus/loop/newton_midpoint.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}, Sleeping{}};
+  loop.step(1e-3);
+}

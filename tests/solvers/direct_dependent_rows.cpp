@@ -1,0 +1,85 @@
+// The direct path where rows depend on each other, or contradict each other.
+#include "direct_tests.hpp"
+
+using namespace direct_tests;
+
+namespace {
+
+/// Motion and forces of a door of 20 kg after 0.2 s, its hinge put in `times`.
+struct Door {
+  Vec3 place;
+  Vec<5> sum = Vec<5>::Zero();
+  double spread = 0;
+
+  explicit Door(int times) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}}, DirectGaussSeidel{.tolerance = 1e-9}};
+    auto& rigid = bodies<RigidBodies>(loop.world());
+    const auto leaf = rigid.add({.position = {0.5, 0, 1},
+                                 .velocity = {0, 0.5, 0},
+                                 .angular_velocity = {0, 0, 1},
+                                 .mass = 20.0,
+                                 .shape = Box{1, 0.05, 2}});
+    std::vector<ConstraintHandle<Hinge>> hinges;
+    for (int k = 0; k < times; ++k)
+      hinges.push_back(loop.add(Hinge::Item{world_anchor({0, 0, 1}), anchor_at(rigid, leaf, {0, 0, 1})}));
+    for (int n = 0; n < 200; ++n) REQUIRE(loop.step(1e-3).status == Status::converged);
+    place = rigid.position(leaf);
+    for (const auto& hinge : hinges) {
+      sum += loop.impulse(hinge);
+      spread = std::max(spread, (loop.impulse(hinge) - loop.impulse(hinges[0])).norm());
+    }
+  }
+};
+
+}  // namespace
+
+// HC-09: 200 steps, each with an error of the solve of 1e-9 of 1 m/s at most, put 2e-10 m into the place.
+TEST_CASE("a joint put in fifty times moves and carries as one does, each taking its share") {
+  const Door one(1);
+  for (const int times : {2, 5, 50}) {
+    const Door many(times);
+    CAPTURE(times);
+    CHECK((many.place - one.place).norm() <= 2e-10);
+    CHECK((many.sum - one.sum).norm() <= 1e-8 * one.sum.norm());
+    // The smallest impulses that do: all alike, to what rounding, 1e-16/ε, leaves of that.
+    CHECK(many.spread <= 1e-5 * one.sum.norm());
+  }
+}
+
+// Three hinges of one axis have 15 rows of rank 5 and share the weight; their sum is one door's.
+TEST_CASE("a door on three hinges carries its weight") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}}, DirectGaussSeidel{.tolerance = 1e-9}};
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  const auto leaf = rigid.add({.position = {0.5, 0, 1}, .mass = 20.0, .shape = Box{1, 0.05, 2}});
+  std::vector<ConstraintHandle<Hinge>> hinges;
+  for (const double z : {0.2, 1., 1.8})
+    hinges.push_back(loop.add(Hinge::Item{world_anchor({0, 0, z}), anchor_at(rigid, leaf, {0, 0, z})}));
+  double most = 0;
+  for (int n = 0; n < 500; ++n) {
+    REQUIRE(loop.step(1e-2).status == Status::converged);
+    Vec3 force = Vec3::Zero();
+    for (const auto& hinge : hinges) {
+      force += reaction(loop, hinge).force;
+      most = std::max(most, loop.impulse(hinge).norm());
+    }
+    // The door rests: the forces sum up to its weight, with an error of the solve of 1e-9 g h a step, over h.
+    REQUIRE(std::abs(std::abs(force.z()) - 20 * 9.81) <= 1e-5);
+  }
+  CHECK(most <= 20 * 9.81 * 1e-2);  // no hinge is pressed by another
+}
+
+// Two points of the world that a body cannot both reach: 5 cm apart, so the rows ask for 0.2 · 0.05/h = 0.1
+// m/s apart.
+TEST_CASE("joints that contradict each other give a compromise, small impulses and a status") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, DirectGaussSeidel{}};
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  rigid.gravity.setZero();
+  const auto ball = rigid.add({.mass = 1.0, .shape = Sphere{0.1}});
+  const auto left = loop.add(BallJoint::Item{anchor(rigid, ball), world_anchor({-0.025, 0, 0})});
+  loop.add(BallJoint::Item{anchor(rigid, ball), world_anchor({0.025, 0, 0})});
+  for (int n = 0; n < 100; ++n) {
+    CHECK(loop.step(0.1).status == Status::max_iterations);
+    CHECK(rigid.position(ball).norm() <= 1e-6);      // in the middle
+    CHECK(loop.impulse(left).norm() <= 0.1 / 1e-4);  // m · 0.1 m/s over ε, not growing from step to step
+  }
+}
