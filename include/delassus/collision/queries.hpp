@@ -88,13 +88,15 @@ inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction
 }
 
 /// f(set, s, b, shape, pose) for every body with a shape whose group meets the mask; one that is not finite
-/// has none.
+/// has none. Refuses bodies whose shape a backend keeps.
 template <class World, class F>
 void each_shape(const World& world, std::uint32_t groups, const F& f) {
   world.each([&](const auto& set, auto s) {
     for (Index b = 0; b < set.blocks(); ++b) {
       if (!set.has_collider(b) || (set.group(b) & groups) == 0) continue;
       const Pose pose = set.pose(b);
+      DELASSUS_EXPECT(!set.shape(b).is_kept(), set.who(b) + ": a " + name(set.shape(b).kind) +
+                                                   " is known to its backend alone; leave its group out of the mask");
       if (is_finite(pose.position) && is_finite(pose.rotation)) f(set, Index(s), b, set.shape(b), pose);
     }
   });
