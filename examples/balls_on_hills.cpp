@@ -30,12 +30,11 @@ int main() {
         rigid.add({.position = {x, y, height(x, y) + 0.2}, .density = 1000., .shape = Sphere{0.15}}));
   }
   for (int i = 0; i < 3000; ++i) loop.step(5e-3);
-  int lying = 0;
-  double lowest = 1;
+  double lowest = 1, lying = 0;
   for (const auto ball : balls) {
     const double above = rigid.position(ball).z() - 0.15 + 0.4;
     lying += above > -1e-3 && above < 0.05;
     lowest = std::min(lowest, above);
   }
-  std::printf("%d of 25 balls lie in hollows, the lowest at %.2f m above its own\n", lying, lowest);
+  std::printf("%.0f of 25 balls lie in hollows, the lowest at %.2f m above its own\n", lying, lowest);
 }

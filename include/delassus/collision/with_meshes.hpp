@@ -25,6 +25,9 @@ struct WithMeshes {
       !requires { Backend::asks_for_joints; },
       "delassus: WithFilter goes outermost; write WithFilter{WithMeshes{...}}");
 
+  static_assert(!requires { Backend::splits_bodies; },
+                "delassus: WithCompounds goes around WithMeshes; write WithCompounds{WithMeshes{...}}");
+
   Backend backend{};
 
   WithMeshes() = default;
