@@ -1,7 +1,7 @@
 // A program of its own: it counts every call of operator new.
 #include "catch.hpp"
+#include "collision/mesh_scene.hpp"
 #include "collision/samples.hpp"
-#include "collision/scene.hpp"
 #include "count_allocations.hpp"
 
 #include <vector>
@@ -35,5 +35,22 @@ TEST_CASE("a warm detect() allocates nothing") {
     move(step);
     scene.detect();
   }
+  CHECK(allocations == before);
+}
+
+TEST_CASE("a warm detect() on a mesh allocates nothing") {
+  MeshScene scene;
+  scene.add(scene.collision.add(flat_grid(4, 31, 0.3)), {0, 0, 0}, Mat3::Identity(), false);
+  const std::vector<Shape> shapes{Sphere{0.4}, Box{1, 0.6, 0.8}, Capsule{0.25, 0.8}, Cylinder{0.35, 0.8}};
+  for (std::size_t i = 0; i < 16; ++i)
+    scene.add(shapes[i % 4], Vec3(0.3 * double(i) - 2, double(i % 4) - 2, 0.399));
+  const auto step = [&](int k) {
+    for (std::size_t i = 1; i < scene.colliders.size(); ++i) scene.colliders[i].pose.position[0] += k % 2 ? 1e-3 : -1e-3;
+    scene.detect();
+  };
+  for (int k = 0; k < 20; ++k) step(k);
+  REQUIRE(scene.contacts.size() > 30);
+  const long before = allocations;
+  for (int k = 0; k < 20; ++k) step(k);
   CHECK(allocations == before);
 }

@@ -54,7 +54,7 @@ inline SignedPair two_capsules(const Shape& a, const Shape& b, const Pose& b_in_
 }
 
 inline bool is_simple(const Shape& s) {
-  return s.has_volume() && s.kind != ShapeKind::convex_hull;
+  return s.kind != ShapeKind::none && s.kind != ShapeKind::half_space && s.kind != ShapeKind::convex_hull;
 }
 
 /// Turns an answer for (B, A) in the frame of B into one for (A, B) in the frame of A.

@@ -87,15 +87,29 @@ inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction
   return first <= last;
 }
 
-/// f(set, s, b, shape, pose) for every body with a shape whose group meets the mask; one that is not finite
-/// has none.
-template <class World, class F>
-void each_shape(const World& world, std::uint32_t groups, const F& f) {
+/// What is asked of a body whose shape a backend keeps: nothing can be.
+struct RefuseKept {
+  void operator()(const auto& set, Index b, const Shape& shape) const {
+    refuse(set.who(b) + ": a " + name(shape.kind) + " is known to its backend alone; name it in the question (" +
+           "delassus/collision/mesh_queries.hpp), or leave the group out of the mask");
+  }
+};
+/// Those are asked elsewhere.
+struct PassKept {
+  void operator()(const auto&, Index, const Shape&) const {}
+};
+
+/// f(set, s, b, shape, pose) for every body with a shape whose group meets the mask, kept(set, b, shape) for those that
+/// a backend keeps; one that is not finite has none.
+template <class World, class F, class Kept>
+void each_shape(const World& world, std::uint32_t groups, const Kept& kept, const F& f) {
   world.each([&](const auto& set, auto s) {
     for (Index b = 0; b < set.blocks(); ++b) {
       if (!set.has_collider(b) || (set.group(b) & groups) == 0) continue;
       const Pose pose = set.pose(b);
-      if (is_finite(pose.position) && is_finite(pose.rotation)) f(set, Index(s), b, set.shape(b), pose);
+      if (!is_finite(pose.position) || !is_finite(pose.rotation)) continue;
+      const Shape shape = set.shape(b);
+      shape.is_kept() ? kept(set, b, shape) : f(set, Index(s), b, shape, pose);
     }
   });
 }
@@ -114,9 +128,9 @@ SurfacePoint surface_point(const Set& set, Index s, Index b, const Pose& pose, c
 /// The first body that the ray from `origin` along `direction` (any length) meets within `reach` m. A body
 /// that holds the origin is met there, at the distance 0. `groups` masks the bodies that are asked, by their
 /// own group.
-template <class World>
+template <class World, class Kept = inner::RefuseKept>
 SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direction,
-                      double reach = inner::forever, std::uint32_t groups = ~0u) {
+                      double reach = inner::forever, std::uint32_t groups = ~0u, const Kept& kept = {}) {
   const Vec3 along = inner::direction_of(direction);
   DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
                   "ray_cast: origin and direction must be finite and the direction not zero");
@@ -124,7 +138,7 @@ SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direct
   SurfacePoint first;
   double nearest = reach;
   inner::each_shape(
-      world, groups, [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
+      world, groups, kept, [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
         if (shape.kind != ShapeKind::half_space &&
             !inner::ray_meets(tight_box(shape, pose), origin, along, nearest))
           return;
@@ -141,13 +155,13 @@ SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direct
 
 /// The surface point nearest to `point`, of all bodies within `reach` m. Inside a body the distance is
 /// negative, and the body in which the point lies deepest is the nearest.
-template <class World>
+template <class World, class Kept = inner::RefuseKept>
 SurfacePoint closest_point(const World& world, const Vec3& point, double reach = inner::forever,
-                           std::uint32_t groups = ~0u) {
+                           std::uint32_t groups = ~0u, const Kept& kept = {}) {
   DELASSUS_EXPECT(is_finite(point), "closest_point: the point is not finite");
   DELASSUS_EXPECT(reach >= 0, "closest_point: reach " + inner::text(reach) + " m must be >= 0");
   SurfacePoint best;
-  inner::each_shape(world, groups,
+  inner::each_shape(world, groups, kept,
                     [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
                       const double limit = best ? best.distance : reach;
                       if (shape.kind != ShapeKind::half_space &&
@@ -163,9 +177,9 @@ SurfacePoint closest_point(const World& world, const Vec3& point, double reach =
 
 /// Every body that overlaps `shape` at `pose`, or comes within `margin` m of it: the point of each that lies
 /// deepest in the shape, and how far. In the order of the bodies; `found` is cleared first.
-template <class World>
+template <class World, class Kept = inner::RefuseKept>
 void overlaps(const World& world, const Shape& shape, const Pose& pose, std::vector<SurfacePoint>& found,
-              double margin = 0, std::uint32_t groups = ~0u) {
+              double margin = 0, std::uint32_t groups = ~0u, const Kept& kept = {}) {
   check(shape, "overlaps");
   DELASSUS_EXPECT(shape.has_volume(),
                   std::string("overlaps: a ") + name(shape.kind) + " has no volume to overlap with");
@@ -174,7 +188,7 @@ void overlaps(const World& world, const Shape& shape, const Pose& pose, std::vec
   const Vec3 more = Vec3::Constant(margin);
   const Aabb tight = tight_box(shape, pose), box(tight.min() - more, tight.max() + more);
   inner::each_shape(
-      world, groups, [&](const auto& set, Index s, Index b, const Shape& other, const Pose& at) {
+      world, groups, kept, [&](const auto& set, Index s, Index b, const Shape& other, const Pose& at) {
         if (other.kind != ShapeKind::half_space && !tight_box(other, at).intersects(box)) return;
         const Pose relative{.position = at.to_local(pose.position),
                             .rotation = at.rotation.transpose() * pose.rotation};

@@ -100,6 +100,8 @@ inline Face face_towards(const Shape& s, const Vec3& d) {
   Face face;
   switch (s.kind) {
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::compound:
       inner::box_face(s, d, face);
       break;
     case ShapeKind::cylinder:

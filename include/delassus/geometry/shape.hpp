@@ -1,4 +1,4 @@
-/// The shapes a body can have: eight kinds, in one plain tagged struct.
+/// The shapes a body can have: eight kinds, in one plain tagged struct, and those that a collision backend keeps.
 #pragma once
 
 #include <delassus/core/expect.hpp>
@@ -72,12 +72,22 @@ enum class ShapeKind : std::uint8_t {
   half_space,
   convex_hull,
   cone,
-  ellipsoid
+  ellipsoid,
+  mesh,
+  compound
+};
+
+/// A shape that its collision backend keeps, a mesh or a compound of parts (`WithMeshes`, `WithCompounds`): its number
+/// there, and a box around the origin that holds it, half edges in m. Other backends take the box for the shape.
+struct KeptShape {
+  ShapeKind kind = ShapeKind::mesh;
+  int number = 0;
+  Vec3 reach = Vec3::Zero();
 };
 
 /// Any of the shapes above, or none. Trivially copyable. `size` holds half lengths:
 /// sphere (r) · box (x/2, y/2, z/2) · capsule and cylinder (r, height/2) · half-space (unit normal, offset) ·
-/// cone (r, height/2) · ellipsoid (a, b, c).
+/// cone (r, height/2) · ellipsoid (a, b, c) · mesh and compound (half edges of the box around it, its number).
 /// A hull is pointed at, not owned: it must outlive the shape. Sets of bodies copy it when a body is added.
 struct Shape {
   ShapeKind kind = ShapeKind::none;
@@ -96,8 +106,14 @@ struct Shape {
     size = {n[0], n[1], n[2], h.offset};
   }
   constexpr Shape(const ConvexHull& h) : kind(ShapeKind::convex_hull), hull(&h) {}
+  Shape(const KeptShape& k) : kind(k.kind), size{k.reach[0], k.reach[1], k.reach[2], double(k.number)} {}
 
-  constexpr bool has_volume() const { return kind != ShapeKind::none && kind != ShapeKind::half_space; }
+  /// True for what a backend keeps; `number` says which.
+  constexpr bool is_kept() const { return kind >= ShapeKind::mesh; }
+  constexpr int number() const { return int(size[3]); }
+  constexpr bool has_volume() const {
+    return kind != ShapeKind::none && kind != ShapeKind::half_space && !is_kept();
+  }
 };
 
 namespace inner {
@@ -111,7 +127,7 @@ inline void check_length(double value, const char* what, const std::string& wher
 
 constexpr const char* name(ShapeKind kind) {
   constexpr const char* names[] = {"no shape",   "sphere",      "box",  "capsule",  "cylinder",
-                                   "half-space", "convex hull", "cone", "ellipsoid"};
+                                   "half-space", "convex hull", "cone", "ellipsoid", "mesh", "compound"};
   return names[int(kind)];
 }
 
@@ -136,6 +152,9 @@ inline void check(const Shape& s, const std::string& where) {
     DELASSUS_EXPECT(std::isfinite(s.size[3]),
                     where + ": half-space offset " + inner::text(s.size[3]) + " m is not finite");
   }
+  if (s.is_kept())
+    DELASSUS_EXPECT(std::isfinite(s.size[0] + s.size[1] + s.size[2]) && s.size[3] >= 0,
+                    where + ": this " + name(s.kind) + " is none that a backend keeps; take what its add(...) returns");
   if (s.kind == convex_hull)
     DELASSUS_EXPECT(s.hull != nullptr, where + ": convex hull is missing; pass a ConvexHull");
 }

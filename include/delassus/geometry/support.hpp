@@ -69,6 +69,8 @@ inline Vec3 core_support(const Shape& s, const Vec3& d) {
     case ShapeKind::capsule:
       return {0, 0, inner::with_sign(s.size[1], d[2])};
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::compound:
       return {inner::with_sign(s.size[0], d[0]), inner::with_sign(s.size[1], d[1]),
               inner::with_sign(s.size[2], d[2])};
     case ShapeKind::cylinder:
@@ -102,6 +104,8 @@ inline double outer_radius(const Shape& s) {
     case ShapeKind::sphere:
       return s.size[0];
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::compound:
       return Vec3(s.size[0], s.size[1], s.size[2]).norm();
     case ShapeKind::capsule:
       return s.size[0] + s.size[1];
@@ -122,6 +126,8 @@ inline double outer_radius(const Shape& s) {
 inline double length_scale(const Shape& s) {
   switch (s.kind) {
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::compound:
       return std::max({s.size[0], s.size[1], s.size[2]});
     case ShapeKind::cylinder:
     case ShapeKind::cone:
@@ -147,6 +153,8 @@ inline double half_width(const Shape& s, const Mat3& R, int k) {
     case ShapeKind::sphere:
       return s.size[0];
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::compound:
       return std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + along * s.size[2];
     case ShapeKind::capsule:
       return along * s.size[1] + s.size[0];

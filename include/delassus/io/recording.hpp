@@ -25,8 +25,9 @@ struct RecordedBody {
   int colour = -1;  ///< place in the page's palette (0 … 7), −1: one after the other
 };
 
+/// A mesh and a compound, which only their backend knows, are not drawn.
 inline RecordedBody recorded_body(const Shape& shape, bool is_static = false) {
-  RecordedBody body{.shape = shape, .is_static = is_static};
+  RecordedBody body{.shape = shape.is_kept() ? Shape{} : shape, .is_static = is_static};
   if (shape.kind != ShapeKind::convex_hull) return body;
   body.vertices.assign(shape.hull->vertices().begin(), shape.hull->vertices().end());
   for (Index f = 0; f < shape.hull->face_count(); ++f)

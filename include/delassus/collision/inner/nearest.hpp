@@ -70,6 +70,8 @@ inline NearestSurface nearest_surface_of_cone(double radius, double height, cons
 inline NearestSurface nearest_surface(const Shape& s, const Vec3& p, const Vec3& wish) {
   switch (s.kind) {
     case ShapeKind::box:
+    case ShapeKind::mesh:
+    case ShapeKind::compound:
       return nearest_surface_of_box({s.size[0], s.size[1], s.size[2]}, p);
     case ShapeKind::capsule:
       return nearest_surface_of_capsule(s.size[0], s.size[1], p, wish);

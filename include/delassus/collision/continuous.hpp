@@ -1,0 +1,268 @@
+/// Detection of what fast bodies will meet within the step.
+#pragma once
+
+#include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/time_of_impact.hpp>
+#include <delassus/core/roles.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+namespace inner {
+
+/// Half the radius of a ball about the middle that the shape holds, m.
+inline double core_of_motion(const Shape& s) {
+  switch (s.kind) {
+    case ShapeKind::box:
+    case ShapeKind::ellipsoid:
+      return 0.5 * std::min({s.size[0], s.size[1], s.size[2]});
+    case ShapeKind::cylinder:
+      return 0.5 * std::min(s.size[0], s.size[1]);
+    case ShapeKind::cone:
+      return s.size[0] * s.size[1] / (s.size[0] + std::hypot(s.size[0], 2 * s.size[1]));
+    case ShapeKind::convex_hull:
+      return 0.5 * s.hull->inner_radius();
+    default:
+      return 0.5 * s.size[0];
+  }
+}
+
+}  // namespace inner
+
+/// `Continuous{NativeCollision{}}` in the place of the backend: a pair that would come to touch within the
+/// step, from farther than the backend's margin, gets contacts now, with the way left to go as their gap.
+/// They hold the bodies at the place of impact, whatever the speed; the next step finds them there.
+/// `WithCompounds`, `WithFilter` go around it.
+///
+/// t is the time of impact, n the normal and r the arms of the points that meet then, with the velocities of
+/// the start of the step. Where the motion is mostly a turn, the points themselves are held,
+///
+///   gap = t n · (v_A + ω_A × r_A − v_B − ω_B × r_B);
+///
+/// where it is mostly a flight, the middle of the body that flies is, gap = t n · (v_A − v_B): an impulse
+/// beside the middle would turn it and let it fly on. For the same reason a ball within a fast body is held
+/// by its middle, also when the body touches already. Convex shapes and half-spaces only.
+template <class Backend>
+struct Continuous {
+  using plays = role::Collision;
+  static_assert(
+      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; },
+      "delassus: WithFilter and WithCompounds go around Continuous; write WithCompounds{Continuous{...}}");
+
+  Backend backend{};
+
+  Continuous() = default;
+  explicit Continuous(Backend b) : backend(std::move(b)) {}
+
+  void check() const {
+    if constexpr (requires { backend.check(); }) backend.check();
+  }
+
+  template <class Filter = NoFilter>
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
+                         const Filter& filter = {}) {
+    CollisionReport report = backend.detect(colliders, h, contacts, filter);
+    find_fast(colliders, h);
+    if (fast_.empty()) return report;
+    const std::size_t known = contacts.size();
+    for (const Index i : fast_)
+      for (Index j = 0; j < Index(colliders.size()); ++j) {
+        if (j == i || (is_fast_[j] && j < i) || !may_meet(colliders[i], colliders[j], h)) continue;
+        const std::uint64_t pair = pair_key(colliders[i].key, colliders[j].key);
+        if (!filter.lets(pair)) continue;
+        const bool is_first = colliders[i].key < colliders[j].key;
+        const Index a = is_first ? i : j, b = is_first ? j : i;
+        ++report.queries;
+        if (!is_touching(contacts, known, pair)) meet(colliders, a, b, h, contacts);
+        for (const bool holds_a : {true, false})
+          if (is_fast_[holds_a ? a : b]) hold_core(colliders, a, b, holds_a, h, contacts);
+      }
+    if (contacts.size() > known)
+      std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {
+        return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
+      });
+    report.points = Index(contacts.size());
+    return report;
+  }
+
+  void memory(auto& archive) {
+    if constexpr (requires { backend.memory(archive); })
+      backend.memory(archive);
+    else if constexpr (requires { backend.engine.memory(archive); })
+      backend.engine.memory(archive);
+  }
+  CollisionSettings settings() const {
+    if constexpr (requires { backend.settings(); })
+      return backend.settings();
+    else
+      return {backend.margin, backend.contact_distance, backend.max_points};
+  }
+
+ private:
+  static bool is_asked(const Collider& c) {
+    return c.shape.kind != ShapeKind::none && !c.shape.is_kept() && std::isfinite(inner::top_speed(c)) &&
+           is_finite(c.pose.position) && is_finite(c.pose.rotation);
+  }
+
+  /// Whoever moves further in a step than half the margin that the backend gives any pair here: two that do
+  /// not are seen.
+  void find_fast(std::span<const Collider> colliders, double h) {
+    const CollisionSettings s = settings();
+    double way = 0.5 * s.margin;
+    if (s.margin < 0) {
+      double smallest = std::numeric_limits<double>::infinity();
+      for (const Collider& c : colliders)
+        if (c.shape.has_volume()) smallest = std::min(smallest, length_scale(c.shape));
+      way = 0.5 * inner::margin_limit * smallest;
+    }
+    fast_.clear();
+    is_fast_.assign(colliders.size(), false);
+    for (Index i = 0; i < Index(colliders.size()); ++i) {
+      const Collider& c = colliders[i];
+      if (!is_asked(c) || !c.shape.has_volume() || !(inner::top_speed(c) * h > way)) continue;
+      is_fast_[i] = true;
+      fast_.push_back(i);
+    }
+  }
+
+  /// Groups, and whether the ways of both through the step can meet.
+  static bool may_meet(const Collider& a, const Collider& b, double h) {
+    if (!is_asked(b) || (!a.is_movable && !b.is_movable)) return false;
+    if ((a.group & b.collides_with) == 0 || (b.group & a.collides_with) == 0) return false;
+    if (b.shape.kind == ShapeKind::half_space) return true;
+    return swept(a, h).intersects(swept(b, h));
+  }
+  static Aabb swept(const Collider& c, double h) {
+    Aabb box = tight_box(c.shape, c.pose);
+    if (!is_zero(c.angular_velocity)) {
+      const Vec3 r = Vec3::Constant(outer_radius(c.shape));
+      box = Aabb(Vec3(c.pose.position - r), Vec3(c.pose.position + r));
+    }
+    Aabb later(Vec3(box.min() + h * c.velocity), Vec3(box.max() + h * c.velocity));
+    return later.merged(box);
+  }
+
+  static bool is_touching(const std::vector<ContactPoint>& contacts, std::size_t known, std::uint64_t pair) {
+    const auto end = contacts.begin() + std::ptrdiff_t(known);
+    const auto at = std::lower_bound(contacts.begin(), end, pair,
+                                     [](const ContactPoint& p, std::uint64_t key) { return p.pair < key; });
+    return at != end && at->pair == pair;
+  }
+
+  /// Contacts of the patch that the two will have when they touch.
+  void meet(std::span<const Collider> colliders, Index place_a, Index place_b, double h,
+            std::vector<ContactPoint>& out) {
+    const Collider &a = colliders[place_a], &b = colliders[place_b];
+    const double scale = inner::pair_scale(a.shape, b.shape), thickness = settings().contact_distance;
+    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, thickness + 1e-3 * scale);
+    if (!hit.is_found) return;
+    const Pose b_in_a = inner::relative(hit.a, hit.b);
+    const double margin = thickness + 0.05 * scale;
+    const SignedPair r = inner::distance_of(a.shape, b.shape, b_in_a, margin, scale, hit.normal_in_a, patch_);
+    if (r.status != PairStatus::near) return;
+    const Vec3 n = hit.a.rotation * r.normal;
+    const double flight = n.dot(a.velocity - b.velocity);
+    const Vec3 arm_a = hit.a.rotation * r.point_a, arm_b = hit.a.to_world(r.point_b) - hit.b.position;
+    if (flight >= n.dot(a.angular_velocity.cross(arm_a) - b.angular_velocity.cross(arm_b))) {
+      if (!(flight > 0)) return;
+      const bool holds_a =
+          a.is_movable && (!b.is_movable || a.velocity.squaredNorm() > b.velocity.squaredNorm());
+      out.push_back(middle_contact(a, b, place_a, place_b, holds_a, n, hit.time * flight, whole_name));
+      return;
+    }
+    if (a.shape.has_volume() && b.shape.has_volume())
+      contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
+    const inner::Choice choice = chosen(r.normal);
+    const std::size_t first = out.size();
+    for (int k = 0; k < choice.count; ++k) {
+      const PatchPoint& p = patch_.point[choice.index[k]];
+      ContactPoint c = ahead(a, b, hit, hit.a.rotation * r.normal, p, std::max(p.gap - r.distance, 0.0));
+      if (!(c.gap > 0)) continue;
+      c.a = place_a, c.b = place_b;
+      c.pair = pair_key(a.key, b.key);
+      c.feature = p.name;
+      for (std::size_t i = first; i < out.size(); ++i)
+        if (out[i].feature == c.feature) ++c.feature, i = first - 1;
+      out.push_back(c);
+    }
+  }
+
+  /// All points of the patch, or the four that span it.
+  inner::Choice chosen(const Vec3& n) const {
+    const int limit = std::clamp(settings().max_points, 1, 4);
+    if (patch_.count > limit) return inner::choose_anew(patch_, n, limit);
+    inner::Choice all;
+    for (int i = 0; i < patch_.count; ++i) all.add(i);
+    return all;
+  }
+
+  /// A ball within the fast body, moved without turning, that would reach the other one in the step is held
+  /// by its middle.
+  void hold_core(std::span<const Collider> colliders, Index place_a, Index place_b, bool holds_a, double h,
+                 std::vector<ContactPoint>& out) {
+    Collider a = colliders[place_a], b = colliders[place_b];
+    Collider& core = holds_a ? a : b;
+    if (!core.is_movable || !core.shape.has_volume()) return;
+    const double radius = inner::core_of_motion(core.shape);
+    core.shape = Sphere{radius};
+    core.angular_velocity.setZero();
+    const inner::Impact hit = inner::time_of_impact(a, b, h, radius, 1e-3 * radius);
+    if (!hit.is_found) return;
+    const Vec3 n = hit.a.rotation * hit.normal_in_a;
+    const double flight = n.dot(a.velocity - b.velocity);
+    if (flight > 0)
+      out.push_back(middle_contact(a, b, place_a, place_b, holds_a, n, hit.time * flight,
+                                   holds_a ? core_name : core_name + 1));
+  }
+
+  /// A row through the middle of A or of B.
+  static ContactPoint middle_contact(const Collider& a, const Collider& b, Index place_a, Index place_b,
+                                     bool holds_a, const Vec3& n, double gap, std::uint32_t name) {
+    const Vec3 middle = holds_a ? a.pose.position : b.pose.position;
+    return {.a = place_a,
+            .b = place_b,
+            .point_a = middle - 0.5 * gap * n,
+            .point_b = middle + 0.5 * gap * n,
+            .normal = n,
+            .gap = gap,
+            .pair = pair_key(a.key, b.key),
+            .feature = name};
+  }
+
+  /// The contact as a row that lets the point close in by the way it has until then; on the body that moves,
+  /// or between both.
+  static ContactPoint ahead(const Collider& a, const Collider& b, const inner::Impact& hit, const Vec3& n,
+                            const PatchPoint& p, double more) {
+    const Vec3 arm_a = hit.a.to_world(p.a) - hit.a.position, arm_b = hit.a.to_world(p.b) - hit.b.position;
+    const Vec3 of_a = a.velocity + a.angular_velocity.cross(arm_a),
+               of_b = b.velocity + b.angular_velocity.cross(arm_b);
+    const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b;
+    const Vec3 middle = !a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b));
+    ContactPoint c;
+    const double way = hit.time * n.dot(of_a - of_b);
+    c.gap = way > 0 ? way + more : 0;
+    c.normal = n;
+    c.point_a = middle - 0.5 * c.gap * n;
+    c.point_b = middle + 0.5 * c.gap * n;
+    return c;
+  }
+
+  /// Names that no point of a patch has.
+  static constexpr std::uint32_t whole_name = 0x3ffffff0u, core_name = 0x3ffffff1u;
+
+  std::vector<Index> fast_;
+  std::vector<bool> is_fast_;
+  Patch patch_;
+};
+
+template <class Backend>
+Continuous(Backend) -> Continuous<Backend>;
+
+}  // namespace delassus

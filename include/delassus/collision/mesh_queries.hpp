@@ -1,0 +1,127 @@
+/// The questions of queries.hpp where some bodies are meshes: name the backend that keeps them after the
+/// world.
+#pragma once
+
+#include <delassus/collision/queries.hpp>
+#include <delassus/collision/with_meshes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace delassus {
+namespace inner {
+
+/// f(set, s, b, surface, pose) for every body of a mesh or a height field whose group meets the mask.
+template <class World, class Backend, class F>
+void each_surface(const World& world, const WithMeshes<Backend>& meshes, std::uint32_t groups, const F& f) {
+  world.each([&](const auto& set, auto s) {
+    for (Index b = 0; b < set.blocks(); ++b) {
+      if (!set.has_collider(b) || (set.group(b) & groups) == 0) continue;
+      const Shape shape = set.shape(b);
+      const Pose pose = set.pose(b);
+      if (shape.kind != ShapeKind::mesh || !is_finite(pose.position) || !is_finite(pose.rotation)) continue;
+      meshes.with_surface(shape, [&](const auto& surface) { f(set, Index(s), b, surface, pose); });
+    }
+  });
+}
+
+/// The way along the unit direction d to where the ray enters a triangle from outside, m; infinite when it
+/// does not. Source: [MollerTrumbore1997].
+inline double way_to(const Triangle& t, const Vec3& origin, const Vec3& d) {
+  const Vec3 e1 = t.point[1] - t.point[0], e2 = t.point[2] - t.point[0], p = d.cross(e2);
+  const double determinant = e1.dot(p);
+  if (!(determinant > 0)) return forever;
+  const Vec3 s = origin - t.point[0], q = s.cross(e1);
+  const double u = s.dot(p), v = d.dot(q), way = e2.dot(q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= determinant && way >= 0 ? way : forever;
+}
+
+inline double distance_to(const Bounds& box, const Vec3& p) {
+  Vec3 out;
+  for (int k = 0; k < 3; ++k) out[k] = std::max({box.low[k] - p[k], 0.0, p[k] - box.high[k]});
+  return out.norm();
+}
+
+}  // namespace inner
+
+/// As `ray_cast(world, …)`; a mesh is met where the ray enters it from outside.
+template <class World, class Backend>
+SurfacePoint ray_cast(const World& world, const WithMeshes<Backend>& meshes, const Vec3& origin,
+                      const Vec3& direction, double reach = inner::forever, std::uint32_t groups = ~0u) {
+  SurfacePoint first = ray_cast(world, origin, direction, reach, groups, inner::PassKept{});
+  const Vec3 along = inner::direction_of(direction);
+  double nearest = first ? first.distance : reach;
+  inner::each_surface(world, meshes, groups,
+                      [&](const auto& set, Index s, Index b, const auto& surface, const Pose& pose) {
+                        const Vec3 from = pose.to_local(origin), d = pose.rotation.transpose() * along;
+                        const auto meets = [&](const inner::Bounds& box) {
+                          return inner::ray_meets(Aabb(box.low, box.high), from, d, nearest);
+                        };
+                        surface.visit(meets, [&](Index t) {
+                          const Triangle triangle = surface.triangle(t);
+                          const double way = inner::way_to(triangle, from, d);
+                          if (!(way <= nearest) || !(way < inner::forever) || (first && way == nearest))
+                            return;
+                          nearest = way;
+                          first = inner::surface_point(set, s, b, pose, origin + way * along,
+                                                       pose.rotation * triangle.normal, way);
+                        });
+                      });
+  return first;
+}
+
+/// As `closest_point(world, …)`. Of a mesh the distance is to the nearest triangle and never negative.
+template <class World, class Backend>
+SurfacePoint closest_point(const World& world, const WithMeshes<Backend>& meshes, const Vec3& point,
+                           double reach = inner::forever, std::uint32_t groups = ~0u) {
+  SurfacePoint best = closest_point(world, point, reach, groups, inner::PassKept{});
+  double limit = best ? best.distance : reach;
+  inner::each_surface(
+      world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& pose) {
+        const Vec3 local = pose.to_local(point);
+        const auto meets = [&](const inner::Bounds& box) { return inner::distance_to(box, local) <= limit; };
+        surface.visit(meets, [&](Index t) {
+          const Triangle triangle = surface.triangle(t);
+          const Vec3 on = inner::nearest_on(triangle, local), apart = local - on;
+          const double distance = apart.norm();
+          if (!(distance <= limit) || (best && distance == limit)) return;
+          limit = distance;
+          const Vec3 normal = distance > 0 ? Vec3(apart / distance) : triangle.normal;
+          best = inner::surface_point(set, s, b, pose, pose.to_world(on), pose.rotation * normal, distance);
+        });
+      });
+  return best;
+}
+
+/// As `overlaps(world, …)`; a mesh is one that has contacts with the shape, which see the solid behind its
+/// triangles.
+template <class World, class Backend>
+void overlaps(const World& world, const WithMeshes<Backend>& meshes, const Shape& shape, const Pose& pose,
+              std::vector<SurfacePoint>& found, double margin = 0, std::uint32_t groups = ~0u) {
+  overlaps(world, shape, pose, found, margin, groups, inner::PassKept{});
+  Patch patch;
+  inner::each_surface(
+      world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& at) {
+        const Pose relative{.position = at.to_local(pose.position),
+                            .rotation = at.rotation.transpose() * pose.rotation};
+        const Aabb tight = tight_box(shape, relative);
+        const Vec3 more = Vec3::Constant(margin);
+        const inner::Bounds near{tight.min() - more, tight.max() + more};
+        SurfacePoint deepest;
+        surface.visit([&](const inner::Bounds& box) { return box.meets(near); },
+                      [&](Index t) {
+                        Vec3 n;
+                        const PatchTrust trust = triangle_patch(surface.triangle(t), shape, relative, margin,
+                                                                length_scale(shape), patch, n);
+                        if (trust != PatchTrust::sure) return;
+                        const PatchPoint& p = patch.point[inner::deepest(patch)];
+                        if (p.gap <= margin && (!deepest || p.gap < deepest.distance))
+                          deepest =
+                              inner::surface_point(set, s, b, at, at.to_world(p.a), at.rotation * n, p.gap);
+                      });
+        if (deepest) found.push_back(deepest);
+      });
+}
+
+}  // namespace delassus

@@ -1,0 +1,176 @@
+/// Detection with bodies of several convex parts.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/margins.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/geometry/compound.hpp>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// `WithCompounds{NativeCollision{}}` in the place of the backend, or `WithCompounds{WithMeshes{...}}`: each
+/// part of a body is a collider of its own to the backend, and its contacts are the body's. Parts of one body
+/// do not meet; the material is the body's. `WithFilter` goes around it.
+template <class Backend>
+struct WithCompounds {
+  using plays = role::Collision;
+  static constexpr bool splits_bodies = true;
+  static_assert(
+      !requires { Backend::asks_for_joints; },
+      "delassus: WithFilter goes outermost; write WithFilter{WithCompounds{...}}");
+
+  Backend backend{};
+
+  WithCompounds() = default;
+  explicit WithCompounds(Backend b) : backend(std::move(b)) {}
+
+  /// Keeps a compound; the shape it returns is for bodies of the loop that has this backend, as many as
+  /// wanted. A dynamic body takes `mass()` and `inertia()` of the compound.
+  Shape add(Compound compound) {
+    const Vec3 reach = compound.reach();
+    compounds_.push_back(std::move(compound));
+    return KeptShape{ShapeKind::compound, int(compounds_.size()) - 1, reach};
+  }
+
+  void check() const {
+    if constexpr (requires { backend.check(); }) backend.check();
+  }
+
+  template <class Filter = NoFilter>
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
+                         const Filter& filter = {}) {
+    split(colliders);
+    CollisionReport report = backend.detect(parts_, h, contacts, PartFilter<Filter>{*this, filter});
+    const Index bodies = Index(colliders.size());
+    if (Index(parts_.size()) == bodies) return report;
+    for (ContactPoint& p : contacts) {
+      if (p.a < bodies && p.b < bodies) continue;
+      // The parts' names are in the contact's: two parts of one body meet another in points of equal names.
+      p.feature ^= 0x9e3779b9u * (0x10001u * part_of(p.a, bodies) + 7u * part_of(p.b, bodies) + 1u);
+      p.a = body_of(p.a, bodies);
+      p.b = body_of(p.b, bodies);
+      p.pair = pair_key(colliders[p.a].key, colliders[p.b].key);
+      if (colliders[p.a].key < colliders[p.b].key) continue;
+      std::swap(p.a, p.b);
+      std::swap(p.point_a, p.point_b);
+      p.normal = -p.normal;
+    }
+    const auto is_before = [](const ContactPoint& p, const ContactPoint& q) {
+      return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
+    };
+    std::sort(contacts.begin(), contacts.end(), is_before);
+    for (std::size_t i = 1; i < contacts.size(); ++i)
+      if (contacts[i].pair == contacts[i - 1].pair && contacts[i].feature <= contacts[i - 1].feature)
+        contacts[i].feature = contacts[i - 1].feature + 1;
+    return report;
+  }
+
+  void memory(auto& archive) {
+    archive(names_, next_name_);
+    if constexpr (requires { backend.memory(archive); })
+      backend.memory(archive);
+    else if constexpr (requires { backend.engine.memory(archive); })
+      backend.engine.memory(archive);
+  }
+  CollisionSettings settings() const {
+    if constexpr (requires { backend.settings(); })
+      return backend.settings();
+    else
+      return {backend.margin, backend.contact_distance, backend.max_points};
+  }
+
+ private:
+  /// The keys of a body's parts: `first` and those that follow. They stay as long as the body has this
+  /// compound.
+  struct Names {
+    std::uint32_t body;
+    Index compound;
+    std::uint32_t first;
+  };
+  struct Owner {
+    Index body, part;
+    std::uint32_t key, body_key;
+  };
+  static constexpr std::uint32_t part_key = 0xf0000000u;  ///< beyond the keys of a world's fifteen first sets
+
+  /// Parts of one body pass through each other; of two bodies, they meet where the bodies do.
+  template <class Filter>
+  struct PartFilter {
+    const WithCompounds& compounds;
+    const Filter& filter;
+    bool lets(std::uint64_t pair) const {
+      const std::uint32_t a = compounds.body_key(std::uint32_t(pair >> 32)),
+                          b = compounds.body_key(std::uint32_t(pair));
+      return a != b && filter.lets(pair_key(a, b));
+    }
+  };
+
+  std::uint32_t body_key(std::uint32_t key) const {
+    if (key < part_key) return key;
+    const auto at = std::lower_bound(by_key_.begin(), by_key_.end(), key,
+                                     [](const Owner& o, std::uint32_t k) { return o.key < k; });
+    return at->body_key;
+  }
+  Index body_of(Index place, Index bodies) const {
+    return place < bodies ? place : owners_[place - bodies].body;
+  }
+  std::uint32_t part_of(Index place, Index bodies) const {
+    return place < bodies ? 0u : std::uint32_t(owners_[place - bodies].part) + 1u;
+  }
+
+  /// The bodies, those of parts without a shape, and behind them their parts.
+  void split(std::span<const Collider> colliders) {
+    parts_.assign(colliders.begin(), colliders.end());
+    owners_.clear();
+    for (Index i = 0; i < Index(colliders.size()); ++i) {
+      const Collider& body = colliders[i];
+      if (body.shape.kind != ShapeKind::compound) continue;
+      parts_[i].shape = {};
+      const Index number = Index(body.shape.number());
+      DELASSUS_EXPECT(number < Index(compounds_.size()),
+                      "this compound is none of the backend's; take what its add(...) returned");
+      const Compound& compound = compounds_[number];
+      const std::uint32_t first = first_name(body.key, number);
+      for (Index k = 0; k < compound.part_count(); ++k) {
+        Collider part = body;
+        part.shape = compound.shape(k);
+        part.pose = {body.pose.to_world(compound.pose(k).position),
+                     body.pose.rotation * compound.pose(k).rotation};
+        part.velocity =
+            body.velocity + body.angular_velocity.cross(Vec3(part.pose.position - body.pose.position));
+        part.key = first + std::uint32_t(k);
+        parts_.push_back(part);
+        owners_.push_back({i, k, part.key, body.key});
+      }
+    }
+    by_key_ = owners_;
+    std::sort(by_key_.begin(), by_key_.end(), [](const Owner& a, const Owner& b) { return a.key < b.key; });
+  }
+
+  std::uint32_t first_name(std::uint32_t body, Index compound) {
+    auto at = std::lower_bound(names_.begin(), names_.end(), body,
+                               [](const Names& n, std::uint32_t key) { return n.body < key; });
+    if (at == names_.end() || at->body != body) at = names_.insert(at, {body, -1, 0});
+    if (at->compound != compound) {
+      *at = {body, compound, part_key + next_name_};
+      next_name_ += std::uint32_t(compounds_[compound].part_count());
+    }
+    return at->first;
+  }
+
+  std::vector<Compound> compounds_;
+  std::vector<Names> names_;
+  std::uint32_t next_name_ = 0;
+  std::vector<Collider> parts_;
+  std::vector<Owner> owners_, by_key_;
+};
+
+template <class Backend>
+WithCompounds(Backend) -> WithCompounds<Backend>;
+
+}  // namespace delassus

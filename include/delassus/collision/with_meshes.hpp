@@ -1,0 +1,167 @@
+/// Detection with surfaces of triangles beside the convex shapes: meshes and height fields.
+#pragma once
+
+#include <delassus/collision/inner/surface_pairs.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/geometry/height_field.hpp>
+#include <delassus/geometry/triangle_mesh.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// `WithMeshes{NativeCollision{}}` in the place of the backend: convex pairs are the backend's, and bodies
+/// with a shape that `add` returned meet convex ones and half-spaces by their triangles. The solid is behind
+/// the triangles, so a body whose middle is behind one does not meet it. Two meshes do not meet. `WithFilter`
+/// goes around it.
+template <class Backend>
+struct WithMeshes {
+  using plays = role::Collision;
+  static_assert(
+      !requires { Backend::asks_for_joints; },
+      "delassus: WithFilter goes outermost; write WithFilter{WithMeshes{...}}");
+
+  static_assert(!requires { Backend::splits_bodies; },
+                "delassus: WithCompounds goes around WithMeshes; write WithCompounds{WithMeshes{...}}");
+
+  Backend backend{};
+
+  WithMeshes() = default;
+  explicit WithMeshes(Backend b) : backend(std::move(b)) {}
+
+  /// Keeps a surface; the shape it returns is for bodies of the loop that has this backend, as many as
+  /// wanted.
+  Shape add(TriangleMesh mesh) {
+    const inner::Bounds bounds = mesh.bounds();
+    meshes_.push_back(std::move(mesh));
+    return kept(false, Index(meshes_.size()) - 1, bounds);
+  }
+  Shape add(HeightField field) {
+    const inner::Bounds bounds = field.bounds();
+    fields_.push_back(std::move(field));
+    return kept(true, Index(fields_.size()) - 1, bounds);
+  }
+
+  /// f(surface), the mesh or the height field that a shape of `add` names.
+  template <class F>
+  void with_surface(const Shape& shape, const F& f) const {
+    const Index number = Index(shape.number());
+    DELASSUS_EXPECT(shape.kind == ShapeKind::mesh && number < Index(kinds_.size()),
+                    "this mesh is none of the backend's; take what its add(...) returned");
+    const auto& [is_field, place] = kinds_[number];
+    is_field ? f(fields_[place]) : f(meshes_[place]);
+  }
+
+  void check() const {
+    if constexpr (requires { backend.check(); }) backend.check();
+  }
+
+  template <class Filter = NoFilter>
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
+                         const Filter& filter = {}) {
+    convex_.assign(colliders.begin(), colliders.end());
+    for (Collider& c : convex_)
+      if (c.shape.kind == ShapeKind::mesh) c.shape = {};
+    CollisionReport report = backend.detect(convex_, h, contacts, filter);
+    find_jobs(colliders, filter);
+    report.pairs += Index(jobs_.size());
+    pairs_.begin();
+    for (const Job& job : jobs_)
+      with_surface(colliders[job.mesh].shape, [&](const auto& surface) {
+        report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, settings(), contacts);
+      });
+    pairs_.end();
+    if (!jobs_.empty())
+      std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {
+        return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
+      });
+    report.points = Index(contacts.size());
+    return report;
+  }
+
+  /// Forgets every pair, as after a jump in time.
+  void reset() {
+    pairs_.reset();
+    if constexpr (requires { backend.reset(); })
+      backend.reset();
+    else if constexpr (requires { backend.engine.reset(); })
+      backend.engine.reset();
+  }
+  void memory(auto& archive) {
+    pairs_.memory(archive);
+    if constexpr (requires { backend.memory(archive); })
+      backend.memory(archive);
+    else if constexpr (requires { backend.engine.memory(archive); })
+      backend.engine.memory(archive);
+  }
+  CollisionSettings settings() const {
+    if constexpr (requires { backend.settings(); })
+      return backend.settings();
+    else
+      return {backend.margin, backend.contact_distance, backend.max_points};
+  }
+
+ private:
+  struct Job {
+    std::uint64_t pair;
+    Index mesh, other;
+    bool operator<(const Job& o) const { return pair < o.pair; }
+  };
+  struct Kind {
+    bool is_field;
+    Index place;
+  };
+
+  Shape kept(bool is_field, Index place, const inner::Bounds& bounds) {
+    kinds_.push_back({is_field, place});
+    Vec3 reach;
+    for (int k = 0; k < 3; ++k) reach[k] = std::max(std::abs(bounds.low[k]), std::abs(bounds.high[k]));
+    return KeptShape{ShapeKind::mesh, int(kinds_.size()) - 1, reach};
+  }
+
+  template <class Filter>
+  void find_jobs(std::span<const Collider> colliders, const Filter& filter) {
+    jobs_.clear();
+    for (Index m = 0; m < Index(colliders.size()); ++m) {
+      const Collider& mesh = colliders[m];
+      if (mesh.shape.kind != ShapeKind::mesh || !is_finite(mesh.pose.position) ||
+          !is_finite(mesh.pose.rotation))
+        continue;
+      for (Index i = 0; i < Index(colliders.size()); ++i) {
+        const Collider& other = colliders[i];
+        if (other.shape.kind == ShapeKind::none || other.shape.is_kept() ||
+            (!mesh.is_movable && !other.is_movable))
+          continue;
+        if ((mesh.group & other.collides_with) == 0 || (other.group & mesh.collides_with) == 0) continue;
+        const std::uint64_t pair = pair_key(mesh.key, other.key);
+        if (is_near(mesh, other) && filter.lets(pair)) jobs_.push_back({pair, m, i});
+      }
+    }
+    std::sort(jobs_.begin(), jobs_.end());
+  }
+
+  /// False when the balls around both, with the widest margin there can be, are apart.
+  bool is_near(const Collider& mesh, const Collider& other) const {
+    if (other.shape.kind == ShapeKind::half_space) return true;
+    const double own = outer_radius(other.shape),
+                 margin = std::max(settings().margin, own) + settings().contact_distance;
+    const double reach = outer_radius(mesh.shape) + own + margin;
+    return (mesh.pose.position - other.pose.position).squaredNorm() <= reach * reach;
+  }
+
+  std::vector<TriangleMesh> meshes_;
+  std::vector<HeightField> fields_;
+  std::vector<Kind> kinds_;
+  std::vector<Collider> convex_;
+  std::vector<Job> jobs_;
+  inner::SurfacePairs pairs_;
+};
+
+template <class Backend>
+WithMeshes(Backend) -> WithMeshes<Backend>;
+
+}  // namespace delassus

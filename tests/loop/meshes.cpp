@@ -1,0 +1,92 @@
+#include "catch.hpp"
+
+#include <delassus/collision/with_filter.hpp>
+#include <delassus/collision/with_meshes.hpp>
+#include <delassus/delassus.hpp>
+
+#include <cmath>
+#include <vector>
+
+using namespace delassus;
+
+namespace {
+
+auto scene() {
+  return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}},
+                       WithFilter{WithMeshes{NativeCollision{}}},
+                       GaussSeidel{.tolerance = 1e-7, .max_iterations = 1000}};
+}
+using Scene = decltype(scene());
+
+WithMeshes<NativeCollision>& meshes(Scene& loop) {
+  return loop.get<WithFilter<WithMeshes<NativeCollision>>>().backend;
+}
+
+HeightField flat(Index points, double spacing) {
+  return HeightField(points, points, spacing, spacing,
+                     std::vector<double>(std::size_t(points * points), 0.0));
+}
+
+}  // namespace
+
+TEST_CASE("a box comes to rest on a meshed floor as on a half-space") {
+  double height[2] = {};
+  for (const bool is_meshed : {false, true}) {
+    Scene loop = scene();
+    auto& rigid = bodies<RigidBodies>(loop.world());
+    const Shape floor = is_meshed ? meshes(loop).add(flat(9, 0.37)) : Shape(HalfSpace{});
+    rigid.add_fixed(floor);
+    const auto box = rigid.add(
+        {.position = {0.1, 0.05, 0.55}, .velocity = {0.3, 0.1, 0}, .density = 1000., .shape = Box{1, 1, 1}});
+    for (int i = 0; i < 200; ++i) loop.step(5e-3);
+    height[is_meshed] = rigid.position(box).z();
+  }
+  CHECK(std::abs(height[1] - 0.5) < 1e-5);
+  CHECK(std::abs(height[1] - height[0]) <
+        1e-6);  // both end within the solver's tolerance of touching, 1e-6 m
+}
+
+TEST_CASE("a ball that rolls over coplanar triangles keeps its height and its speed") {
+  Scene loop = scene();
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  rigid.add_fixed(meshes(loop).add(flat(41, 0.13)));
+  const double r = 0.2, speed = 2;  // rolling: ω r = v
+  const auto ball = rigid.add({.position = {-2.2, -0.3, r},
+                               .velocity = {speed, 0.2, 0},
+                               .angular_velocity = {-1, speed / r, 0},
+                               .density = 1000.,
+                               .shape = Sphere{r}});
+  for (int i = 0; i < 400; ++i) {
+    loop.step(5e-3);
+    CHECK(std::abs(rigid.position(ball).z() - r) < 1e-6 * r);
+    CHECK(std::abs(rigid.velocity(ball).x() - speed) < 1e-5);
+  }
+  CHECK(rigid.position(ball).x() > 1.79);
+}
+
+TEST_CASE("a body of a mesh falls, stands and carries; a filter goes around") {
+  Scene loop = scene();
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  std::vector<Vec3> v;
+  for (int i = 0; i < 8; ++i) v.push_back({i & 1 ? .5 : -.5, i & 2 ? .5 : -.5, i & 4 ? .5 : -.5});
+  const std::vector<std::array<Index, 3>> t{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                            {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const Shape cube = meshes(loop).add(TriangleMesh(v, t));
+  rigid.add_fixed(HalfSpace{});
+  const Mat3 inertia = Vec3(1, 1, 1).asDiagonal();
+  const auto low = rigid.add({.position = {0, 0, 0.6}, .mass = 6., .inertia = inertia, .shape = cube});
+  const auto high = rigid.add({.position = {0.1, 0, 1.7}, .mass = 6., .shape = Box{1, 1, 1}});
+  const auto ghost = rigid.add({.position = {0, 0, 0.8}, .mass = 1., .shape = Box{.2, .2, .2}});
+  loop.add(BallJoint::Item{anchor(rigid, low, {0, 0, .2}), anchor(rigid, ghost)});
+  for (int i = 0; i < 300; ++i) loop.step(5e-3);
+  CHECK(std::abs(rigid.position(low).z() - 0.5) < 1e-4);
+  CHECK(std::abs(rigid.position(high).z() - 1.5) < 1e-4);
+  CHECK((rigid.position(ghost) - rigid.position(low) - Vec3(0, 0, .2)).norm() < 1e-3);
+}
+
+TEST_CASE("a body of a mesh without mass and inertia is refused") {
+  Scene loop = scene();
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  const Shape floor = meshes(loop).add(flat(2, 1));
+  CHECK_THROWS_WITH(rigid.add({.mass = 1., .shape = floor}), Catch::Matchers::Contains("give an inertia"));
+}
