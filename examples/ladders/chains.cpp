@@ -56,12 +56,8 @@ void climb_chain(Ladder& ladder, double h, const Solver& solver, const Stabilisa
 }  // namespace
 
 void heavy_chain(Ladder& ladder) { climb_chain(ladder, frame, AcceleratedGaussSeidel{}, Baumgarte{}); }
-void heavy_chain_newton(Ladder& ladder) {
-  climb_chain(ladder, frame, ProximalNewton{}, PositionProjection{.rate = 1});
-}
-void heavy_chain_fine(Ladder& ladder) {
-  climb_chain(ladder, frame / 16, ProximalNewton{}, PositionProjection{.rate = 1});
-}
+void heavy_chain_newton(Ladder& ladder) { climb_chain(ladder, frame, ProximalNewton{}, WholeViolation{}); }
+void heavy_chain_fine(Ladder& ladder) { climb_chain(ladder, frame / 16, ProximalNewton{}, WholeViolation{}); }
 
 // Forty links that start twice as far apart as their joints allow: what the joints pull together must not
 // become a shot.
@@ -81,8 +77,8 @@ void stretched_chain(Ladder& ladder) {
 void joint_grid(Ladder& ladder) {
   for (const int n : {5, 10, 20, 40})
     ladder.rung(format("%d × %d", n, n), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, ProximalNewton{},
-                         PositionProjection{.rate = 1}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-6}, WholeViolation{}};
       auto& set = bodies<RigidBodies>(loop.world());
       std::vector<RigidBodies::Handle> knots;
       for (int i = 0; i < n; ++i)

@@ -38,7 +38,7 @@ void four_bars(Ladder& ladder) {
   for (const auto& [n, h] : {Case{1, 1e-2}, {1, 1e-3}, {2, 1e-3}, {5, 1e-3}, {10, 1e-3}, {40, 1e-3}})
     ladder.rung(format("%d four-bars, h = %g s", n, h), [&]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Planar{}},
-                         ProximalNewton{.tolerance = 1e-10}, PositionProjection{.rate = 1}};
+                         ProximalNewton{.tolerance = 1e-10}, WholeViolation{}};
       auto& set = bodies<RigidBodies>(loop.world());
       const Mat3 slim = Vec3(1. / 12, 1. / 12, 1e-3).asDiagonal();
       std::vector<RigidBodies::Handle> cranks;
@@ -101,8 +101,9 @@ void gear_train(Ladder& ladder) {
                                               .d = world_anchor(at),
                                               .ratio = -ratio}));
       }
-      // The fastest wheel turns a thousandth of a turn to a sixth of one a step.
-      const double fastest = 60, over = std::pow(ratio, wheels - 1),
+      // A turn by the midpoint rule is 2 atan(h ω/2): at 6 rad/s the fastest wheel falls 1e-3 of its turn
+      // behind.
+      const double fastest = 6, over = std::pow(ratio, wheels - 1),
                    first = ratio >= 1 ? fastest : fastest * over;
       loop.add(Motor<Turn>::Item{.a = world_anchor({0, 0, 0}), .b = anchor(set, train[0]), .speed = first});
       double error = 0;
