@@ -10,7 +10,7 @@ namespace {
 
 auto standing_loop(double friction) {
   return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = friction}}},
-                       ProximalNewton{.tolerance = 1e-6}};
+                       ProximalNewton{}};
 }
 
 /// Boxes on each other, each up to 1 % of its size off the one below, for 60 s.
