@@ -39,6 +39,9 @@ delassus_tree_test(tree/includes_self_test ${Python3_EXECUTABLE} ${scripts}/chec
 delassus_tree_test(tree/docs ${Python3_EXECUTABLE} ${scripts}/check_docs.py ${PROJECT_SOURCE_DIR})
 delassus_tree_test(tree/docs_self_test ${Python3_EXECUTABLE} ${scripts}/check_docs.py --self-test)
 
+# --- the mutants of scripts/mutants.py still find what they replace --------------------------------------------------
+delassus_tree_test(tree/mutants ${Python3_EXECUTABLE} ${scripts}/mutants.py --check)
+
 # --- every header by itself -----------------------------------------------------------------------------------------
 delassus_tree_test(tree/headers_alone ${Python3_EXECUTABLE} ${scripts}/check_headers.py ${PROJECT_SOURCE_DIR}
   --cache ${PROJECT_BINARY_DIR}/headers_alone --compiler ${compilers} --system ${include_dirs} --absent ${absent})

@@ -97,6 +97,21 @@ TEST_CASE("a limit that is far has no row in any island and costs no accuracy") 
   CHECK(axes.rate() == Approx(0.1).epsilon(1e-13));
 }
 
+// Both rows lie on one axis: the motor's is met alone, to the tolerance 1e-13 of the solver.
+TEST_CASE("a limit lets go what a motor pulls off it") {
+  for (const double sign : {1.0, -1.0}) {
+    Axes axes;
+    Limit<Turn>::Item stop{.a = axes.ground, .b = axes.axle};
+    (sign > 0 ? stop.lower : stop.upper) = 0;
+    const auto limit = axes.loop.add(stop);
+    axes.loop.add(Motor<Turn>::Item{.a = axes.ground, .b = axes.axle, .speed = sign});
+    const StepReport report = axes.loop.step(h);
+    CHECK(report.status == Status::converged);
+    CHECK(axes.rate() == Approx(sign).epsilon(1e-12));
+    CHECK(axes.loop.impulse(limit).isZero(0));
+  }
+}
+
 TEST_CASE("a limit pushes back what was beyond it, without throwing it") {
   Axes axes;
   axes.loop.add(Limit<Turn>::Item{.a = axes.ground, .b = axes.axle, .upper = -0.2});

@@ -1,0 +1,164 @@
+// HC-17, HC-18, HC-24, HC-25, HC-30: seams, bullets, elastic balls, impacts at one moment, a heap.
+#include "rows.hpp"
+#include "watch.hpp"
+
+namespace ladders {
+
+// A body slides without friction over a floor of tiles that lie level: no seam may be felt.
+void seams(Ladder& ladder) {
+  struct Slider {
+    const char* name;
+    Shape shape;
+  };
+  for (const Slider& s :
+       {Slider{"sphere", Sphere{0.5}}, Slider{"box", Box{1, 1, 1}}, Slider{"capsule", Capsule{0.3, 0.6}}})
+    ladder.rung(format("%s over 40 tiles", s.name), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      for (int k = 0; k < 40; ++k) set.add_fixed(Box{0.5, 4, 1}, {0.5 * k, 0, -0.5});
+      const double height = s.shape.kind == ShapeKind::capsule ? 0.6 : 0.5;
+      const auto body =
+          set.add({.position = {2, 0, height}, .velocity = {2, 0, 0}, .mass = 1.0, .shape = s.shape});
+      double hop = 0;
+      const Seen seen = run(ladder, loop, 7, frame,
+                            [&](int) { hop = most(hop, std::abs(set.position(body).z() - height)); });
+      return {{"hop / size", hop, 1e-3, 1e-6},
+              {"speed lost", std::abs(set.velocity(body).x() / 2 - 1), 1e-2, 1e-6},
+              energy_mark(seen, 0.5 * 4)};
+    });
+}
+
+// A ball of 1 cm flies at a plate of 1 mm, at 60 steps a second.
+void bullet(Ladder& ladder) {
+  for (const double speed : {0.1, 1., 10., 100., 300., 1000.})
+    ladder.rung(format("%g m/s", speed), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.gravity.setZero();
+      set.add_fixed(Box{0.001, 10, 10});
+      int through = 0;
+      for (const double phase : {0.1, 0.35, 0.6, 0.85})
+        set.add({.position = {-(2 + phase) * speed * frame - 0.1, 10 * phase - 5, 0},
+                 .velocity = {speed, 0, 0},
+                 .mass = 0.01,
+                 .shape = Sphere{0.005}});
+      const Seen seen = run(ladder, loop, 0.5 + 0.2 / speed, frame);
+      for (const Index b : alive(set)) through += set.moves(b) && set.pose(b).position.x() > 0;
+      return {{"through the plate, of 4", double(through), 0, 0},
+              energy_mark(seen, 4 * 0.005 * speed * speed)};
+    });
+}
+
+// Balls of 0.1 m and 10 kg in a closed box, elastic and without friction.
+void elastic_balls(Ladder& ladder) {
+  struct Case {
+    int edge;
+    double h, seconds;
+  };
+  for (const auto& [edge, h, seconds] : {Case{2, 1e-2, 60}, {3, 1e-2, 60}, {6, 1e-2, 60}, {6, 1e-3, 10}})
+    ladder.rung(format("%d balls, h = %g s", edge * edge * edge, h), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 1}}}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const double size = 0.4 * edge;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1., 1.}) {
+          const Vec3 n = -side * unit_axis(axis);
+          set.add_fixed(HalfSpace{n}, 0.5 * size * side * unit_axis(axis));
+        }
+      unsigned state = 42;
+      const auto draw = [&] { return (state = state * 1664525u + 1013904223u) / 4294967296. - 0.5; };
+      for (int i = 0; i < edge * edge * edge; ++i) {
+        const Vec3 cell(i % edge, i / edge % edge, i / edge / edge);
+        const double x = draw(), y = draw(), z = draw();
+        set.add({.position = 0.4 * (cell - 0.5 * (edge - 1) * Vec3(1, 1, 1)) + 0.1 * Vec3(x, y, z),
+                 .velocity = 4 * Vec3(y, z, x),
+                 .mass = 10.0,
+                 .shape = Sphere{0.1}});
+      }
+      set.gravity.setZero();
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 5 : seconds, h);
+      return {{"energy gained", seen.gain / seen.first_energy, 0.02, 1e-6, 1},
+              {"energy lost", 1 - seen.last_energy / seen.first_energy, 0.02, 1e-6}};
+    });
+}
+
+// A row of equal balls, hit by one; a box that lands flat; three balls from both sides at once.
+void simultaneous(Ladder& ladder) {
+  for (const int balls : {2, 3, 5, 10})
+    ladder.rung(format("%d balls that touch, hit by one", balls), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 1}}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-13, .max_iterations = 5000}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.gravity.setZero();
+      for (int k = 0; k < balls; ++k)
+        set.add({.position = {double(k), 0, 0}, .mass = 1.0, .shape = Sphere{0.5}});
+      set.add({.position = {-1.05, 0, 0}, .velocity = {1, 0, 0}, .mass = 1.0, .shape = Sphere{0.5}});
+      const Seen seen = run(ladder, loop, 0.2, 0.01);
+      return {{"momentum", std::abs(momentum(set).x() - 1), 1e-9, 1e-12},
+              {"energy gained", seen.gain / seen.first_energy, 1e-9, 1e-12, 1}};
+    });
+  for (const double e : {0., 0.5, 1.})
+    ladder.rung(format("box lands flat, e = %g", e), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.5}, e}}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-13, .max_iterations = 5000}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.add_fixed(HalfSpace{});
+      const auto box = set.add({.position = {0, 0, 1}, .mass = 1.0, .shape = Box{1, 1, 1}});
+      double turn = 0;
+      const Seen seen = run(ladder, loop, 1, 1e-3, [&](int) {
+        turn = most(turn, set.angular_velocity(box).norm());
+        turn = most(turn, set.velocity(box).head<2>().norm());
+      });
+      return {{"turn and drift (1/s)", turn, 1e-3, 1e-12}, energy_mark(seen, g * 0.5)};
+    });
+  ladder.rung("two balls hit a third from both sides", [&]() -> Marks {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 1}}}};
+    auto& set = bodies<RigidBodies>(loop.world());
+    set.gravity.setZero();
+    const auto middle = set.add({.mass = 1.0, .shape = Sphere{0.5}});
+    for (const double side : {-1., 1.})
+      set.add(
+          {.position = {1.055 * side, 0, 0}, .velocity = {-side, 0, 0}, .mass = 1.0, .shape = Sphere{0.5}});
+    double off = 0;
+    const Seen seen =
+        run(ladder, loop, 0.3, 0.01, [&](int) { off = most(off, set.velocity(middle).norm()); });
+    return {{"speed of the middle one (m/s)", off, 1e-3, 1e-12},
+            {"energy gained", seen.gain / seen.first_energy, 1e-9, 1e-12, 1}};
+  });
+}
+
+// Spheres poured into a box without a lid.
+void heap(Ladder& ladder) {
+  for (const int count : {64, 216, 512, 1000})
+    ladder.rung(format("%d spheres", count), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-5}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const int edge = int(std::lround(std::cbrt(count)));
+      set.add_fixed(HalfSpace{});
+      for (int axis = 0; axis < 2; ++axis)
+        for (const double side : {-1., 1.}) {
+          const Vec3 n = -side * unit_axis(axis);
+          set.add_fixed(HalfSpace{n}, 0.11 * edge * side * unit_axis(axis));
+        }
+      for (int i = 0; i < count; ++i) {
+        const Vec3 cell(i % edge, i / edge % edge, i / edge / edge);
+        const double wobble = 0.008 * std::sin(12.9 * i);
+        set.add({.position = 0.22 * (cell - 0.5 * (edge - 1) * Vec3(1, 1, 0)) + Vec3(wobble, -wobble, 0.12),
+                 .mass = 1.0,
+                 .shape = Sphere{0.1}});
+      }
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 1 : 5, frame);
+      double sum = 0, deepest = 0;
+      int touching = 0;
+      for (const ContactResult& contact : loop.contacts())
+        if (contact.record.gap < 0)
+          sum -= contact.record.gap, deepest = std::max(deepest, -contact.record.gap), ++touching;
+      return {{"mean overlap / diameter", touching ? sum / touching / 0.2 : 0, 0.01, 1e-3},
+              {"largest overlap at the end / diameter", deepest / 0.2, 0.1, 0.01},
+              {"largest overlap of the run / diameter", seen.penetration / 0.2, unbounded, unbounded},
+              energy_mark(seen, count * g * 0.11 * edge)};
+    });
+}
+
+}  // namespace ladders

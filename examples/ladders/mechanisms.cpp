@@ -1,0 +1,152 @@
+// HC-21, HC-33, HC-34: loops through their singular pose, trains of gears, joints at their limits.
+#include "rows.hpp"
+#include "watch.hpp"
+
+#include <delassus/solvers/proximal_newton.hpp>
+
+namespace ladders {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// φ¨ = Ω² sin φ by the classical Runge-Kutta method in steps of 1e-5 s: what n four-bars of equal rods do, φ
+/// from the upright. Source: verification by reduction; Ω² = g ((n + 1)/2 + n)/((n + 1)/3 + n).
+double crank_angle(double rate, double speed, double t) {
+  double phi = 0, omega = speed;
+  const int steps = int(std::lround(t / 1e-4));
+  const double h = t / steps;
+  const auto bend = [&](double x) { return rate * std::sin(x); };
+  for (int n = 0; n < steps; ++n) {
+    const double k1 = bend(phi), l1 = omega, k2 = bend(phi + h / 2 * l1), l2 = omega + h / 2 * k1;
+    const double k3 = bend(phi + h / 2 * l2), l3 = omega + h / 2 * k2, k4 = bend(phi + h * l3),
+                 l4 = omega + h * k3;
+    phi += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+    omega += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return phi;
+}
+
+}  // namespace
+
+// n + 1 upright unit rods with n level ones between their tops: all lie on one line twice a turn.
+void four_bars(Ladder& ladder) {
+  struct Case {
+    int n;
+    double h;
+  };
+  for (const auto& [n, h] : {Case{1, 1e-2}, {1, 1e-3}, {2, 1e-3}, {5, 1e-3}, {10, 1e-3}, {40, 1e-3}})
+    ladder.rung(format("%d four-bars, h = %g s", n, h), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Planar{}},
+                         ProximalNewton{.tolerance = 1e-10}, WholeViolation{}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const Mat3 slim = Vec3(1. / 12, 1. / 12, 1e-3).asDiagonal();
+      std::vector<RigidBodies::Handle> cranks;
+      const Quat level = frame_along({0, 1, 0});
+      for (int k = 0; k <= n; ++k) {
+        cranks.push_back(set.add({.position = {double(k), 0, 0.5},
+                                  .velocity = {0.5, 0, 0},
+                                  .angular_velocity = {0, 1, 0},
+                                  .mass = 1.0,
+                                  .inertia = slim}));
+        loop.add(BallJoint::Item{world_anchor({double(k), 0, 0}), anchor(set, cranks.back(), {0, 0, -0.5})});
+      }
+      for (int k = 0; k < n; ++k) {
+        const auto bar = set.add({.position = {k + 0.5, 0, 1},
+                                  .velocity = {1, 0, 0},
+                                  .mass = 1.0,
+                                  .inertia = Mat3(Vec3(1e-3, 1. / 12, 1. / 12).asDiagonal())});
+        loop.add(BallJoint::Item{anchor(set, cranks[std::size_t(k)], {0, 0, 0.5}),
+                                 anchor(set, bar, {-0.5, 0, 0})});
+        loop.add(BallJoint::Item{anchor(set, cranks[std::size_t(k + 1)], {0, 0, 0.5}),
+                                 anchor(set, bar, {0.5, 0, 0})});
+        loop.add(Planar::Item{world_anchor({0, 0, 0}, level), anchor(set, bar, {0, 0, 0}, level)});
+      }
+      const double until = ladder.is_quick() ? 1 : 10;
+      double change = 0;
+      const double start = energy(loop);
+      const Seen seen =
+          run(ladder, loop, until, h, [&](int) { change = most(change, std::abs(energy(loop) - start)); });
+      const double rate = g * (0.5 * (n + 1) + n) / ((n + 1) / 3. + n), phi = crank_angle(rate, 1, until);
+      const Vec3 tip = set.position(cranks[0]) + set.orientation(cranks[0]) * Vec3(0, 0, 0.5);
+      return {{"place at the end (m)", (tip - Vec3(std::sin(phi), 0, std::cos(phi))).norm(), 0.1, 1e-3},
+              {"change of energy / energy of the scene", change / (g * (0.5 * (n + 1) + n) * 2), 1e-3, 1e-5},
+              {"joint gap (m)", seen.joint_gap, 1e-2, 1e-4}};
+    });
+}
+
+// A train of gears, each pair with a ratio, driven at the first wheel for a thousand turns and more.
+void gear_train(Ladder& ladder) {
+  struct Case {
+    int wheels;
+    double ratio;
+  };
+  for (const auto& [wheels, ratio] : {Case{2, 1.}, {2, 10.}, {10, 1.}, {10, 2.}, {2, 1e3}, {2, 1e-3}})
+    ladder.rung(format("%d wheels, ratio %g", wheels, ratio), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Gear{}, Motor<Turn>{}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.gravity.setZero();
+      std::vector<RigidBodies::Handle> train;
+      std::vector<double> turned(std::size_t(wheels), 0);
+      std::vector<ConstraintHandle<Gear>> gears;
+      for (int k = 0; k < wheels; ++k) {
+        const Vec3 at(2. * k, 0, 0);
+        train.push_back(set.add({.position = at, .mass = 1.0, .inertia = Mat3(Mat3::Identity())}));
+        loop.add(Hinge::Item{world_anchor(at), anchor(set, train.back())});
+        if (k > 0)
+          gears.push_back(loop.add(Gear::Item{.a = anchor(set, train[std::size_t(k - 1)]),
+                                              .b = anchor(set, train.back()),
+                                              .c = world_anchor({2. * (k - 1), 0, 0}),
+                                              .d = world_anchor(at),
+                                              .ratio = -ratio}));
+      }
+      // A turn by the midpoint rule is 2 atan(h ω/2): at 6 rad/s the fastest wheel falls 1e-3 of its turn
+      // behind.
+      const double fastest = 6, over = std::pow(ratio, wheels - 1),
+                   first = ratio >= 1 ? fastest : fastest * over;
+      loop.add(Motor<Turn>::Item{.a = world_anchor({0, 0, 0}), .b = anchor(set, train[0]), .speed = first});
+      double error = 0;
+      run(ladder, loop, ladder.is_quick() ? 5 : 2 * pi * 1000 / fastest, frame, [&](int) {
+        for (const auto& gear : gears) {
+          const auto& item = loop.item(gear);
+          error = most(error, std::abs(item.position_a - item.ratio * item.position_b - item.phase) /
+                                  std::max(1.0, std::abs(item.ratio)));
+        }
+      });
+      return {{"error of the angle (rad)", error, 1e-3, 1e-9}};
+    });
+}
+
+// A chain of hinges, each with limits on both sides, thrown about so that they are hit again and again.
+void limits(Ladder& ladder) {
+  for (const int links : {1, 3, 10, 32})
+    ladder.rung(format("%d links, limits of ±0.5 rad", links), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Limit<Turn>{}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 5000}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const Quat axis = frame_along({0, -1, 0});
+      std::vector<ConstraintHandle<Limit<Turn>>> all;
+      RigidBodies::Handle last;
+      for (int k = 0; k < links; ++k) {
+        const auto link =
+            set.add({.position = {0.2 * (k + 0.5), 0, 0}, .mass = 1.0, .shape = Box{0.2, 0.05, 0.05}});
+        const Vec3 at(0.2 * k, 0, 0);
+        const Anchor a = k ? anchor_at(set, last, at, axis) : world_anchor(at, axis),
+                     b = anchor_at(set, link, at, axis);
+        loop.add(Hinge::Item{a, b});
+        all.push_back(loop.add(Limit<Turn>::Item{.a = a, .b = b, .lower = -0.5, .upper = 0.5}));
+        last = link;
+      }
+      double over = 0;
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 2 : 20, frame, [&](int) {
+        for (const auto& limit : all) over = most(over, std::abs(loop.item(limit).position) - 0.5);
+      });
+      constexpr double degree = pi / 180;
+      return {{"beyond a limit (degrees)", over / degree, 5, 0.1},
+              {"joint gap / link", seen.joint_gap / 0.2, 0.05, 1e-2},
+              energy_mark(seen, links * g * 0.1 * links)};
+    });
+}
+
+}  // namespace ladders

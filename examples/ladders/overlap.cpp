@@ -1,0 +1,76 @@
+// HC-13, HC-16: bodies that start in each other, and normals that nobody can tell.
+#include "rows.hpp"
+#include "watch.hpp"
+
+#include <delassus/collision/queries.hpp>
+
+namespace ladders {
+
+// A pyramid of six rows whose boxes overlap by a share of their size; and a hundred spheres in one place.
+void overlap(Ladder& ladder) {
+  for (const double share : {0.1, 0.25, 0.5, 0.99, 1.})
+    ladder.rung(share < 1 ? format("pyramid, boxes overlap by %g", share) : "100 spheres in one place",
+                [&]() -> Marks {
+                  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+                  auto& set = bodies<RigidBodies>(loop.world());
+                  set.add_fixed(HalfSpace{});
+                  const double step = 1 - share;
+                  if (share < 1)
+                    for (int row = 0; row < 6; ++row)
+                      for (int k = 0; k < 6 - row; ++k)
+                        set.add({.position = {step * (k + 0.5 * row), 0, 0.5 + step * row},
+                                 .mass = 1.0,
+                                 .shape = Box{1, 1, 1}});
+                  else
+                    for (int k = 0; k < 100; ++k)
+                      set.add({.position = {0, 0, 2}, .mass = 1.0, .shape = Sphere{0.5}});
+                  double lowest = 0;
+                  double late = 0;
+                  const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.5 : 4, frame, [&](int n) {
+                    for (const Index b : alive(set))
+                      if (set.moves(b)) lowest = most(lowest, -set.pose(b).position.z());
+                    if (n >= 120) late = most(late, loop.report().max_penetration);
+                  });
+                  return {{"speed (m/s)", seen.speed, share < 1 ? 2. : 10., 1},
+                          {"penetration after 2 s / size", late, unbounded, 0.01},
+                          {"centre below the ground (m)", lowest, 0, 0}};
+                });
+}
+
+namespace {
+
+struct Degenerate {
+  const char* name;
+  Shape a, b;
+  Vec3 offset;
+};
+
+}  // namespace
+
+void no_normal(Ladder& ladder) {
+  const Degenerate cases[] = {
+      {"spheres with one centre", Sphere{0.5}, Sphere{0.5}, {0, 0, 0}},
+      {"sphere's centre in a box's centre", Box{1, 1, 1}, Sphere{0.3}, {0, 0, 0}},
+      {"sphere's centre on a box's edge", Box{1, 1, 1}, Sphere{0.3}, {0.5, 0.5, 0}},
+      {"sphere's centre on a box's corner", Box{1, 1, 1}, Sphere{0.3}, {0.5, 0.5, 0.5}},
+      {"boxes with one centre", Box{1, 1, 1}, Box{1, 1, 1}, {0, 0, 0}},
+      {"capsules on one line", Capsule{0.2, 1}, Capsule{0.2, 1}, {0, 0, 0}},
+      {"cylinders with one axis", Cylinder{0.3, 1}, Cylinder{0.3, 1}, {0, 0, 0.2}}};
+  for (const Degenerate& c : cases)
+    ladder.rung(c.name, [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.gravity.setZero();
+      const auto a = set.add({.mass = 1.0, .shape = c.a});
+      const auto b = set.add({.position = c.offset, .mass = 2.0, .shape = c.b});
+      const Seen seen = run(ladder, loop, 4, frame);
+      const double deep = std::max(0.0, -separation(set, a, set, b).distance);
+      const double size = std::max(1e-300, 3 * seen.speed);
+      return {{"overlap after 4 s (m)", deep, 0.01, 1e-3},
+              {"speed (m/s)", seen.speed, 2, 1.01},
+              {"momentum", momentum(set).norm() / size, 1e-9, 1e-12},
+              {"angular momentum", angular_momentum(set).norm() / size, 1e-9, 1e-12}};
+    });
+}
+
+}  // namespace ladders

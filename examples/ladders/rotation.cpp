@@ -1,0 +1,88 @@
+// HC-12, HC-41: needles, plates and boxes that spin, and runs that are long.
+#include "rows.hpp"
+#include "watch.hpp"
+
+namespace ladders {
+
+namespace {
+
+struct Top {
+  const char* name;
+  Vec3 inertia;
+};
+
+/// A free body whose spin is not along an axis, at `spin` rad/s.
+RigidBodies::Handle add_top(auto& set, const Vec3& inertia, double spin) {
+  set.gravity.setZero();
+  return set.add({.angular_velocity = spin * Vec3(0.3, 1, 0.2).normalized(),
+                  .mass = 1.0,
+                  .inertia = Mat3(inertia.asDiagonal())});
+}
+
+}  // namespace
+
+void free_spin(Ladder& ladder) {
+  for (const Top& top : {Top{"box 1:2:3", {1, 2, 3}}, Top{"needle 1:1:1e-6", {1, 1, 1e-6}},
+                         Top{"plate 1:1:1.9999", {1, 1, 1.9999}}})
+    for (const double spin : {10., 1e2, 1e3, 1e4})
+      ladder.rung(format("%s at %g rad/s", top.name, spin), [&]() -> Marks {
+        AnimationLoop loop{World{RigidBodies{}}};
+        auto& set = bodies<RigidBodies>(loop.world());
+        add_top(set, top.inertia, spin);
+        const Vec3 before = angular_momentum(set);
+        const double start = kinetic_energy(set);
+        double turn = 0, low = 0, high = 0;
+        run(ladder, loop, 100, frame, [&](int) {
+          turn = most(turn, (angular_momentum(set) - before).norm() / before.norm());
+          const double change = kinetic_energy(set) / start - 1;
+          low = most(low, -change), high = most(high, change);
+        });
+        return {{"change of angular momentum", turn, 1e-6, 1e-12},
+                {"energy gained", high, 0.01, 1e-3, 1},
+                {"energy lost", low, 0.5, 1e-3}};
+      });
+}
+
+// A free box: a million steps and more; what adds up must be rounding only.
+void long_spin(Ladder& ladder) {
+  for (int power = 4; power <= 7; ++power)
+    ladder.rung(format("1e%d steps", power), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const auto top = add_top(set, {1, 2, 3}, 3);
+      const double start = kinetic_energy(set);
+      const long steps = std::lround(std::pow(10., power));
+      double norm = 0, change = 0;
+      for (long n = 0; n < steps; ++n) {
+        loop.step(frame);
+        if (n % 1000 == 999) {
+          norm = most(norm, std::abs(set.orientation(top).coeffs().norm() - 1));
+          change = most(change, std::abs(kinetic_energy(set) / start - 1));
+          ladder.show((n + 1.0) / double(steps));
+        }
+      }
+      return {{"|q| − 1", norm, 1e-12, 1e-15},
+              {"change of energy", change, 1e-6, 1e-10},
+              {"t − n h (s)", std::abs(loop.time() - double(steps) * frame), 1e-6, 0}};
+    });
+}
+
+void long_pendulum(Ladder& ladder) {
+  for (int power = 3; power <= 6; ++power)
+    ladder.rung(format("1e%d steps", power), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-12}, PositionProjection{.rate = 1},
+                         ImplicitMidpoint{}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const auto bob =
+          set.add({.position = {1, 0, 0}, .mass = 1.0, .inertia = Mat3(0.01 * Mat3::Identity())});
+      loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor(set, bob, {-1, 0, 0})});
+      const Seen seen = run(ladder, loop, 0.01 * std::pow(10., power), 0.01);
+      const double lost = (seen.first_energy - seen.last_energy) / g;
+      return {{"joint gap (m)", seen.joint_gap, 1e-2, 1e-3},
+              {"energy lost / energy of the scene", lost, 0.5, 0.01},
+              energy_mark(seen, g)};
+    });
+}
+
+}  // namespace ladders
