@@ -121,7 +121,7 @@ inline constexpr Missing missing[] = {
      "not built yet; a rope's contact with itself needs small steps and continuous collision"},
     {"HC-32", "nut on a bolt", "there are no meshes yet"},
     {"HC-37", "crowding", "not built yet; needs no new part"},
-    {"HC-40", "rigid on soft", "there is no deformable solid yet"},
+    {"HC-40", "rigid on soft", "not built yet; soft bodies are `TetrahedralFem`"},
 };
 
 }  // namespace ladders
