@@ -3,6 +3,7 @@
 
 #include <delassus/collision/inner/reduce.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/roles.hpp>
 
 #include <algorithm>
@@ -84,26 +85,15 @@ struct Continuous {
         for (const bool holds_a : {true, false})
           if (is_fast_[holds_a ? a : b]) hold_core(colliders, a, b, holds_a, h, contacts);
       }
-    if (contacts.size() > known)
-      std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {
-        return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
-      });
+    if (contacts.size() > known) inner::sort_by_name(contacts);
     report.points = Index(contacts.size());
     return report;
   }
 
   void memory(auto& archive) {
-    if constexpr (requires { backend.memory(archive); })
-      backend.memory(archive);
-    else if constexpr (requires { backend.engine.memory(archive); })
-      backend.engine.memory(archive);
+    inner::remember(backend, archive);
   }
-  CollisionSettings settings() const {
-    if constexpr (requires { backend.settings(); })
-      return backend.settings();
-    else
-      return {backend.margin, backend.contact_distance, backend.max_points};
-  }
+  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   static bool is_asked(const Collider& c) {

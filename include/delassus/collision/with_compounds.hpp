@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/geometry/compound.hpp>
 
@@ -60,10 +61,7 @@ struct WithCompounds {
       std::swap(p.point_a, p.point_b);
       p.normal = -p.normal;
     }
-    const auto is_before = [](const ContactPoint& p, const ContactPoint& q) {
-      return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
-    };
-    std::sort(contacts.begin(), contacts.end(), is_before);
+    inner::sort_by_name(contacts);
     for (std::size_t i = 1; i < contacts.size(); ++i)
       if (contacts[i].pair == contacts[i - 1].pair && contacts[i].feature <= contacts[i - 1].feature)
         contacts[i].feature = contacts[i - 1].feature + 1;
@@ -72,17 +70,9 @@ struct WithCompounds {
 
   void memory(auto& archive) {
     archive(names_, next_name_);
-    if constexpr (requires { backend.memory(archive); })
-      backend.memory(archive);
-    else if constexpr (requires { backend.engine.memory(archive); })
-      backend.engine.memory(archive);
+    inner::remember(backend, archive);
   }
-  CollisionSettings settings() const {
-    if constexpr (requires { backend.settings(); })
-      return backend.settings();
-    else
-      return {backend.margin, backend.contact_distance, backend.max_points};
-  }
+  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   /// The keys of a body's parts: `first` and those that follow. They stay as long as the body has this

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/anchor.hpp>
@@ -76,10 +77,7 @@ struct WithFilter {
 
   void memory(auto& archive) {
     archive(named_);
-    if constexpr (requires { backend.memory(archive); })
-      backend.memory(archive);
-    else if constexpr (requires { backend.engine.memory(archive); })
-      backend.engine.memory(archive);
+    inner::remember(backend, archive);
   }
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/surface_pairs.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/geometry/height_field.hpp>
 #include <delassus/geometry/triangle_mesh.hpp>
@@ -75,10 +76,7 @@ struct WithMeshes {
         report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, settings(), contacts);
       });
     pairs_.end();
-    if (!jobs_.empty())
-      std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {
-        return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
-      });
+    if (!jobs_.empty()) inner::sort_by_name(contacts);
     report.points = Index(contacts.size());
     return report;
   }
@@ -93,17 +91,9 @@ struct WithMeshes {
   }
   void memory(auto& archive) {
     pairs_.memory(archive);
-    if constexpr (requires { backend.memory(archive); })
-      backend.memory(archive);
-    else if constexpr (requires { backend.engine.memory(archive); })
-      backend.engine.memory(archive);
+    inner::remember(backend, archive);
   }
-  CollisionSettings settings() const {
-    if constexpr (requires { backend.settings(); })
-      return backend.settings();
-    else
-      return {backend.margin, backend.contact_distance, backend.max_points};
-  }
+  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   struct Job {

@@ -1,0 +1,36 @@
+/// What detection that goes around a backend asks of it, whatever kind it is.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/margins.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace delassus::inner {
+
+/// What the backend keeps from step to step, in its engine or by itself.
+template <class Backend>
+void remember(Backend& backend, auto& archive) {
+  if constexpr (requires { backend.memory(archive); })
+    backend.memory(archive);
+  else if constexpr (requires { backend.engine.memory(archive); })
+    backend.engine.memory(archive);
+}
+
+template <class Backend>
+CollisionSettings settings_of(const Backend& backend) {
+  if constexpr (requires { backend.settings(); })
+    return backend.settings();
+  else
+    return {backend.margin, backend.contact_distance, backend.max_points};
+}
+
+/// The order in which every backend answers: by pair, then by feature.
+inline void sort_by_name(std::vector<ContactPoint>& contacts) {
+  std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {
+    return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
+  });
+}
+
+}  // namespace delassus::inner
