@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <limits>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,16 @@ inline unsigned seeds() {
   const char* said = std::getenv("DELASSUS_SEEDS");
   return said ? unsigned(std::max(1, std::atoi(said))) : 4;
 }
+
+/// Random numbers, the same from every compiler.
+struct Draw {
+  std::mt19937 random;
+  double operator()(double low, double high) { return low + (high - low) * double(random()) / 4294967295.0; }
+  Vec3 vector(double size) {
+    const double x = (*this)(-size, size), y = (*this)(-size, size), z = (*this)(-size, size);
+    return {x, y, z};
+  }
+};
 
 struct Link {
   int a, b;  ///< bodies; a = −1: the world
@@ -36,14 +47,8 @@ struct Scene {
 };
 
 inline Scene draw(unsigned seed, bool has_floor = true) {
-  std::mt19937 random(seed);
-  const auto number = [&](double low, double high) {
-    return low + (high - low) * double(random()) / 4294967295.0;
-  };
-  const auto vector = [&](double size) {
-    const double x = number(-size, size), y = number(-size, size), z = number(-size, size);
-    return Vec3(x, y, z);
-  };
+  Draw number{std::mt19937(seed)};
+  const auto vector = [&](double size) { return number.vector(size); };
   Scene scene;
   scene.has_floor = has_floor;
   scene.normal = (Vec3(0, 0, 1) + vector(0.2)).normalized();

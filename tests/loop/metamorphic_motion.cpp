@@ -8,15 +8,6 @@ namespace {
 
 constexpr double h = 0.01;
 
-struct Draw {
-  std::mt19937 random;
-  double operator()(double low, double high) { return low + (high - low) * double(random()) / 4294967295.0; }
-  Vec3 vector(double size) {
-    const double x = (*this)(-size, size), y = (*this)(-size, size), z = (*this)(-size, size);
-    return {x, y, z};
-  }
-};
-
 }  // namespace
 
 // A kick and a drift by a step that is a power of two in a world without force: x + h v, rounded once a step.

@@ -4,19 +4,6 @@
 
 using namespace metamorphic;
 
-namespace {
-
-struct Draw {
-  std::mt19937 random;
-  double operator()(double low, double high) { return low + (high - low) * double(random()) / 4294967295.0; }
-  Vec3 vector(double size) {
-    const double x = (*this)(-size, size), y = (*this)(-size, size), z = (*this)(-size, size);
-    return {x, y, z};
-  }
-};
-
-}  // namespace
-
 // Two halves of a box, welded, spun about an axis that is principal for each of them: no gyroscopic term
 // acts.
 TEST_CASE("two halves that are welded move as the whole") {
