@@ -12,7 +12,7 @@
 
 namespace delassus::inner {
 
-/// Follows the solutions of `SmoothedLaws` as τ goes to zero. Where points of contact are redundant and their
+/// Follows the solutions of `SmoothedRows` as τ goes to zero. Where points of contact are redundant and their
 /// gaps do not fit, λ has far to go along a line that leaves the bodies alone; here the way is short, since
 /// nothing stands on a corner before τ is small. Islands with other laws, or larger ones, are left as they
 /// are. Source: [ChenMangasarian1996] for following smoothed complementarity, [FukushimaLuoTseng2002] for the
