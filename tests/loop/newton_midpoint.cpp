@@ -130,6 +130,25 @@ TEST_CASE("a heavy chain swings with the period of its first mode") {
   CHECK(std::abs((second - first) * first_frequency(links, ratio) / EIGEN_PI - 1) <= 0.005);
 }
 
+// The gap is rounding of x = 0.4 m, the energy that of 4e6 J.
+TEST_CASE("two links under a million times their weight hold") {
+  auto loop = rods(2, 1e6, EIGEN_PI / 9, NewtonMidpoint{});
+  const Kept kept = run(loop, 1.0 / 60, 60);
+  CAPTURE(kept.gap, kept.energy, kept.factorizations);
+  CHECK(kept.converged);
+  CHECK(kept.gap <= 1e-12);
+  CHECK(kept.energy <= 1e-9 * 1e6 * 9.81 * 0.4);
+}
+
+TEST_CASE("a step that cannot be solved is not taken") {
+  auto loop = rods(2, 1e8, EIGEN_PI / 9, NewtonMidpoint{.max_iterations = 1});
+  const Vec3 before = end_of(loop);
+  const StepReport report = loop.step(1.0 / 60);
+  CHECK(report.status == Status::quarantined);
+  CHECK(report.residual > 1e-3);
+  CHECK((end_of(loop) - before).norm() == 0);
+}
+
 TEST_CASE("a force that is no number leaves the bodies where they were, and the report says so") {
   auto loop = rods(3, 1, 0.3, NewtonMidpoint{});
   auto& rigid = bodies<RigidBodies>(loop.world());

@@ -76,7 +76,8 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
         report.status = Status::converged;
       else if (size <= report.measure.floor || (size > 0.5 * last && size <= 1e-7))
         report.status = Status::stalled;
-      const bool is_lost = !(size <= 1e4 * first) || (!is_damped && k == most_undamped);
+      // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
+      const bool is_lost = !(size <= 1e12 * first) || (!is_damped && k == most_undamped);
       if (report.status != Status::max_iterations || is_lost || k == integrator.max_iterations) return;
       last = size;
       ++report.factorizations;
@@ -236,9 +237,11 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     });
   }
 
-  /// v_next from the means. A solve that is no number leaves every body where it was.
+  /// v_next from the means. A solve that is no number, or far from its equations, leaves every body where it
+  /// was: what it misses would come back as energy.
   void finish(World& world, Rows& rows, SolveReport& report) {
-    const bool is_lost = !std::isfinite(report.measure.residual);
+    const bool is_lost = !std::isfinite(report.measure.residual) ||
+                         (report.status == Status::max_iterations && report.measure.residual > 1e-3);
     if (is_lost) report.status = Status::quarantined;
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active()) {
@@ -247,8 +250,12 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
         if (is_lost && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
       }
     });
-    for_each_index<Rows::pool_count>(
-        [&](auto p) { rows.template pool<p>().lambda = std::get<p>(lambda_.pools); });
+    for_each_index<Rows::pool_count>([&](auto p) {
+      auto& lambda = rows.template pool<p>().lambda;
+      lambda = std::get<p>(lambda_.pools);
+      if (is_lost)
+        for (auto& x : lambda) x.setZero();
+    });
   }
 
   std::tuple<typename Sets::Midpoint...> bodies_;
