@@ -113,13 +113,13 @@ struct Missing {
 };
 
 inline constexpr Missing missing[] = {
-    {"HC-19", "inverted elements", "there is no deformable solid yet"},
-    {"HC-20", "nearly incompressible", "there is no deformable solid yet"},
+    {"HC-19", "inverted elements", "not built yet; soft bodies are `TetrahedralFem`"},
+    {"HC-20", "nearly incompressible", "not built yet; soft bodies are `TetrahedralFem`"},
     {"HC-23", "Painlevé", "not built yet; needs no new part"},
     {"HC-27", "arch on moving supports", "not built yet; needs no new part"},
     {"HC-31", "rope with a knot",
      "not built yet; a rope's contact with itself needs small steps and continuous collision"},
-    {"HC-32", "nut on a bolt", "there are no meshes yet"},
+    {"HC-32", "nut on a bolt", "not built yet; meshes are `WithMeshes`"},
     {"HC-37", "crowding", "not built yet; needs no new part"},
     {"HC-40", "rigid on soft", "not built yet; soft bodies are `TetrahedralFem`"},
 };

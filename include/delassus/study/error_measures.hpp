@@ -165,6 +165,7 @@ struct Worst {
 template <class Look>
 Worst(const char*, const char*, Look) -> Worst<Look>;
 
+/// The largest violation of a joint, m; rad counts as m where a joint has angles.
 inline auto joint_drift() {
   return Worst{"joint drift", "m", [](const StepReport& r) { return r.max_joint_violation; }};
 }

@@ -49,7 +49,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
  public:
   using Rows = RowSystem<T, Widths<widths...>, R...>;
   static constexpr int pools = int(sizeof...(R));
-  static constexpr int w = std::max({R...}), width = std::max({widths...});
+  static constexpr int w = std::max({R...}), width = std::max({1, widths...});
   static constexpr int most = 5;                     ///< bilateral constraints of a block that is no hub
   static constexpr int parts = (width + w - 1) / w;  ///< nodes of the matrix that a hub takes
   using Row = Vec<w>;
@@ -58,6 +58,9 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   using Side = DirectSide<w, width>;
 
   void begin() {
+    static_assert(sizeof...(widths) > 0,
+                  "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
+                  "solve it by AcceleratedGaussSeidel");
     for (const auto& [s, b] : blocks_) number_[s][b] = -1;
     blocks_.clear();
     nodes_.clear();

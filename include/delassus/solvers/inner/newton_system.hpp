@@ -36,13 +36,16 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
  public:
   using Rows = RowSystem<T, Widths<w...>, R...>;
   static constexpr int pools = Rows::pool_count;
-  static constexpr int width = std::max({w...});
+  static constexpr int width = std::max({1, w...});
   using Velocities = std::vector<Vec<width>>;  ///< one a block, narrower sets filled up with zeros
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
   /// law without a tangent, a set whose A couples blocks, or rows that nothing answers to.
   template <class Problem>
   bool gather(const Problem& problem) {
+    static_assert(sizeof...(w) > 0,
+                  "delassus: Newton's method needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
+                  "solve it by AcceleratedGaussSeidel");
     if (!can_act(problem)) return false;
     number_blocks(problem);
     for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });

@@ -1,0 +1,11 @@
+// expect: delassus: the direct path needs the bodies of a problem
+#include <delassus/delassus.hpp>
+#include <delassus/loop/friction_problem.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
+
+using namespace delassus;
+
+int main() {
+  auto problem = make_friction_problem({0.5}, {Vec3(-1, 0, 0)}, {{0, 0, Mat3::Identity()}});
+  return int(solve(problem, DirectGaussSeidel{}).status);
+}
