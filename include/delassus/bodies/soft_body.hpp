@@ -41,6 +41,7 @@ void check_soft_body(const SoftBody<M>& body, const std::string& who) {
                   who + ": density " + text(body.density) + " kg/m³ must be finite and > 0");
   DELASSUS_EXPECT(is_finite(body.position) && is_finite(body.velocity),
                   who + ": position or velocity is not finite");
+  DELASSUS_EXPECT(fits<T>(body.velocity), who + ": velocity " + beyond<T>(body.velocity, "m/s"));
   DELASSUS_EXPECT(std::abs(body.orientation.coeffs().norm() - 1) < 1e-6,
                   who + ": orientation is not a unit quaternion");
   DELASSUS_EXPECT(std::isfinite(body.contact_radius) && body.contact_radius >= 0,
