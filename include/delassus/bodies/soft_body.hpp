@@ -55,5 +55,13 @@ void check_soft_body(const SoftBody<M>& body, const std::string& who) {
   }
 }
 
+/// Refuses a sound mesh whose tetrahedra have no volume left where it was put.
+inline void check_placed(const TetrahedralMesh& mesh, const Vec3& position, const std::string& who) {
+  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e)
+    DELASSUS_EXPECT(volume(mesh, e) > 0, who + ": at " + text(position) + " m rounding leaves tetrahedron #" +
+                                             std::to_string(e) +
+                                             " no volume; put the body nearer to the origin");
+}
+
 }  // namespace inner
 }  // namespace delassus
