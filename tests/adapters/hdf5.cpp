@@ -91,3 +91,35 @@ TEST_CASE("an FCLIB file that is not a problem of this form is refused with its 
   inner::Hdf5File::open(file.path, true).group("/fclib_local/V");
   reason("equality rows");
 }
+
+TEST_CASE("arrays longer than their file, entries that add up to inf and solutions of others are refused") {
+  const File file("delassus_claims.hdf5");
+  write_one(file.path, -1);
+  {
+    // 10^12 numbers in pieces none of which is there.
+    const hid_t data = H5Fopen(file.path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hsize_t size = 1000000000000, piece = 1024;
+    const hid_t space = H5Screate_simple(1, &size, nullptr), how = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(how, 1, &piece);
+    H5Ldelete(data, "/fclib_local/vectors/q", H5P_DEFAULT);
+    const hid_t q =
+        H5Dcreate2(data, "/fclib_local/vectors/q", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT);
+    H5Dclose(q), H5Pclose(how), H5Sclose(space), H5Fclose(data);
+  }
+  REQUIRE_THROWS_WITH(read_fclib(file.path), Catch::Contains("claims 1000000000000 numbers"));
+
+  FrictionProblem two_contacts = parse_problem(two, "two");
+  write_one(file.path, -1);
+  REQUIRE_THROWS_WITH(write_fclib_solution(file.path, two_contacts),
+                      Catch::Contains("3 rows, the solution has 6"));
+
+  write_one(file.path, 4);
+  {
+    const hid_t data = H5Fopen(file.path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t x = H5Dopen2(data, "/fclib_local/W/x", H5P_DEFAULT);
+    const double twice[4] = {1e308, 3, 4, 1e308};  // entries 0 and 3 are of one place
+    H5Dwrite(x, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, twice);
+    H5Dclose(x), H5Fclose(data);
+  }
+  REQUIRE_THROWS_WITH(read_fclib(file.path), Catch::Contains("add up to what is not finite"));
+}

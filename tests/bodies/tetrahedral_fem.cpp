@@ -220,6 +220,14 @@ TEST_CASE("a body that cannot be one is refused, and says why") {
   CHECK(refusal({.mesh = cube(1), .contact_radius = 0.1, .collides_with = ~0u})
             .find("collide with each other") != std::string::npos);
   CHECK(set.blocks() == 0);  // nothing of them is left
+  // The numbers around 1e17 are 16 apart: all nodes of a unit cube would have one x.
+  CHECK(refusal({.mesh = cube(1), .position = {1e17, 0, 0}}).find("no volume") != std::string::npos);
+  CHECK(set.blocks() == 0);
+  // 1e39 is finite in double, and no number in float.
+  TetrahedralFem<Corotational, float> narrow;
+  CHECK_THROWS_WITH(narrow.add({.mesh = cube(1), .velocity = {0, 1e39, 0}}),
+                    Catch::Contains("soft body #0: velocity"));
+  CHECK(narrow.blocks() == 0);
 
   const auto body = set.add({.mesh = cube(1), .contact_radius = 0.1});
   CHECK_THROWS_AS(set.node(body, 8), InvalidArgument);

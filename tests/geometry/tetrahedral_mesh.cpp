@@ -77,6 +77,26 @@ TEST_CASE("neighbours in a box share whole faces, with five or six tetrahedra a 
   }
 }
 
+TEST_CASE("tetrahedra on the same side of a face are refused by their numbers, in whatever order of points") {
+  TetrahedralMesh mesh = one_tetrahedron();
+  mesh.tetrahedra.push_back({2, 0, 1, 3});  // even permutation: the same, as seen from all sides
+  CHECK(refusal(mesh).find("tetrahedra #0 and #1 lie on the same side") != std::string::npos);
+  mesh = one_tetrahedron();
+  mesh.points.push_back({0.2, 0.2, 0.2});  // within it
+  mesh.tetrahedra.push_back({0, 1, 2, 4});
+  CHECK(refusal(mesh).find("tetrahedra #0 and #1 lie on the same side") != std::string::npos);
+  mesh.points.back() = {0.2, 0.2, -1};
+  CHECK(refusal(oriented(mesh)).empty());
+}
+
+TEST_CASE("what cannot be numbered is refused before it is looked up") {
+  TetrahedralMesh mesh = one_tetrahedron();
+  mesh.tetrahedra[0][2] = 4;
+  CHECK_THROWS_WITH(oriented(mesh), Catch::Contains("tetrahedron #0 names point 4"));
+  CHECK_THROWS_WITH(box_mesh({1, 1, 1}, {100000, 100000, 100000}),
+                    Catch::Contains("more than an index counts"));
+}
+
 TEST_CASE("a tetrahedron that is flat, inside out or names no point is refused by its number") {
   TetrahedralMesh mesh = box_mesh({1, 1, 1}, {1, 1, 1});
   std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);

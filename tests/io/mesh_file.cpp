@@ -180,4 +180,9 @@ TEST_CASE("a mesh file that cannot be used is refused with its line and the reas
   CHECK(refuses(replaced(vtk_lists, "CELLS 3 14\n3 0 1 2", "CELLS 3 14\nx 0 1 2"), "corners of a cell"));
   CHECK(refuses(replaced(vtk_offsets, "0 3 7 11", "0 3 7 12"), "an offset"));
   CHECK(refuses("# vtk DataFile Version 3.0", "'ASCII'"));
+  // A second list of fewer points would leave cells that name points which are no more.
+  CHECK(refuses(replaced(vtk_lists, "CELL_TYPES", "POINTS 1 double\n0 0 0\nCELL_TYPES"), "second time"));
+  CHECK(refuses(replaced(vtk_lists, "CELL_TYPES", "CELLS 1 2\n1 0\nCELL_TYPES"), "second time"));
+  CHECK(refuses(replaced(version_2, "$EndNodes", "$EndNodes\n$Nodes\n1\n30 0 0 0\n$EndNodes"),
+                "two nodes have the tag 30"));
 }

@@ -108,6 +108,8 @@ inline FrictionProblem read_fclib(const std::string& path) {
   for (const double mu : friction) in.expect(mu >= 0, "friction " + inner::text(mu) + " must be >= 0");
   const std::vector<GivenBlock> blocks = inner::fclib_blocks(inner::fclib_entries(in, size));
   for (const GivenBlock& b : blocks)
+    in.expect(is_finite(b.block), "entries of W add up to what is not finite");
+  for (const GivenBlock& b : blocks)
     in.expect(b.row != b.column || b.block.diagonal().minCoeff() > 0,
               "the diagonal of W must be > 0, also at contact " + std::to_string(b.row));
   FrictionProblem p;
@@ -186,6 +188,9 @@ inline void write_fclib(const std::string& path, const FrictionProblem& p,
 inline void write_fclib_solution(const std::string& path, const FrictionProblem& p) {
   auto out = inner::Hdf5File::open(path, true);
   out.expect(!out.has("/solution"), "it has a solution already, which is not written over");
+  const int size = out.integer("/fclib_local/W/n"), own = 3 * int(p.rows.pool<0>().items());
+  out.expect(size == own,
+             "its W has " + std::to_string(size) + " rows, the solution has " + std::to_string(own));
   std::vector<Vec3> u;
   for (Index i = 0; i < p.rows.pool<0>().items(); ++i) u.push_back(p.W.residual<0>(p.rows, i));
   out.group("/solution");

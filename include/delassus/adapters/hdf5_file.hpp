@@ -129,6 +129,11 @@ class Hdf5File {
     expect(is == H5T_INTEGER || is == H5T_FLOAT, name + " holds no numbers");
     const hssize_t count = H5Sget_simple_extent_npoints(space.get());
     expect(count >= 0, name + " is no array");
+    // The extent of a damaged file may be any number; what is packed grows by 1032 at most.
+    hsize_t bytes = 0;
+    H5Fget_filesize(file_.get(), &bytes);
+    expect(hsize_t(count) / 1032 <= bytes,
+           name + " claims " + std::to_string(count) + " numbers, more than its file can hold");
     std::vector<T> values{};
     values.resize(std::size_t(count));
     expect(count == 0 || H5Dread(data.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,

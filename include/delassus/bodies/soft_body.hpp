@@ -41,6 +41,7 @@ void check_soft_body(const SoftBody<M>& body, const std::string& who) {
                   who + ": density " + text(body.density) + " kg/m³ must be finite and > 0");
   DELASSUS_EXPECT(is_finite(body.position) && is_finite(body.velocity),
                   who + ": position or velocity is not finite");
+  DELASSUS_EXPECT(fits<T>(body.velocity), who + ": velocity " + beyond<T>(body.velocity, "m/s"));
   DELASSUS_EXPECT(std::abs(body.orientation.coeffs().norm() - 1) < 1e-6,
                   who + ": orientation is not a unit quaternion");
   DELASSUS_EXPECT(std::isfinite(body.contact_radius) && body.contact_radius >= 0,
@@ -52,6 +53,14 @@ void check_soft_body(const SoftBody<M>& body, const std::string& who) {
     DELASSUS_EXPECT(has_inverse<T>(mass), who + ": the mass of tetrahedron #" + std::to_string(e) + ", " +
                                               without_inverse<T>(text(mass), "kg"));
   }
+}
+
+/// Refuses a sound mesh whose tetrahedra have no volume left where it was put.
+inline void check_placed(const TetrahedralMesh& mesh, const Vec3& position, const std::string& who) {
+  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e)
+    DELASSUS_EXPECT(volume(mesh, e) > 0, who + ": at " + text(position) + " m rounding leaves tetrahedron #" +
+                                             std::to_string(e) +
+                                             " no volume; put the body nearer to the origin");
 }
 
 }  // namespace inner

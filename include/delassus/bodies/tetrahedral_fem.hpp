@@ -265,6 +265,7 @@ auto TetrahedralFem<M, T>::add(const Body& body) -> BodyHandle {
     DELASSUS_EXPECT(inner::fits<T>(p),
                     body_name(body_slots_.size()) + ": a node at " + inner::beyond<T>(p, "m"));
   }
+  inner::check_placed(mesh, body.position, body_name(body_slots_.size()));
   const Index k = body_slots_.take();
   bodies_.resize(body_slots_.size());
   std::vector<Index> blocks;

@@ -35,6 +35,9 @@ inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& ce
     DELASSUS_EXPECT(cells[k] > 0,
                     "box_mesh: the number of cells " + std::to_string(cells[k]) + " must be > 0");
   }
+  const double count = (cells[0] + 1.0) * (cells[1] + 1.0) * (cells[2] + 1.0);
+  DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
+                  "box_mesh: " + inner::text(count) + " points are more than an index counts");
   TetrahedralMesh mesh;
   for (Index k = 0; k <= cells[2]; ++k)
     for (Index j = 0; j <= cells[1]; ++j)

@@ -32,6 +32,8 @@ class Compound {
     for (std::size_t i = 0; i < parts.size(); ++i)
       masses.push_back(add(parts[i], "compound part #" + std::to_string(i)));
     for (const MassProperties& m : masses) mass_ += m.mass, centre_ += m.mass * m.centre;
+    DELASSUS_EXPECT(std::isfinite(mass_) && mass_ > 0,
+                    "a compound of " + inner::text(mass_) + " kg; its mass must be finite and > 0");
     centre_ /= mass_;
     for (const MassProperties& m : masses) {
       const Vec3 d = m.centre - centre_;

@@ -107,6 +107,9 @@ class GmshReader {
       }
     }
     std::sort(tags_.begin(), tags_.end());
+    const auto twice = std::adjacent_find(tags_.begin(), tags_.end(),
+                                          [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (twice != tags_.end()) in_.refuse_here("two nodes have the tag " + std::to_string(twice->first));
   }
 
   Index node() {
@@ -192,11 +195,13 @@ inline TetrahedralMesh parse_vtk(std::string_view text, const std::string& path)
     if (word == "DATASET" && in.word("'UNSTRUCTURED_GRID'") != "UNSTRUCTURED_GRID")
       in.refuse_here("the data set is no UNSTRUCTURED_GRID");
     if (word == "POINTS") {
+      if (!mesh.points.empty()) in.refuse_here("POINTS stand there a second time");
       mesh.points.resize(in.integer("the number of points", 0, most));
       in.word("the type of the coordinates");
       for (Vec3& p : mesh.points)
         for (int k = 0; k < 3; ++k) p[k] = in.number("a coordinate");
     } else if (word == "CELLS") {
+      if (start.size() != 1 || !corners.empty()) in.refuse_here("CELLS stand there a second time");
       const int count = in.integer("the number of cells", 0, most),
                 size = in.integer("the size of the list", 0, most);
       std::string_view next = in.word("the first cell");

@@ -1,0 +1,12 @@
+// expect: delassus: NewtonMidpoint makes no problem that a reference could solve again
+#include <delassus/delassus.hpp>
+#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/loop/reference_check.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+  loop.step(1e-3);
+  check_against_reference(loop);
+}
