@@ -90,3 +90,13 @@ TEST_CASE("a body of a mesh without mass and inertia is refused") {
   const Shape floor = meshes(loop).add(flat(2, 1));
   CHECK_THROWS_WITH(rigid.add({.mass = 1., .shape = floor}), Catch::Matchers::Contains("give an inertia"));
 }
+
+TEST_CASE("a loop whose backend keeps no meshes refuses the shape of one that does") {
+  WithMeshes<NativeCollision> elsewhere;
+  const Shape floor = elsewhere.add(flat(2, 1));
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}};
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  rigid.add_fixed(floor);
+  rigid.add({.position = {0.2, 0.2, 1}, .mass = 1.0, .shape = Sphere{0.1}});
+  CHECK_THROWS_WITH(loop.step(0.01), Catch::Matchers::Contains("put the WithMeshes{...} or WithCompounds{...}"));
+}

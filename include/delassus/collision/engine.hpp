@@ -10,6 +10,7 @@
 #include <delassus/collision/inner/settle.hpp>
 #include <delassus/collision/manifold.hpp>
 #include <delassus/collision/pair_memory.hpp>
+#include <delassus/core/expect.hpp>
 
 #include <algorithm>
 #include <span>
@@ -65,6 +66,9 @@ class CollisionEngine {
     pairs_.clear();
     jobs_.clear();
     for (Index i = 0; i < Index(colliders.size()); ++i) {
+      DELASSUS_EXPECT(!colliders[i].shape.is_kept(),
+                      "a body has a mesh or a compound for its shape; put the WithMeshes{...} or WithCompounds{...} that "
+                      "keeps it around this loop's collision backend");
       const bool is_bounded = colliders[i].shape.kind != ShapeKind::half_space;
       if (!is_bounded) half_spaces_.push_back(i);
       boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
