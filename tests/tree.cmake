@@ -14,14 +14,16 @@ if(DELASSUS_CLANG AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   list(APPEND compiler_names Clang)
 endif()
 
-# The system include directories of Eigen and of the components that are here.
+# The system include directories of Eigen and of the components that are here, without /usr/include: named by -isystem it
+# hides the C library from the C++ one.
 set(include_dirs $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
 set(absent "")
 foreach(component IN LISTS DELASSUS_COMPONENTS)
   if(NOT TARGET delassus::${component})
     list(APPEND absent ${component})
   else()
-    list(APPEND include_dirs $<TARGET_PROPERTY:${DELASSUS_${component}_TARGET},INTERFACE_INCLUDE_DIRECTORIES>)
+    list(APPEND include_dirs
+      $<FILTER:$<TARGET_PROPERTY:${DELASSUS_${component}_TARGET},INTERFACE_INCLUDE_DIRECTORIES>,EXCLUDE,^/usr/include/?$>)
   endif()
 endforeach()
 
