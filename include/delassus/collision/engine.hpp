@@ -77,7 +77,7 @@ class CollisionEngine {
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
     for (const Index plane : half_spaces_)
       for (Index i = 0; i < Index(colliders.size()); ++i)
-        if (!boxes_[i].isEmpty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
+        if (!is_empty(boxes_[i]) && inner::may_touch(colliders[plane], boxes_[i], h, settings))
           add_job(colliders, plane, i, filter);
     std::sort(jobs_.begin(), jobs_.end());
     report_.pairs = Index(jobs_.size());

@@ -14,6 +14,18 @@ namespace delassus {
 
 using Aabb = Eigen::AlignedBox3d;
 
+/// Whether there is no point in the box, or in both: asked axis by axis, since the first one mostly tells.
+inline bool is_empty(const Aabb& a) {
+  for (int k = 0; k < 3; ++k)
+    if (a.min()[k] > a.max()[k]) return true;
+  return false;
+}
+inline bool is_apart(const Aabb& a, const Aabb& b) {
+  for (int k = 0; k < 3; ++k)
+    if (a.min()[k] > b.max()[k] || b.min()[k] > a.max()[k]) return true;
+  return false;
+}
+
 /// A convex body, as distances and penetrations see it: a core, and all points within a radius of the core.
 template <class S>
 concept ConvexSupport = requires(const S& s, const Vec3& direction) {

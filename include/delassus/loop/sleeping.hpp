@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -78,7 +80,7 @@ class Sleepers {
     });
     supports_.look(world, h, [&](const Aabb& near) {
       for (const auto& body : dormant_.bodies())
-        if (near.isEmpty() || body.box.isEmpty() || near.intersects(body.box)) call(body.group);
+        if (is_empty(near) || is_empty(body.box) || !is_apart(near, body.box)) call(body.group);
     });
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
@@ -98,9 +100,9 @@ class Sleepers {
       const double reach = 0.5 * box.sizes().maxCoeff();
       near.extend(Aabb(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach)));
     }
-    if (near.isEmpty()) return false;
+    if (is_empty(near)) return false;
     for (const auto& body : dormant_.bodies())
-      if (!body.box.isEmpty() && body.box.intersects(near))
+      if (!is_empty(body.box) && !is_apart(body.box, near))
         world.each([&](const auto& set, auto s) {
           if (s == body.set) book.add(set, s, body.block, false);
         });
@@ -212,9 +214,26 @@ class Sleepers {
   template <class Set, class Body>
   static bool is_stirred(const Set& set, const Body& body) {
     const Pose now = set.pose(body.block);
-    return !is_zero(set.velocity()[body.block]) || !is_zero(set.load(body.block)) ||
-           now.position != body.pose.position || now.rotation != body.pose.rotation;
+    return !is_null(set.velocity()[body.block]) || !is_null(set.load(body.block)) ||
+           !is_equal(now.position, body.pose.position) || !is_equal(now.rotation, body.pose.rotation);
   }
+  /// Whether all bits are the same, or all but those of signs zero; without a branch for each number there are vectors
+  /// of them.
+  template <class M>
+  static bool is_equal(const M& a, const M& b) {
+    Bits<M> apart = 0;
+    for (int k = 0; k < int(M::SizeAtCompileTime); ++k)
+      apart |= std::bit_cast<Bits<M>>(a.data()[k]) ^ std::bit_cast<Bits<M>>(b.data()[k]);
+    return apart == 0;
+  }
+  template <class M>
+  static bool is_null(const M& a) {
+    Bits<M> set = 0;
+    for (int k = 0; k < int(M::SizeAtCompileTime); ++k) set |= std::bit_cast<Bits<M>>(a.data()[k]);
+    return Bits<M>(set << 1) == 0;
+  }
+  template <class M>
+  using Bits = std::conditional_t<sizeof(typename M::Scalar) == 8, std::uint64_t, std::uint32_t>;
 
   static double strongest_gravity(const World& world) {
     double most = 0;
