@@ -24,5 +24,7 @@ TEST_CASE("the reference gets there in a pile of two hundred, while it lands and
   auto& rigid = bodies<RigidBodies>(loop.world());
   demonstration::pile_parts::add_box_of_half_spaces(rigid);
   demonstration::pile_parts::add_bodies(rigid, 200);
-  compare_at(loop, 1.0 / 240, {48, 60, 72, 84, 100, 120, 150}, false);
+  // Few contacts yet: the motion is unique.
+  compare_at(loop, 1.0 / 240, {48});
+  compare_at(loop, 1.0 / 240, {12, 24, 36, 52, 72, 102}, false);
 }

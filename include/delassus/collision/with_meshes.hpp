@@ -81,14 +81,6 @@ struct WithMeshes {
     return report;
   }
 
-  /// Forgets every pair, as after a jump in time.
-  void reset() {
-    pairs_.reset();
-    if constexpr (requires { backend.reset(); })
-      backend.reset();
-    else if constexpr (requires { backend.engine.reset(); })
-      backend.engine.reset();
-  }
   void memory(auto& archive) {
     pairs_.memory(archive);
     inner::remember(backend, archive);

@@ -24,7 +24,6 @@ class SurfacePairs {
  public:
   void begin() { next_.clear(); }
   void end() { memory_.swap(next_); }
-  void reset() { memory_.clear(); }
   void memory(auto& archive) { archive(memory_); }
 
   /// Appends the contacts of the surface, posed and moving as the collider at `place_a`, with the convex
