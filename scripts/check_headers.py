@@ -3,8 +3,9 @@
 
     scripts/check_headers.py [ROOT] --compiler g++ clang++ --system /usr/include/eigen3 [--absent fcl] [--cache DIR]
 
-The first compiler sees the header and nothing else. A clang after it is asked for what it alone refuses: it starts from a
-precompiled Eigen and gets sixteen headers at a time, and only where it refuses them each by itself.
+The first compiler sees the header alone; what the header reaches of Eigen, and no more, it finds precompiled. A clang after it
+is asked for what it alone refuses: it starts from a precompiled Eigen and gets sixteen headers at a time, and only where it
+refuses them each by itself.
 
 A header that passed is not compiled again until it, or a delassus header it includes, has changed (--cache).
 Adapters of an absent component are skipped, and counted.
@@ -21,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 INCLUDE = re.compile(r"^\s*#\s*include\s*<(delassus/[^>]+)>", re.MULTILINE)
+EIGEN = re.compile(r"^\s*#\s*include\s*<(Eigen/[^>]+)>", re.MULTILINE)
 # The warnings of cmake/programs.cmake, as errors: a user may compile with all of them.
 FLAGS = ["-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wnon-virtual-dtor",
          "-Woverloaded-virtual", "-Werror", "-Wno-missing-field-initializers"]
@@ -33,6 +35,12 @@ def closure(include, header, seen):
         for target in INCLUDE.findall((include / header).read_text(encoding="utf-8")):
             closure(include, target, seen)
     return seen
+
+
+def eigen_of(include, header):
+    """The headers of Eigen that `header` reaches, sorted."""
+    texts = [(include / part).read_text(encoding="utf-8") for part in closure(include, header, set())]
+    return tuple(sorted({name for text in texts for name in EIGEN.findall(text)}))
 
 
 def stamp_of(include, header, command):
@@ -67,14 +75,15 @@ def compile_batch(include, headers, command, head_start, cache):
     return [(header, text) for header, text in alone if text is not None] or [(headers[0], said)]
 
 
-def precompiled_eigen(folder, command):
-    """Flags by which this clang starts from a precompiled Eigen."""
-    source = Path(folder) / "eigen.hpp"
-    source.write_text("".join(f"#include <{h}>\n" for h in ["Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"]))
-    result = source.with_suffix(".pch")
+def precompiled(folder, command, version, names):
+    """Flags by which this compiler starts from these headers of Eigen, precompiled."""
+    source = Path(folder) / (hashlib.sha256(repr((command, names)).encode()).hexdigest()[:8] + ".hpp")
+    source.write_text("".join(f"#include <{name}>\n" for name in names))
+    is_clang = "clang" in version
+    result = Path(f"{source}.pch" if is_clang else f"{source}.gch")
     command = [part for part in command if part != "-fsyntax-only"]
     subprocess.run(command + ["-x", "c++-header", str(source), "-o", str(result)], check=True)
-    return ["-include-pch", str(result)]
+    return ["-include-pch", str(result)] if is_clang else ["-include", str(source)]
 
 
 def check(include, compilers, system, absent, cache, jobs):
@@ -90,10 +99,17 @@ def check(include, compilers, system, absent, cache, jobs):
         version = subprocess.run([compiler, "--version"], text=True, capture_output=True, check=True).stdout
         command = [compiler, *FLAGS, f"-I{include}", *(f"-isystem{d}" for d in system),
                    f"-DDELASSUS_CHECKED_BY_{hashlib.sha256(version.encode()).hexdigest()[:8]}"]
-        head_start, size = [], 1
         if compiler != compilers[0] and "clang" in version and system:
-            head_start, size = precompiled_eigen(folder.name, command), 16
-        tasks += [(compiler, headers[k:k + size], command, head_start) for k in range(0, len(headers), size)]
+            head_start = precompiled(folder.name, command, version, ["Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"])
+            tasks += [(compiler, headers[k:k + 16], command, head_start) for k in range(0, len(headers), 16)]
+            continue
+        by_eigen = {}
+        for header in headers:
+            by_eigen.setdefault(eigen_of(include, header), []).append(header)
+        for names, those in by_eigen.items():
+            # Precompiling takes as long as two headers do.
+            head_start = precompiled(folder.name, command, version, names) if names and len(those) > 3 else []
+            tasks += [(compiler, [header], command, head_start) for header in those]
     with ThreadPoolExecutor(jobs) as pool:
         said = list(pool.map(lambda task: compile_batch(include, *task[1:], cache), tasks))
     failed = [(task[0], header, text) for task, refused in zip(tasks, said) for header, text in refused]
