@@ -7,31 +7,11 @@
 
 #include "catch.hpp"
 #include "rope.hpp"
+#include "same_bits.hpp"
 
 using namespace scenes;
 
 namespace {
-
-/// At three random steps the state goes into a loop that is fresh and empty; both then run for a thousand steps.
-template <class Fresh, class Fill>
-void require_same_bits(double h, const Fresh& fresh, const Fill& fill) {
-  auto loop = fresh();
-  fill(loop);
-  std::minstd_rand random(3);
-  for (int k = 0; k < 3; ++k) {
-    for (int n = std::uniform_int_distribution<int>(1, 200)(random); n > 0; --n) loop.step(h);
-    const auto bytes = checkpoint(loop);
-    auto restored = fresh();
-    restore(restored, bytes);
-    REQUIRE(restored.time() == loop.time());
-    auto original = loop;
-    for (int n = 0; n < 1000; ++n) {
-      const StepReport a = original.step(h), b = restored.step(h);
-      REQUIRE(a.sweeps == b.sweeps);
-      REQUIRE(state_hash(original) == state_hash(restored));
-    }
-  }
-}
 
 auto stack_loop() {
   return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}},

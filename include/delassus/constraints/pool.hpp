@@ -66,6 +66,10 @@ struct Pool {
     return {place, slots.generation(place), owner};
   }
 
+  ConstraintHandle<Law> handle(Index place) const {
+    DELASSUS_EXPECT(slots.is_alive(place), "constraint: place " + std::to_string(place) + " of this law holds none");
+    return {place, slots.generation(place), owner};
+  }
   bool contains(ConstraintHandle<Law> h) const { return h.owner == owner && slots.is_current(h.index, h.generation); }
 
   void remove(ConstraintHandle<Law> h) {

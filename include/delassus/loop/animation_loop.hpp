@@ -64,6 +64,13 @@ class AnimationLoop {
     forget_rows();
   }
 
+  /// The handle of the constraint in a place of its law: places count from 0 in the order of adding, a removed one's is given again.
+  /// After `restore` the handles are this loop's own. Throws InvalidArgument for an empty place.
+  template <class Law>
+  ConstraintHandle<Law> constraint(Index place) const {
+    return laws().template of<Law>().handle(place);
+  }
+
   /// What a constraint was added with: its numbers may be changed at any time, its anchors may not.
   template <class Law>
   auto& item(ConstraintHandle<Law> constraint) {
