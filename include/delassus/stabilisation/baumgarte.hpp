@@ -8,17 +8,20 @@
 
 namespace delassus {
 
-/// bias = rate · φ/h; a contact is pushed out at most at `max_speed` (m/s).
+/// bias = rate · φ/h; a contact is pushed out at most at `max_speed`, a joint closed at most at `max_joint_speed`: what was put
+/// together far apart, or meets a step much shorter than the last, comes home and is not shot there.
 struct Baumgarte {
   using plays = role::Stabilisation;
-  double rate = 0.2;     ///< share of φ per step, in (0, 1]
-  double max_speed = 1;  ///< m/s
+  double rate = 0.2;            ///< share of φ per step, in (0, 1]
+  double max_speed = 1;         ///< m/s
+  double max_joint_speed = 10;  ///< m/s, rad/s
 
   void check() const {
     DELASSUS_EXPECT(rate > 0 && rate <= 1, "Baumgarte: rate " + inner::text(rate) + " must be in (0, 1]");
     DELASSUS_EXPECT(max_speed > 0, "Baumgarte: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
+    DELASSUS_EXPECT(max_joint_speed > 0, "Baumgarte: max_joint_speed " + inner::text(max_joint_speed) + " must be > 0 m/s");
   }
-  double equality(double phi, double h) const { return rate * phi / h; }
+  double equality(double phi, double h) const { return std::clamp(rate * phi / h, -max_joint_speed, max_joint_speed); }
   double penetration(double phi, double h) const { return std::max(rate * phi / h, -max_speed); }
 };
 static_assert(Stabilisation<Baumgarte>);

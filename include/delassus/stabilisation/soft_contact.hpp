@@ -13,13 +13,15 @@ namespace delassus {
 ///
 ///   u + φ ω/(2ζ + h ω) + R λ = 0,   R = W_nn / (h ω (2ζ + h ω)).
 ///
-/// At rest a mass m sags by g/ω² · (what it carries)/m. Joints are held as by Baumgarte at `joint_rate`.
+/// At rest a mass m sags by g/ω² · (what it carries)/m. Joints are held as by Baumgarte at `joint_rate`,
+/// at most at `max_joint_speed`.
 struct SoftContact {
   using plays = role::Stabilisation;
   double frequency = 30;     ///< f, Hz
   double damping_ratio = 1;  ///< ζ
   double max_speed = 1;      ///< m/s
   double joint_rate = 0.2;
+  double max_joint_speed = 10;  ///< m/s, rad/s
 
   void check() const {
     DELASSUS_EXPECT(frequency > 0 && std::isfinite(frequency),
@@ -29,9 +31,13 @@ struct SoftContact {
     DELASSUS_EXPECT(max_speed > 0, "SoftContact: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
     DELASSUS_EXPECT(joint_rate >= 0 && joint_rate <= 1,
                     "SoftContact: joint_rate " + inner::text(joint_rate) + " must be in [0, 1]");
+    DELASSUS_EXPECT(max_joint_speed > 0,
+                    "SoftContact: max_joint_speed " + inner::text(max_joint_speed) + " must be > 0 m/s");
   }
   double omega() const { return 6.283185307179586 * frequency; }
-  double equality(double phi, double h) const { return joint_rate * phi / h; }
+  double equality(double phi, double h) const {
+    return std::clamp(joint_rate * phi / h, -max_joint_speed, max_joint_speed);
+  }
   double penetration(double phi, double h) const {
     return std::max(phi * omega() / (2 * damping_ratio + h * omega()), -max_speed);
   }

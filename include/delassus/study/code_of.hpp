@@ -112,6 +112,8 @@ std::string code_of(const P& policy) {
         append("damping_ratio", policy.damping_ratio, usual.damping_ratio);
       if constexpr (requires { policy.rate; }) append("rate", policy.rate, usual.rate);
       if constexpr (requires { policy.max_speed; }) append("max_speed", policy.max_speed, usual.max_speed);
+      if constexpr (requires { policy.max_joint_speed; })
+        append("max_joint_speed", policy.max_joint_speed, usual.max_joint_speed);
       if constexpr (requires { policy.joint_rate; })
         append("joint_rate", policy.joint_rate, usual.joint_rate);
       if constexpr (requires { policy.rayleigh_mass; })
