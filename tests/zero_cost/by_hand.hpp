@@ -86,7 +86,7 @@ struct Bodies {
     x[b] += h * linear;
     v[b] = linear;
     const Vec3 rate = R[b].transpose() * angular, momentum = inertia[b] * rate, spatial = R[b] * momentum;
-    q[b] = (q[b] * cayley<double>(h * midpoint_rate<double>(inertia[b], rate, momentum, momentum, h))).normalized();
+    q[b] = (q[b] * midpoint_turn<double>(inertia[b], rate, momentum, momentum, h)).normalized();
     R[b] = q[b].toRotationMatrix();
     inverse_inertia_world[b].noalias() = R[b] * inverse_inertia[b] * R[b].transpose();
     omega[b] = R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial));

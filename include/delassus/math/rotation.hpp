@@ -38,6 +38,13 @@ Eigen::Quaternion<T> cayley(const Vec<3, T>& theta) {
   return unit(Eigen::Quaternion<T>(T(1), T(0.5) * theta[0], T(0.5) * theta[1], T(0.5) * theta[2]));
 }
 
+/// Ω̄ of `midpoint_rate`, what its equation lacks and what one rounding of it is, kg·m²/s.
+template <class T>
+struct MidpointRate {
+  Vec<3, T> rate;
+  T residual, rounding;
+};
+
 /// One step of rotation by the implicit midpoint rule, in the body's frame. a = I Ω is the momentum before, c the one
 /// after the step's angular impulse, both in the axes of R:
 ///
@@ -45,12 +52,13 @@ Eigen::Quaternion<T> cayley(const Vec<3, T>& theta) {
 ///
 /// so that R₊ I Ω₊ = R c: the spatial angular momentum takes the impulse exactly. With no impulse (c = a) it is
 /// I (Ω₊ − Ω) + h Ω̄ × I Ω̄ = 0, which keeps ½ Ω·IΩ too, since the rule keeps quadratic invariants. Returns Ω̄.
+/// Of a step by many radians the equation has several roots, and Newton's method may end at none: the residual says so.
 ///
 /// Newton's method with step halving from Ω, on the equation multiplied by I + h Ω̄^/2:
 ///   F(Ω̄) = m − c + h/2 Ω̄ × (m + c),  m = 2 I Ω̄ − a = I Ω₊,   F′ = 2 I + h/2 (2 Ω̄^ I − (m + c)^).
 /// Source: [SimoWong1991], the midpoint member.
 template <class T>
-Vec<3, T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c, T h) {
+MidpointRate<T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c, T h) {
   Vec<3, T> mid = rate, sum = T(2) * (inertia * mid) - a + c;
   Vec<3, T> residual = sum - T(2) * c + (h / 2) * mid.cross(sum);
   T size = residual.norm();
@@ -73,10 +81,49 @@ Vec<3, T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, cons
         size = trial_size;
         break;
       }
-      if (halving == 7) return mid;
+      if (halving == 7) return {mid, size, floor};
     }
   }
-  return mid;
+  return {mid, size, floor};
+}
+
+namespace inner {
+
+template <class T>
+[[gnu::noinline]] Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate,
+                                                               const Vec<3, T>& a, const Vec<3, T>& c, T h, int halvings);
+
+/// `midpoint_turn` of a step that may be halved `halvings` times more.
+template <class T>
+Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
+                                           const Vec<3, T>& c, T h, int halvings) {
+  const MidpointRate<T> mid = midpoint_rate<T>(inertia, rate, a, c, h);
+  // The products that make the residual are of size h |Ω̄| |c|, and as many roundings off.
+  const T enough = T(128) * mid.rounding;
+  if (mid.residual <= enough) [[likely]] return cayley<T>(h * mid.rate);
+  if (halvings == 0 || mid.residual <= enough * (T(1) + h * mid.rate.norm())) return cayley<T>(h * mid.rate);
+  return midpoint_turn_in_halves<T>(inertia, rate, a, c, h, halvings - 1);
+}
+
+/// The impulse acts in the first half; in the second the body turns freely, from Ω = I⁻¹ cay(…)ᵀ c.
+template <class T>
+Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
+                                             const Vec<3, T>& c, T h, int halvings) {
+  const Eigen::Quaternion<T> first = midpoint_turn_halving<T>(inertia, rate, a, c, h / 2, halvings);
+  const Vec<3, T> momentum = first.conjugate() * c;
+  const T scale = T(1) / inertia.trace();
+  const Vec<3, T> then = inverse(Mat<3, 3, T>(scale * inertia)) * (scale * momentum);
+  return unit(first * midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings));
+}
+
+}  // namespace inner
+
+/// cay(h Ω̄) of `midpoint_rate` as a quaternion. Where that finds no root, a body that turns by many radians in a step, the step
+/// is made of halves, of which each keeps what the rule keeps; at most 2¹⁰ of them.
+template <class T>
+Eigen::Quaternion<T> midpoint_turn(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c,
+                                   T h) {
+  return inner::midpoint_turn_halving<T>(inertia, rate, a, c, h, 10);
 }
 
 }  // namespace delassus

@@ -111,7 +111,7 @@ struct RigidState {
     const Vector impulse = inertia[b] * kicked;
     const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
     const Vector spatial = R[b] * impulse;
-    q[b] = unit(q[b] * cayley<T>(h * midpoint_rate<T>(inertia[b], start, old_impulse, impulse, h)));
+    q[b] = unit(q[b] * midpoint_turn<T>(inertia[b], start, old_impulse, impulse, h));
     turn(b);
     // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
     // ones.
