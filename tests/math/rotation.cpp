@@ -147,3 +147,14 @@ TEST_CASE("in single precision the midpoint rule turns a grain of 0.1 mm as it t
     REQUIRE(next.dot(inertia * next) == Approx(rate.dot(a)).epsilon(1e-5));
   }
 }
+
+TEST_CASE("a quaternion of any size gives a rotation") {
+  const Quat unit_size = exponential(Vec3(0.3, -1.2, 0.8));
+  for (const double size : {1e-3, 1 - 1e-9, 1.0, 1e3}) {
+    const Mat3 R = rotation_matrix(Quat(size * unit_size.w(), size * unit_size.x(), size * unit_size.y(), size * unit_size.z()));
+    CAPTURE(size);
+    // Sums of three products, each factor within 4 roundings.
+    REQUIRE((R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 3e-15);
+    REQUIRE((R - unit_size.toRotationMatrix()).cwiseAbs().maxCoeff() < 3e-15);
+  }
+}

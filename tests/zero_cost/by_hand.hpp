@@ -87,7 +87,7 @@ struct Bodies {
     v[b] = linear;
     const Vec3 rate = R[b].transpose() * angular, momentum = inertia[b] * rate, spatial = R[b] * momentum;
     q[b] = (q[b] * midpoint_turn<double>(inertia[b], rate, momentum, momentum, h)).normalized();
-    R[b] = q[b].toRotationMatrix();
+    R[b] = rotation_matrix<double>(q[b]);
     inverse_inertia_world[b].noalias() = R[b] * inverse_inertia[b] * R[b].transpose();
     omega[b] = R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial));
     return true;

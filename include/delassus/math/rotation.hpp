@@ -14,6 +14,21 @@ inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
   return {q.w() / size, q.x() / size, q.y() / size, q.z() / size};
 }
 
+/// The rotation matrix of q, whatever its size: I + s (w v^ + v^²), s = 2/|q|². That of a unit quaternion, s = 2, is as far from
+/// a rotation as |q| is from 1, and a rounded |q| is above 1 more often than below: a spinning body would gain by it.
+template <class T>
+Mat<3, 3, T> rotation_matrix(const Eigen::Quaternion<T>& q) {
+  const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  const T s = T(2) / (w * w + x * x + y * y + z * z);
+  const T sx = s * x, sy = s * y, sz = s * z;
+  const T xx = sx * x, yy = sy * y, zz = sz * z, xy = sx * y, yz = sy * z, zx = sz * x, wx = sx * w, wy = sy * w, wz = sz * w;
+  Mat<3, 3, T> R;
+  R << T(1) - (yy + zz), xy - wz, zx + wy,  //
+      xy + wz, T(1) - (xx + zz), yz - wx,   //
+      zx - wy, yz + wx, T(1) - (xx + yy);
+  return R;
+}
+
 /// The quaternion of a turn by the vector θ (rad): exp(θ/2).
 template <class T>
 Eigen::Quaternion<T> exponential(const Vec<3, T>& theta) {

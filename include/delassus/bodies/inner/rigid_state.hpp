@@ -40,7 +40,7 @@ struct RigidState {
 
   /// R and R I⁻¹ Rᵀ of the present orientation.
   void turn(Index b) {
-    R[b] = q[b].toRotationMatrix();
+    R[b] = rotation_matrix<T>(q[b]);
     inverse_inertia_world[b] = R[b] * inverse_inertia[b] * R[b].transpose();
   }
 
