@@ -2,37 +2,46 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
+#include <delassus/collision/continuous.hpp>
+#include <delassus/collision/seamless.hpp>
+
 namespace ladders {
 
 // A body slides without friction over a floor of tiles that lie level: no seam may be felt.
-void seams(Ladder& ladder) {
+template <class Collision>
+void slide_over_seams(Ladder& ladder, const Collision& collision) {
   struct Slider {
     const char* name;
     Shape shape;
+    double height;
+    Quat turn;
   };
-  for (const Slider& s :
-       {Slider{"sphere", Sphere{0.5}}, Slider{"box", Box{1, 1, 1}}, Slider{"capsule", Capsule{0.3, 0.6}}})
+  const Quat upright = Quat::Identity(), lying(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitX()));
+  for (const Slider& s : {Slider{"sphere", Sphere{0.5}, 0.5, upright}, Slider{"box", Box{1, 1, 1}, 0.5, upright},
+                          Slider{"lying capsule", Capsule{0.3, 0.6}, 0.3, lying}})
     ladder.rung(format("%s over 40 tiles", s.name), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, collision};
       auto& set = bodies<RigidBodies>(loop.world());
       for (int k = 0; k < 40; ++k) set.add_fixed(Box{0.5, 4, 1}, {0.5 * k, 0, -0.5});
-      const double height = s.shape.kind == ShapeKind::capsule ? 0.6 : 0.5;
-      const auto body =
-          set.add({.position = {2, 0, height}, .velocity = {2, 0, 0}, .mass = 1.0, .shape = s.shape});
+      const auto body = set.add(
+          {.position = {2, 0, s.height}, .orientation = s.turn, .velocity = {2, 0, 0}, .mass = 1.0, .shape = s.shape});
       double hop = 0;
       const Seen seen = run(ladder, loop, 7, frame,
-                            [&](int) { hop = most(hop, std::abs(set.position(body).z() - height)); });
+                            [&](int) { hop = most(hop, std::abs(set.position(body).z() - s.height)); });
       return {{"hop / size", hop, 1e-3, 1e-6},
               {"speed lost", std::abs(set.velocity(body).x() / 2 - 1), 1e-2, 1e-6},
               energy_mark(seen, 0.5 * 4)};
     });
 }
+void seams(Ladder& ladder) { slide_over_seams(ladder, NativeCollision{}); }
+void seams_left_out(Ladder& ladder) { slide_over_seams(ladder, Seamless{NativeCollision{}}); }
 
 // A ball of 1 cm flies at a plate of 1 mm, at 60 steps a second.
-void bullet(Ladder& ladder) {
+template <class Collision>
+void shoot_at_plate(Ladder& ladder, const Collision& collision) {
   for (const double speed : {0.1, 1., 10., 100., 300., 1000.})
     ladder.rung(format("%g m/s", speed), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, collision};
       auto& set = bodies<RigidBodies>(loop.world());
       set.gravity.setZero();
       set.add_fixed(Box{0.001, 10, 10});
@@ -48,6 +57,8 @@ void bullet(Ladder& ladder) {
               energy_mark(seen, 4 * 0.005 * speed * speed)};
     });
 }
+void bullet(Ladder& ladder) { shoot_at_plate(ladder, NativeCollision{}); }
+void bullet_watched(Ladder& ladder) { shoot_at_plate(ladder, Continuous{NativeCollision{}}); }
 
 // Balls of 0.1 m and 10 kg in a closed box, elastic and without friction.
 void elastic_balls(Ladder& ladder) {

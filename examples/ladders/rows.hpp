@@ -41,7 +41,9 @@ void bad_input(Ladder&);
 void far_away(Ladder&);
 void scale(Ladder&);
 void seams(Ladder&);
+void seams_left_out(Ladder&);
 void bullet(Ladder&);
+void bullet_watched(Ladder&);
 void elastic_balls(Ladder&);
 void simultaneous(Ladder&);
 void heap(Ladder&);
@@ -77,13 +79,15 @@ inline constexpr Row rows[] = {
     {"HC-09", "duplicate constraints", "", duplicates, Level::gold},
     {"HC-10", "redundant hinges", "WholeViolation", many_hinges, Level::silver},
     {"HC-11", "vanishing mass in a chain", "PositionProjection", vanishing_mass, Level::gold},
-    {"HC-12", "free spin, 100 s at 60 steps a second", "", free_spin, Level::silver},
+    {"HC-12", "free spin, 100 s at 60 steps a second", "", free_spin, Level::gold},
     {"HC-13", "overlap at the start", "", overlap, Level::bronze},
     {"HC-14", "bad input", "", bad_input, Level::gold},
     {"HC-15", "far from the origin", "", far_away, Level::gold},
     {"HC-16", "no normal", "", no_normal, Level::gold},
     {"HC-17", "seams of a floor", "", seams, Level::bronze},
+    {"HC-17", "seams of a floor", "Seamless", seams_left_out, Level::gold},
     {"HC-18", "bullet and thin plate", "", bullet, Level::gold},
+    {"HC-18", "bullet and thin plate", "Continuous", bullet_watched, Level::gold},
     {"HC-21", "four-bars through their singular pose", "ProximalNewton, WholeViolation", four_bars,
      Level::bronze},
     {"HC-22", "bar without room", "", no_room, Level::silver},

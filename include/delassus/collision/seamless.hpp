@@ -1,0 +1,126 @@
+/// Detection that does not feel the seams between bodies that lie level side by side.
+#pragma once
+
+#include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/geometry/support.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// `Seamless{NativeCollision{}}` in the place of the backend: a body that slides over tiles does not hit the edges of the next
+/// one. WithMeshes, Continuous, WithCompounds and WithFilter go around it. Its rule, for a body A that touches B by the normal n:
+///
+///   another body C that the plane of that contact parts from A, |min n·C − max n·A| ≤ `level`, and to which A is nearest in
+///   another direction than n, is no obstacle, as long as A lies on B: their contacts are left out.
+///
+/// A lip lower than `level` is passed, and closed as an overlap where it is stood on. Source: none; the idea of
+/// leaving out features that lie in the plane of another contact is common in games' engines.
+template <class Backend>
+struct Seamless {
+  using plays = role::Collision;
+  static_assert(
+      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; },
+      "delassus: WithFilter and WithCompounds go around Seamless; write WithCompounds{Seamless{...}}");
+
+  Backend backend{};
+  double level = 1e-3;  ///< m
+
+  Seamless() = default;
+  explicit Seamless(Backend b, double largest_step = 1e-3) : backend(std::move(b)), level(largest_step) {}
+
+  void check() const {
+    DELASSUS_EXPECT(level > 0 && std::isfinite(level),
+                    "Seamless: level " + inner::text(level) + " m must be finite and > 0");
+    if constexpr (requires { backend.check(); }) backend.check();
+  }
+
+  template <class Filter = NoFilter>
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
+                         const Filter& filter = {}) {
+    CollisionReport report = backend.detect(colliders, h, contacts, filter);
+    leave_out_seams(colliders, contacts);
+    report.points = Index(contacts.size());
+    return report;
+  }
+
+  void memory(auto& archive) { inner::remember(backend, archive); }
+  CollisionSettings settings() const { return inner::settings_of(backend); }
+
+ private:
+  /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`.
+  struct Side {
+    Index body, other, first, last;
+    Vec3 normal;
+    bool touches;
+  };
+
+  void leave_out_seams(std::span<const Collider> colliders, std::vector<ContactPoint>& contacts) {
+    sides_.clear();
+    for (Index first = 0, last; first < Index(contacts.size()); first = last) {
+      const ContactPoint& c = contacts[first];
+      bool touches = false;
+      for (last = first; last < Index(contacts.size()) && contacts[last].pair == c.pair; ++last)
+        touches = touches || contacts[last].gap <= level;
+      if (colliders[c.a].is_movable) sides_.push_back({c.a, c.b, first, last, c.normal, touches});
+      if (colliders[c.b].is_movable) sides_.push_back({c.b, c.a, first, last, -c.normal, touches});
+    }
+    std::sort(sides_.begin(), sides_.end(), [](const Side& x, const Side& y) {
+      return x.body != y.body ? x.body < y.body : x.first < y.first;
+    });
+    is_seam_.assign(contacts.size(), 0);
+    bool any = false;
+    for (std::size_t i = 0, end; i < sides_.size(); i = end) {
+      for (end = i; end < sides_.size() && sides_[end].body == sides_[i].body;) ++end;
+      for (std::size_t next = i; next < end; ++next)
+        for (std::size_t lain_on = i; lain_on < end; ++lain_on) {
+          if (!is_seam(colliders, sides_[lain_on], sides_[next])) continue;
+          std::fill(is_seam_.begin() + sides_[next].first, is_seam_.begin() + sides_[next].last, 1);
+          any = true;
+        }
+    }
+    if (!any) return;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      if (!is_seam_[k]) contacts[kept++] = contacts[k];
+    contacts.resize(kept);
+  }
+
+  /// Whether `next` is a body beyond a seam of the one lain on. Never both of each other: one of two must bear.
+  bool is_seam(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
+    constexpr double parallel = 1 - 1e-8;
+    if (lain_on.first == next.first || !lain_on.touches || lain_on.normal.dot(next.normal) > parallel) return false;
+    return is_level(colliders, next, lain_on.normal) && !is_level(colliders, lain_on, next.normal);
+  }
+
+  /// |min n·other − max n·body| ≤ level; false where a shape reaches to no point.
+  bool is_level(std::span<const Collider> colliders, const Side& side, const Vec3& n) const {
+    const Collider &a = colliders[side.body], &c = colliders[side.other];
+    return reaches(a) && reaches(c) && std::abs(reach(a, n) + reach(c, -n)) <= level;
+  }
+  static bool reaches(const Collider& c) {
+    return c.shape.kind != ShapeKind::half_space && c.shape.kind != ShapeKind::mesh && c.shape.kind != ShapeKind::compound &&
+           c.shape.kind != ShapeKind::none;
+  }
+  /// max n·x over the body, m.
+  static double reach(const Collider& c, const Vec3& n) {
+    const Vec3 local = c.pose.rotation.transpose() * n;
+    return n.dot(c.pose.position) + local.dot(support(c.shape, local));
+  }
+
+  std::vector<Side> sides_;
+  std::vector<char> is_seam_;
+};
+
+template <class Backend>
+Seamless(Backend) -> Seamless<Backend>;
+template <class Backend>
+Seamless(Backend, double) -> Seamless<Backend>;
+
+}  // namespace delassus
