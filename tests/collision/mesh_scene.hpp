@@ -37,6 +37,35 @@ inline TriangleMesh flat_grid(double half, int cells, double jitter = 0, unsigne
   return TriangleMesh(vertices, triangles);
 }
 
+/// The surface of a box with full edges x, y, z, each side in cells × cells squares of two triangles.
+inline TriangleMesh fine_box(double x, double y, double z, int cells) {
+  std::vector<Vec3> vertices;
+  std::vector<Corners> triangles;
+  const auto place = [&](int i, int j, int k) {
+    const Vec3 p(x * (double(i) / cells - 0.5), y * (double(j) / cells - 0.5), z * (double(k) / cells - 0.5));
+    for (Index v = 0; v < Index(vertices.size()); ++v)
+      if (vertices[v] == p) return v;
+    vertices.push_back(p);
+    return Index(vertices.size()) - 1;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (int end = 0; end < 2; ++end)
+      for (int j = 0; j < cells; ++j)
+        for (int i = 0; i < cells; ++i) {
+          const auto at = [&](int u, int v) {
+            std::array<int, 3> g{};
+            g[axis] = end * cells;
+            g[(axis + 1) % 3] = u;
+            g[(axis + 2) % 3] = v;
+            return place(g[0], g[1], g[2]);
+          };
+          const Index a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+          triangles.push_back(end == 1 ? Corners{a, b, c} : Corners{a, c, b});
+          triangles.push_back(end == 1 ? Corners{a, c, d} : Corners{a, d, c});
+        }
+  return TriangleMesh(vertices, triangles);
+}
+
 /// The surface of a box with full edges x, y, z.
 inline TriangleMesh box_mesh(double x, double y, double z) {
   std::vector<Vec3> v;

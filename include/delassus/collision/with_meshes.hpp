@@ -10,15 +10,16 @@
 #include <algorithm>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace delassus {
 
 /// `WithMeshes{NativeCollision{}}` in the place of the backend: convex pairs are the backend's, and bodies
-/// with a shape that `add` returned meet convex ones and half-spaces by their triangles. The solid is behind
-/// the triangles, so a body whose middle is behind one does not meet it. Two meshes do not meet. `WithFilter`
-/// goes around it.
+/// with a shape that `add` returned meet convex ones and half-spaces by their triangles, and each other by
+/// their vertices, edges and triangles. The solid is behind the triangles, so a body whose middle is behind
+/// one does not meet it. Two height fields do not meet. `WithFilter` goes around it.
 template <class Backend>
 struct WithMeshes {
   using plays = role::Collision;
@@ -26,8 +27,9 @@ struct WithMeshes {
       !requires { Backend::asks_for_joints; },
       "delassus: WithFilter goes outermost; write WithFilter{WithMeshes{...}}");
 
-  static_assert(!requires { Backend::splits_bodies; },
-                "delassus: WithCompounds goes around WithMeshes; write WithCompounds{WithMeshes{...}}");
+  static_assert(
+      !requires { Backend::splits_bodies; },
+      "delassus: WithCompounds goes around WithMeshes; write WithCompounds{WithMeshes{...}}");
 
   Backend backend{};
 
@@ -50,10 +52,7 @@ struct WithMeshes {
   /// f(surface), the mesh or the height field that a shape of `add` names.
   template <class F>
   void with_surface(const Shape& shape, const F& f) const {
-    const Index number = Index(shape.number());
-    DELASSUS_EXPECT(shape.kind == ShapeKind::mesh && number < Index(kinds_.size()),
-                    "this mesh is none of the backend's; take what its add(...) returned");
-    const auto& [is_field, place] = kinds_[number];
+    const auto& [is_field, place] = kind_of(shape);
     is_field ? f(fields_[place]) : f(meshes_[place]);
   }
 
@@ -73,7 +72,10 @@ struct WithMeshes {
     pairs_.begin();
     for (const Job& job : jobs_)
       with_surface(colliders[job.mesh].shape, [&](const auto& surface) {
-        report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, settings(), contacts);
+        if (colliders[job.other].shape.kind == ShapeKind::mesh)
+          report.queries += cross(surface, colliders, job, h, contacts);
+        else
+          report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, settings(), contacts);
       });
     pairs_.end();
     if (!jobs_.empty()) inner::sort_by_name(contacts);
@@ -115,8 +117,9 @@ struct WithMeshes {
         continue;
       for (Index i = 0; i < Index(colliders.size()); ++i) {
         const Collider& other = colliders[i];
-        if (other.shape.kind == ShapeKind::none || other.shape.is_kept() ||
-            (!mesh.is_movable && !other.is_movable))
+        const bool is_mesh = other.shape.kind == ShapeKind::mesh;
+        if (other.shape.kind == ShapeKind::none || (other.shape.is_kept() && !is_mesh) ||
+            (!mesh.is_movable && !other.is_movable) || (is_mesh && !goes_first(colliders, m, i)))
           continue;
         if ((mesh.group & other.collides_with) == 0 || (other.group & mesh.collides_with) == 0) continue;
         const std::uint64_t pair = pair_key(mesh.key, other.key);
@@ -124,6 +127,31 @@ struct WithMeshes {
       }
     }
     std::sort(jobs_.begin(), jobs_.end());
+  }
+
+  const Kind& kind_of(const Shape& shape) const {
+    const Index number = Index(shape.number());
+    DELASSUS_EXPECT(shape.kind == ShapeKind::mesh && number < Index(kinds_.size()),
+                    "this mesh is none of the backend's; take what its add(...) returned");
+    return kinds_[number];
+  }
+
+  /// Of two surfaces a mesh goes before a height field, else the lower key; two fields do not meet.
+  bool goes_first(std::span<const Collider> colliders, Index i, Index j) const {
+    const Collider &a = colliders[i], &b = colliders[j];
+    if (i == j || kind_of(a.shape).is_field) return false;
+    return kind_of(b.shape).is_field || a.key < b.key;
+  }
+
+  template <class Surface>
+  Index cross(const Surface& surface, std::span<const Collider> colliders, const Job& job, double h,
+              std::vector<ContactPoint>& contacts) {
+    Index queries = 0;
+    if constexpr (std::is_same_v<Surface, TriangleMesh>)
+      with_surface(colliders[job.other].shape, [&](const auto& other) {
+        queries = pairs_.cross(surface, other, colliders, job.mesh, job.other, h, settings(), contacts);
+      });
+    return queries;
   }
 
   /// False when the balls around both, with the widest margin there can be, are apart.

@@ -60,6 +60,47 @@ class HeightField {
     return out;
   }
 
+  // --- what another surface asks, as of a TriangleMesh; vertex row * columns + column
+  // -----------------------
+
+  static constexpr Index triangles_per_item = 2;
+  const inner::FlatTree& tree() const { return tree_; }
+  Vec3 vertex(Index v) const { return point(v % columns_, v / columns_); }
+  std::array<Vec3, 3> points_of(Index t) const {
+    const auto [a, b, c] = corners(t);
+    return {point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1])};
+  }
+  Vec3 normal(Index t) const { return normal_of(t); }
+  bool owns_corner(Index t, int k) const {
+    const auto [i, j] = corners(t)[k];
+    const Index before = (j - 1) * (columns_ - 1);
+    if (j > 0) return t == (i > 0 ? 2 * (before + i - 1) : 2 * before + 1);
+    return t == (i > 0 ? 2 * (i - 1) : 0);
+  }
+  bool owns_edge(Index t, int k) const {
+    const Index other = neighbour(t, k);
+    return other < 0 || t < other;
+  }
+  template <class F>
+  void each_around(Index v, const F& f) const {
+    constexpr Index step[6][2]{{1, 0}, {0, 1}, {1, 1}, {-1, 0}, {0, -1}, {-1, -1}};
+    for (const auto& [di, dj] : step) {
+      const Index i = v % columns_ + di, j = v / columns_ + dj;
+      if (i >= 0 && j >= 0 && i < columns_ && j < rows_) f(j * columns_ + i);
+    }
+  }
+
+  /// The triangle across edge k, −1 at the border.
+  Index neighbour(Index t, int k) const {
+    const auto [i, j] = cell(t / 2);
+    const auto triangle_in = [&](Index column, Index row, int which) {
+      if (column < 0 || row < 0 || column >= columns_ - 1 || row >= rows_ - 1) return Index(-1);
+      return 2 * (row * (columns_ - 1) + column) + which;
+    };
+    if (t % 2 == 0) return k == 0 ? triangle_in(i, j - 1, 1) : k == 1 ? triangle_in(i + 1, j, 1) : t + 1;
+    return k == 0 ? t - 1 : k == 1 ? triangle_in(i, j + 1, 0) : triangle_in(i - 1, j, 0);
+  }
+
   /// Calls visit(t) for the triangles in every leaf of the tree whose box passes `meets(bounds)`.
   template <class Meets, class Visit>
   void visit(const Meets& meets, const Visit& visit) const {
@@ -84,17 +125,6 @@ class HeightField {
   Vec3 normal_of(Index t) const {
     const auto [a, b, c] = corners(t);
     return inner::triangle_normal(point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1]));
-  }
-
-  /// The triangle across edge k, −1 at the border.
-  Index neighbour(Index t, int k) const {
-    const auto [i, j] = cell(t / 2);
-    const auto triangle_in = [&](Index column, Index row, int which) {
-      if (column < 0 || row < 0 || column >= columns_ - 1 || row >= rows_ - 1) return Index(-1);
-      return 2 * (row * (columns_ - 1) + column) + which;
-    };
-    if (t % 2 == 0) return k == 0 ? triangle_in(i, j - 1, 1) : k == 1 ? triangle_in(i + 1, j, 1) : t + 1;
-    return k == 0 ? t - 1 : k == 1 ? triangle_in(i, j + 1, 0) : triangle_in(i - 1, j, 0);
   }
 
   inner::Bounds cell_bounds(Index c) const {

@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
+#include <delassus/geometry/inner/surface_topology.hpp>
 #include <delassus/geometry/triangle.hpp>
 
 #include <algorithm>
@@ -30,7 +31,8 @@ class TriangleMesh {
                             " must be in [0, " + std::to_string(vertices_.size()) + ")");
     normals_.resize(corners_.size());
     find_normals(vertices_, normals_);
-    find_neighbours();
+    topology_ = inner::SurfaceTopology(corners_, Index(vertices_.size()));
+    check_edges();
     tree_.build(triangle_count(), [&](Index t) { return bounds_of(t); });
   }
 
@@ -45,10 +47,29 @@ class TriangleMesh {
     out.normal = normals_[t];
     for (int k = 0; k < 3; ++k) out.point[k] = vertices_[corners_[t][k]];
     for (int k = 0; k < 3; ++k) {
-      const Index other = neighbours_[t][k];
+      const Index other = neighbour(t, k);
       out.lean[k] = other < 0 ? 1 : inner::lean_towards(out.normal, normals_[other], out.outward(k));
     }
     return out;
+  }
+
+  // --- what another surface asks: its tree and its features ------------------------------------------------
+
+  static constexpr Index triangles_per_item = 1;
+  const inner::FlatTree& tree() const { return tree_; }
+  const Vec3& vertex(Index v) const { return vertices_[v]; }
+  std::array<Vec3, 3> points_of(Index t) const {
+    const auto& [a, b, c] = corners_[t];
+    return {vertices_[a], vertices_[b], vertices_[c]};
+  }
+  const Vec3& normal(Index t) const { return normals_[t]; }
+  /// The triangle across edge k, −1 at the border.
+  Index neighbour(Index t, int k) const { return topology_.neighbour(t, k); }
+  bool owns_corner(Index t, int k) const { return topology_.owns_corner(t, k); }
+  bool owns_edge(Index t, int k) const { return topology_.owns_edge(t, k); }
+  template <class F>
+  void each_around(Index v, const F& f) const {
+    topology_.each_around(v, f);
   }
 
   /// Calls visit(t) for the triangles in every leaf of the tree whose box passes `meets(bounds)`.
@@ -97,45 +118,20 @@ class TriangleMesh {
     }
   }
 
-  /// Sorts all edges by their two vertices: those of one pair of triangles come to stand side by side.
-  void find_neighbours() {
-    struct Edge {
-      Index low, high, triangle;
-      int k;
-      bool is_forward;
-    };
-    std::vector<Edge> edges;
-    edges.reserve(3 * corners_.size());
-    for (Index t = 0; t < triangle_count(); ++t)
-      for (int k = 0; k < 3; ++k) {
-        const Index u = corners_[t][k], v = corners_[t][(k + 1) % 3];
-        edges.push_back({std::min(u, v), std::max(u, v), t, k, u < v});
-      }
-    std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
-      return std::array{x.low, x.high, x.triangle} < std::array{y.low, y.high, y.triangle};
+  void check_edges() const {
+    topology_.each_fault([](const inner::SharedEdge& e, bool is_crowded) {
+      const std::string which = "mesh edge (" + std::to_string(e.low) + ", " + std::to_string(e.high) +
+                                "): triangles #" + std::to_string(e.first) + " and #" +
+                                std::to_string(e.second);
+      DELASSUS_EXPECT(!is_crowded,
+                      which + " share it with #" + std::to_string(e.third) + "; at most two may");
+      inner::refuse(which + " run through it in one direction; both must be counter-clockwise from outside");
     });
-    neighbours_.assign(corners_.size(), {-1, -1, -1});
-    const auto is_one = [](const Edge& x, const Edge& y) { return x.low == y.low && x.high == y.high; };
-    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-      const Edge &x = edges[i], &y = edges[i + 1];
-      if (!is_one(x, y)) continue;
-      const std::string which = "mesh edge (" + std::to_string(x.low) + ", " + std::to_string(x.high) +
-                                "): triangles #" + std::to_string(x.triangle) + " and #" +
-                                std::to_string(y.triangle);
-      DELASSUS_EXPECT(
-          i + 2 >= edges.size() || !is_one(y, edges[i + 2]),
-          which + " share it with #" + std::to_string(edges[i + 2].triangle) + "; at most two may");
-      DELASSUS_EXPECT(
-          x.is_forward != y.is_forward,
-          which + " run through it in one direction; both must be counter-clockwise from outside");
-      neighbours_[x.triangle][x.k] = y.triangle;
-      neighbours_[y.triangle][y.k] = x.triangle;
-      ++i;
-    }
   }
 
   std::vector<Vec3> vertices_, normals_, moved_normals_;
-  std::vector<std::array<Index, 3>> corners_, neighbours_;
+  std::vector<std::array<Index, 3>> corners_;
+  inner::SurfaceTopology topology_;
   inner::FlatTree tree_;
 };
 

@@ -1,11 +1,12 @@
-/// Contacts of surfaces of triangles with convex shapes: collected by triangle, chosen by normal, named from
-/// step to step.
+/// Contacts of surfaces of triangles with convex shapes and with each other: collected by triangle, chosen by
+/// normal, named from step to step.
 #pragma once
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/hull_of_patch.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 
@@ -40,15 +41,30 @@ class SurfacePairs {
     const double reach = settings.contact_distance + widest_margin(a, b, scale, h, settings);
     const Index queries = is_plane ? collect_on_plane(surface, plane_of(b.shape, b_in_a), reach)
                                    : collect(surface, a, b, b_in_a, reach, scale, h, settings);
-    const Pair pair{a, b, b_in_a, pair_key(a.key, b.key), place_a, place_b, scale};
-    find_last(pair.key);
-    const std::size_t first_out = out.size();
-    while (!points_.empty()) {
-      split_group();
-      emit_group(pair, settings, first_out, out);
-    }
-    std::sort(out.begin() + std::ptrdiff_t(first_out), out.end(),
-              [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
+    emit({a, b, b_in_a, pair_key(a.key, b.key), place_a, place_b, scale}, settings, out);
+    return queries;
+  }
+
+  /// The same for two surfaces; returns how many pairs of triangles were looked at. What is deeper than the
+  /// margin, or than 2e-2 L, is found only where triangles reach as far.
+  template <class SurfaceA, class SurfaceB>
+  Index cross(const SurfaceA& surface_a, const SurfaceB& surface_b, std::span<const Collider> colliders,
+              Index place_a, Index place_b, double h, const CollisionSettings& settings,
+              std::vector<ContactPoint>& out) {
+    const Collider &a = colliders[place_a], &b = colliders[place_b];
+    const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
+                      .rotation = a.pose.rotation.transpose() * b.pose.rotation};
+    const double scale = pair_scale(a.shape, b.shape);
+    const double reach = settings.contact_distance + widest_margin(a, b, scale, h, settings);
+    const TouchRange range{std::max(reach, 2e-2 * scale), 0.5 * scale, scale};
+    features_.clear();
+    const PosedSurface<SurfaceA> posed_a{surface_a};
+    const PosedSurface<SurfaceB> posed_b{surface_b, b_in_a};
+    const Index queries = SurfaceCrossing(posed_a, posed_b, range, features_).collect();
+    points_.clear();
+    for (const FeatureContact& f : features_)
+      add_within_margin(a, b, f.point, f.normal, PatchTrust::sure, scale, h, settings);
+    emit({a, b, b_in_a, pair_key(a.key, b.key), place_a, place_b, scale}, settings, out);
     return queries;
   }
 
@@ -75,16 +91,17 @@ class SurfacePairs {
       Vec3 n;
       const PatchTrust trust = triangle_patch(surface.triangle(t), b.shape, b_in_a, reach, scale, patch_, n);
       if (trust == PatchTrust::none) return;
-      const Vec3 world = a.pose.rotation * n;
-      for (int i = 0; i < patch_.count; ++i) {
-        const PatchPoint& p = patch_.point[i];
-        const double margin =
-            settings.contact_distance + margin_along(a, b, world, a.pose.to_world(p.a), scale, h, settings);
-        if (p.gap <= margin) points_.push_back({p, n, trust});
-      }
+      for (int i = 0; i < patch_.count; ++i)
+        add_within_margin(a, b, patch_.point[i], n, trust, scale, h, settings);
     });
     drop_doubtful(scale);
     return queries;
+  }
+
+  void add_within_margin(const Collider& a, const Collider& b, const PatchPoint& p, const Vec3& n,
+                         PatchTrust trust, double scale, double h, const CollisionSettings& settings) {
+    const double margin = margin_along(a, b, a.pose.rotation * n, a.pose.to_world(p.a), scale, h, settings);
+    if (p.gap <= settings.contact_distance + margin) points_.push_back({p, n, trust});
   }
 
   /// Corners of the surface with a gap up to `reach` over a plane.
@@ -133,6 +150,18 @@ class SurfacePairs {
     is_claimed_.clear();
     for (std::size_t i = last_; i < memory_.size() && memory_[i].pair == key; ++i)
       is_claimed_.push_back(false);
+  }
+
+  /// Turns the points into contacts of the pair, group by group, sorted by feature.
+  void emit(const Pair& pair, const CollisionSettings& settings, std::vector<ContactPoint>& out) {
+    find_last(pair.key);
+    const std::size_t first_out = out.size();
+    while (!points_.empty()) {
+      split_group();
+      emit_group(pair, settings, first_out, out);
+    }
+    std::sort(out.begin() + std::ptrdiff_t(first_out), out.end(),
+              [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
   }
 
   /// Moves the first point, and all whose normals are within 5° of its own, into `group_`.
@@ -210,6 +239,7 @@ class SurfacePairs {
   }
 
   std::vector<SurfaceContact> points_, group_;
+  std::vector<FeatureContact> features_;
   Patch patch_;
   std::array<Index, Patch::capacity> source_{};
   HullOfPatch hull_;

@@ -82,12 +82,38 @@ class FlatTree {
     }
   }
 
+  /// Descends two trees together: calls visit(i, j) for the items of every two leaves whose boxes pass
+  /// `meets(box, other_box)`, which must hold for all boxes around them too.
+  template <class Meets, class Visit>
+  static void cross(const FlatTree& a, const FlatTree& b, const Meets& meets, const Visit& visit) {
+    if (!a.node_.empty() && !b.node_.empty()) cross_from(a, 0, b, 0, meets, visit);
+  }
+
  private:
   struct Node {
     Bounds box;
     Index skip = 0;              ///< the node after all that are below this one
     Index first = 0, count = 0;  ///< items of a leaf; none above
   };
+
+  /// The longer box is opened first; the depth is that of both trees.
+  template <class Meets, class Visit>
+  static void cross_from(const FlatTree& a, Index n, const FlatTree& b, Index m, const Meets& meets,
+                         const Visit& visit) {
+    const Node &x = a.node_[n], &y = b.node_[m];
+    if (!meets(x.box, y.box)) return;
+    if (x.count > 0 && y.count > 0) {
+      for (Index i = x.first; i < x.first + x.count; ++i)
+        for (Index j = y.first; j < y.first + y.count; ++j) visit(a.item_[i], b.item_[j]);
+    } else if (y.count > 0 || (x.count == 0 && length2(x.box) >= length2(y.box))) {
+      cross_from(a, n + 1, b, m, meets, visit);
+      cross_from(a, a.node_[n + 1].skip, b, m, meets, visit);
+    } else {
+      cross_from(a, n, b, m + 1, meets, visit);
+      cross_from(a, n, b, b.node_[m + 1].skip, meets, visit);
+    }
+  }
+  static double length2(const Bounds& b) { return (b.high - b.low).squaredNorm(); }
 
   /// Halves the items across the axis along which their centres spread most.
   void split(Index first, Index last, const std::vector<Vec3>& centre) {

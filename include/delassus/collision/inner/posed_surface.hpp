@@ -1,0 +1,85 @@
+/// A surface of triangles, put where another can be compared with it.
+#pragma once
+
+#include <delassus/collision/feature_touch.hpp>
+#include <delassus/geometry/inner/flat_tree.hpp>
+#include <delassus/math/pose.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace delassus::inner {
+
+/// A TriangleMesh or a HeightField in a frame that is not its own; all arguments and results are in that
+/// frame.
+template <class Surface>
+struct PosedSurface {
+  const Surface& surface;
+  Pose pose{};
+
+  std::array<Vec3, 3> points_of(Index t) const {
+    std::array<Vec3, 3> p = surface.points_of(t);
+    for (Vec3& x : p) x = pose.to_world(x);
+    return p;
+  }
+  Triangle triangle(Index t) const {
+    Triangle out = surface.triangle(t);
+    for (Vec3& x : out.point) x = pose.to_world(x);
+    out.normal = pose.rotation * out.normal;
+    return out;
+  }
+  SharpEdge edge(Index t, const Triangle& triangle, int k) const {
+    const Index other = surface.neighbour(t, k);
+    return {triangle, k, other < 0 ? Vec3(Vec3::Zero()) : Vec3(pose.rotation * surface.normal(other))};
+  }
+  /// A box that holds one of the surface's own frame.
+  Bounds bounds(const Bounds& own) const {
+    const Vec3 centre = pose.to_world(Vec3(0.5 * (own.low + own.high))), half = 0.5 * (own.high - own.low);
+    Vec3 reach;
+    for (int k = 0; k < 3; ++k)
+      reach[k] = std::abs(pose.rotation(k, 0)) * half[0] + std::abs(pose.rotation(k, 1)) * half[1] +
+                 std::abs(pose.rotation(k, 2)) * half[2];
+    return {centre - reach, centre + reach};
+  }
+
+  /// Whether no vertex around v lies farther along n, to 0.02 rad: n is in the normal cone of v.
+  bool is_farthest(Index v, const Vec3& n) const {
+    const Vec3 own = pose.rotation.transpose() * n, at = surface.vertex(v);
+    bool is_in_cone = true;
+    surface.each_around(v, [&](Index w) {
+      const Vec3 edge = surface.vertex(w) - at;
+      const double rise = own.dot(edge);
+      is_in_cone = is_in_cone && (rise <= 0 || rise * rise <= cone_slack * cone_slack * edge.squaredNorm());
+    });
+    return is_in_cone;
+  }
+
+  /// Whether x, `depth` behind the surface at `foot` whose normal there is n, is to leave that way: no
+  /// triangle is nearer, but for those in front of that plane, such as the floor to what is in the wall.
+  bool is_way_out(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {
+    const Vec3 at = pose.to_local(x), normal = pose.rotation.transpose() * n, base = pose.to_local(foot);
+    const Vec3 wide = Vec3::Constant(depth);
+    const Bounds near{at - wide, at + wide};
+    bool is_shortest = true;
+    surface.visit([&](const Bounds& box) { return is_shortest && box.meets(near); },
+                  [&](Index t) {
+                    if (!is_shortest) return;
+                    const Triangle other = plain(t);
+                    if ((at - nearest_on(other, at)).norm() >= 0.999 * depth) return;
+                    const Vec3 middle = (other.point[0] + other.point[1] + other.point[2]) / 3;
+                    is_shortest = normal.dot(middle - base) >= 0;
+                  });
+    return is_shortest;
+  }
+
+ private:
+  /// In the surface's own frame, without what it knows of its neighbours.
+  Triangle plain(Index t) const {
+    Triangle out;
+    out.point = surface.points_of(t);
+    out.normal = surface.normal(t);
+    return out;
+  }
+};
+
+}  // namespace delassus::inner

@@ -1,0 +1,135 @@
+/// Contacts of two surfaces of triangles by their features: vertices with triangles, edges with edges.
+#pragma once
+
+#include <delassus/collision/inner/posed_surface.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// A contact of two surfaces: triangles that have its features, and which of their edges crossed, −1 for a
+/// vertex and a triangle. b − a = gap · normal.
+struct FeatureContact {
+  PatchPoint point;
+  Vec3 normal;
+  Index triangle_a, triangle_b;
+  int edge_a = -1, edge_b = -1;
+  bool is_dropped = false;
+};
+
+/// Names of contacts within their pair: a vertex of either side, or two edges.
+inline std::uint32_t vertex_name(bool is_of_a, Index v) {
+  return (is_of_a ? 1u : 2u) << 30 | (std::uint32_t(v) & 0x3fffffffu);
+}
+inline std::uint32_t edges_name(Index t, int k, Index s, int l) {
+  const std::uint32_t e = 3u * std::uint32_t(t) + std::uint32_t(k),
+                      f = 3u * std::uint32_t(s) + std::uint32_t(l);
+  return 3u << 30 | ((e * 0x9e3779b9u + f * 0x85ebca6bu) & 0x3fffffffu);
+}
+
+/// Each feature is compared once, by the triangle that owns it, and only where its own surface allows the
+/// normal. A vertex behind a triangle must have its shortest way out there. Edges that crossed must cross
+/// still when the bodies part as far as a shallower contact says: else that one parts them.
+template <class A, class B>
+class SurfaceCrossing {
+ public:
+  SurfaceCrossing(const PosedSurface<A>& a, const PosedSurface<B>& b, const TouchRange& range,
+                  std::vector<FeatureContact>& out)
+      : a_(a), b_(b), range_(range), out_(out) {}
+
+  /// All contacts in the range, in an order that the two trees fix; returns how many pairs of triangles were
+  /// looked at.
+  Index collect() {
+    queries_ = 0;
+    const auto meets = [&](const Bounds& x, const Bounds& y) { return near(a_.bounds(x), b_.bounds(y)); };
+    FlatTree::cross(a_.surface.tree(), b_.surface.tree(), meets, [&](Index i, Index j) {
+      for (Index t = i * A::triangles_per_item; t < (i + 1) * A::triangles_per_item; ++t)
+        for (Index s = j * B::triangles_per_item; s < (j + 1) * B::triangles_per_item; ++s)
+          if (near(bounds_of(a_.points_of(t)), bounds_of(b_.points_of(s)))) compare(t, s);
+    });
+    for (FeatureContact& c : out_) c.is_dropped = c.edge_a >= 0 && c.point.gap < 0 && is_parted(c);
+    std::erase_if(out_, [](const FeatureContact& c) { return c.is_dropped; });
+    return queries_;
+  }
+
+ private:
+  static Bounds bounds_of(const std::array<Vec3, 3>& points) {
+    Bounds b;
+    for (const Vec3& p : points) b.add(p);
+    return b;
+  }
+  bool near(Bounds x, const Bounds& y) const {
+    const Vec3 wide = Vec3::Constant(range_.before);
+    x.low -= wide;
+    x.high += wide;
+    return x.meets(y);
+  }
+
+  void compare(Index t, Index s) {
+    ++queries_;
+    const Triangle T = a_.triangle(t), S = b_.triangle(s);
+    for (int k = 0; k < 3; ++k) {
+      if (b_.surface.owns_corner(s, k)) put_on(a_, t, T, b_, s, S, k, false);
+      if (a_.surface.owns_corner(t, k)) put_on(b_, s, S, a_, t, T, k, true);
+    }
+    for (int k = 0; k < 3; ++k) {
+      if (T.lean[k] < cone_slack || !a_.surface.owns_edge(t, k)) continue;
+      for (int l = 0; l < 3; ++l)
+        if (S.lean[l] >= cone_slack && b_.surface.owns_edge(s, l)) cross(t, T, k, s, S, l);
+    }
+  }
+
+  /// Corner k of the triangle S on the triangle T, whose surface is `faces`.
+  template <class Faces, class Points>
+  void put_on(const Faces& faces, Index t, const Triangle& T, const Points& points, Index s,
+              const Triangle& S, int k, bool is_point_of_a) {
+    const Vec3& x = S.point[k];
+    PointTouch touch;
+    if (!touches(T, x, range_, touch)) return;
+    if (touch.edge >= 0 && !faces.surface.owns_edge(t, touch.edge)) return;
+    if (touch.corner >= 0 && (!faces.surface.owns_corner(t, touch.corner) ||
+                              !faces.is_farthest(T.corner[touch.corner], touch.normal)))
+      return;
+    if (!points.is_farthest(S.corner[k], -touch.normal)) return;
+    if (touch.gap < 0 && !faces.is_way_out(x, touch.foot, touch.normal, -touch.gap)) return;
+    const std::uint32_t name = vertex_name(is_point_of_a, S.corner[k]);
+    if (is_point_of_a)
+      out_.push_back({{x, touch.foot, touch.gap, name}, -touch.normal, s, t});
+    else
+      out_.push_back({{touch.foot, x, touch.gap, name}, touch.normal, t, s});
+  }
+
+  void cross(Index t, const Triangle& T, int k, Index s, const Triangle& S, int l) {
+    EdgeTouch touch;
+    if (!touches(a_.edge(t, T, k), b_.edge(s, S, l), range_, touch)) return;
+    const PatchPoint point{touch.a, touch.b, touch.gap, edges_name(t, k, s, l)};
+    out_.push_back({point, touch.normal, t, s, k, l});
+  }
+
+  /// Whether a shallower contact in another direction parts the edges of c as well.
+  bool is_parted(const FeatureContact& c) const {
+    const SharpEdge e = a_.edge(c.triangle_a, a_.triangle(c.triangle_a), c.edge_a),
+                    f = b_.edge(c.triangle_b, b_.triangle(c.triangle_b), c.edge_b);
+    EdgeTouch touch;
+    for (const FeatureContact& o : out_) {
+      if (!(o.point.gap < 0 && o.point.gap > 0.999 * c.point.gap) || o.normal.dot(c.normal) > 0.9) continue;
+      SharpEdge moved = f;
+      const Vec3 way = -1.001 * o.point.gap * o.normal;
+      moved.from += way;
+      moved.to += way;
+      if (!touches(e, moved, range_, touch)) return true;
+    }
+    return false;
+  }
+
+  const PosedSurface<A>& a_;
+  const PosedSurface<B>& b_;
+  const TouchRange& range_;
+  std::vector<FeatureContact>& out_;
+  Index queries_ = 0;
+};
+
+}  // namespace delassus::inner
