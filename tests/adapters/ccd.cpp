@@ -15,7 +15,7 @@ TEST_CASE(
   check_backend<CcdCollision>();
 }
 
-TEST_CASE("under the certificate libccd misses no overlap and errs by no more than its portals do") {
+TEST_CASE("under the certificate libccd misses no overlap and errs by no more than its portals do", "[table]") {
   check_kernel<CcdKernel>();
 }
 

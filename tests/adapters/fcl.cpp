@@ -49,7 +49,7 @@ TEST_CASE(
   check_backend<FclCollision>();
 }
 
-TEST_CASE("under the certificate FCL misses no overlap and errs by no more than its portals do") {
+TEST_CASE("under the certificate FCL misses no overlap and errs by no more than its portals do", "[table]") {
   check_kernel<FclKernel>();
 }
 

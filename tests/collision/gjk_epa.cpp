@@ -20,7 +20,7 @@ Pose inverse(const Pose& p) {
 
 }  // namespace
 
-TEST_CASE("swapping the bodies turns the normal round") {
+TEST_CASE("swapping the bodies turns the normal round", "[table]") {
   const Zoo zoo;
   std::mt19937 random(7);
   // The depth is unique: twice the kernel's promise, 1e-9 L. So is the normal of bodies apart: turned by θ it proves a
@@ -83,7 +83,7 @@ TEST_CASE("exact touching, and all that rounding makes of it, gives the floor's 
           }
 }
 
-TEST_CASE("concentric bodies get a finite unit normal and the least sum of their thicknesses") {
+TEST_CASE("concentric bodies get a finite unit normal and the least sum of their thicknesses", "[table]") {
   const Zoo zoo;
   std::mt19937 random(9);
   for_each_pair(zoo.all, [&](const Shape& a, const Shape& b) {

@@ -18,7 +18,7 @@ auto scene() {
 
 }  // namespace
 
-TEST_CASE("at 1000 m/s a ball of 1 cm and a box of 2 cm never pass a plate of 1 mm") {
+TEST_CASE("at 1000 m/s a ball of 1 cm and a box of 2 cm never pass a plate of 1 mm", "[table]") {
   // 10 seeded shots, 500 where DELASSUS_SHOTS is set: from either side, oblique, the box turned and turning.
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -19,7 +19,9 @@ namespace delassus {
 inline bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale,
                     SignedPair& r) {
   if (r.status == PairStatus::failed || !is_finite(r.normal) || !std::isfinite(r.distance)) return false;
-  if (!(std::abs(r.normal.squaredNorm() - 1) < 1e-9)) return false;
+  const double excess = r.normal.squaredNorm() - 1;
+  if (!(std::abs(excess) < 1e-9)) return false;
+  if (std::abs(excess) > 1e-15) r.normal *= 1 - 0.5 * excess;  // else heights of 1 m would be off by 5e-10 m
   const Vec3& n = r.normal;
   const double height_a = n.dot(support(a, n));
   const double height_b = n.dot(b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * n)))));
@@ -42,6 +44,20 @@ inline bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const 
   if (r.status != PairStatus::near || !(other.squaredNorm() > 0.5)) return false;
   const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
   return -inner::Difference{a, b, b_in_a}.reach(other) > r.distance + tolerance;
+}
+
+/// The same for the axes of both bodies, either way, and the line of their centres.
+inline bool is_beaten_by_axes(const Shape& a, const Shape& b, const Pose& b_in_a, double scale,
+                              const SignedPair& r) {
+  const Vec3 centres = b_in_a.to_world(middle(b)) - middle(a);
+  const double length = centres.norm();
+  if (length > 0 && is_beaten(a, b, b_in_a, Vec3(centres / length), scale, r)) return true;
+  for (int k = 0; k < 3; ++k)
+    for (const double sign : {1.0, -1.0})
+      if (is_beaten(a, b, b_in_a, Vec3(sign * unit_axis(k)), scale, r) ||
+          is_beaten(a, b, b_in_a, Vec3(sign * b_in_a.rotation.col(k)), scale, r))
+        return true;
+  return false;
 }
 
 /// The answer of last resort: the least h(n) over the face normals of both bodies, the line of centres and

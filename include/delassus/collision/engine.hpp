@@ -7,6 +7,7 @@
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/resting_pair.hpp>
 #include <delassus/collision/inner/settle.hpp>
 #include <delassus/collision/manifold.hpp>
 #include <delassus/collision/pair_memory.hpp>
@@ -23,8 +24,8 @@ namespace delassus {
 template <NarrowKernel Kernel, BroadPhase Broad>
 class CollisionEngine {
  public:
-  /// Contacts within the margin of the pairs that the filter lets, sorted by pair and then by feature; `out` is
-  /// cleared first. h is the step, s.
+  /// Contacts within the margin of the pairs that the filter lets, sorted by pair and then by feature; `out`
+  /// is cleared first. h is the step, s.
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
                          std::vector<ContactPoint>& out, const Filter& filter = {}) {
@@ -33,7 +34,7 @@ class CollisionEngine {
     find_pairs(colliders, h, settings, filter);
     next_memory_.clear();
     std::size_t last = 0;
-    const PairMemory nothing;
+    const RestingPair nothing;
     for (const Job& job : jobs_) {
       while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
       const bool is_known = last < memory_.size() && memory_[last].pair == job.pair;
@@ -52,6 +53,7 @@ class CollisionEngine {
   void memory(auto& archive) { archive(memory_); }
 
  private:
+  using RestingPair = inner::RestingPair;
   struct Job {
     std::uint64_t pair;
     Index a, b;
@@ -66,9 +68,10 @@ class CollisionEngine {
     pairs_.clear();
     jobs_.clear();
     for (Index i = 0; i < Index(colliders.size()); ++i) {
-      DELASSUS_EXPECT(!colliders[i].shape.is_kept(),
-                      "a body has a mesh or a compound for its shape; put the WithMeshes{...} or WithCompounds{...} that "
-                      "keeps it around this loop's collision backend");
+      DELASSUS_EXPECT(
+          !colliders[i].shape.is_kept(),
+          "a body has a mesh or a compound for its shape; put the WithMeshes{...} or WithCompounds{...} that "
+          "keeps it around this loop's collision backend");
       const bool is_bounded = colliders[i].shape.kind != ShapeKind::half_space;
       if (!is_bounded) half_spaces_.push_back(i);
       boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
@@ -106,14 +109,21 @@ class CollisionEngine {
 
   /// One pair: distance, patch, choice of points, names. In the frame of A until the points are written.
   void collide(std::span<const Collider> colliders, const Job& job, double h,
-               const CollisionSettings& settings, const PairMemory& last, std::vector<ContactPoint>& out) {
+               const CollisionSettings& settings, const RestingPair& last, std::vector<ContactPoint>& out) {
     const Collider &a = colliders[job.a], &b = colliders[job.b];
     const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
                       .rotation = a.pose.rotation.transpose() * b.pose.rotation};
     const double scale = inner::pair_scale(a.shape, b.shape);
     const double reach = settings.contact_distance + inner::widest_margin(a, b, scale, h, settings);
-    PairMemory& now = next_memory_.emplace_back();
+    RestingPair& now = next_memory_.emplace_back();
     now.pair = job.pair;
+    const std::uint64_t shapes = inner::fingerprint(a.shape) * 3 + inner::fingerprint(b.shape);
+    if (Vec3 n; now.repeat(last, shapes, b_in_a, reach, scale, repeated_, n)) {
+      now.normal = a.pose.rotation * n;
+      for (int k = 0; k < now.count; ++k)
+        add(a, job, settings, now.normal, repeated_[k], now.point[k].id, out);
+      return sort_last(now.count, out);
+    }
     now.owner = last.owner;
     ++report_.queries;
 
@@ -127,6 +137,7 @@ class CollisionEngine {
     if (!is_half_space(a) && !is_half_space(b))
       contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
     emit(a, job, b_in_a, settings, scale, last, now, out);
+    now.keep(shapes, b_in_a, r.normal, margin);
   }
 
   static bool is_half_space(const Collider& c) { return c.shape.kind == ShapeKind::half_space; }
@@ -134,13 +145,14 @@ class CollisionEngine {
   /// The certified signed distance. Of a half-space the patch comes with it.
   SignedPair measure(const Collider& a, const Collider& b, const Pose& b_in_a, double reach, double scale,
                      const PairMemory& last, PairMemory& now) {
+    if (is_half_space(a) || is_half_space(b))
+      now.owner = is_half_space(a) ? inner::NormalOwner::a : inner::NormalOwner::b;
     if (is_half_space(a))
       return half_space_patch(b.shape, b_in_a, inner::plane_of(a.shape, Pose{}), true, reach, scale, patch_);
     if (is_half_space(b))
       return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
     const Vec3 guess = a.pose.rotation.transpose() * last.normal;
-    const auto [answer, is_rejected] =
-        certified_pair(kernel_, a.shape, b.shape, b_in_a, reach, scale, guess);
+    const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, b_in_a, reach, scale, guess);
     report_.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
     if (r.status == PairStatus::near)
@@ -161,17 +173,26 @@ class CollisionEngine {
         const PatchPoint& p = patch_.point[i];
         const std::uint32_t id = is_old ? last.point[before].id : inner::fresh_id(p.name, now);
         now.point[now.count++] = {p.name, id, p.a, b_in_a.to_local(p.b)};
-        const Vec3 shift = 0.5 * settings.contact_distance * now.normal;
-        out.push_back({.a = job.a,
-                       .b = job.b,
-                       .point_a = a.pose.to_world(p.a) + shift,
-                       .point_b = a.pose.to_world(p.b) - shift,
-                       .normal = now.normal,
-                       .gap = p.gap - settings.contact_distance,
-                       .pair = job.pair,
-                       .feature = id});
+        add(a, job, settings, now.normal, p, id, out);
       }
-    std::sort(out.end() - choice.count, out.end(),
+    sort_last(choice.count, out);
+  }
+
+  static void add(const Collider& a, const Job& job, const CollisionSettings& settings, const Vec3& normal,
+                  const PatchPoint& p, std::uint32_t id, std::vector<ContactPoint>& out) {
+    const Vec3 shift = 0.5 * settings.contact_distance * normal;
+    out.push_back({.a = job.a,
+                   .b = job.b,
+                   .point_a = a.pose.to_world(p.a) + shift,
+                   .point_b = a.pose.to_world(p.b) - shift,
+                   .normal = normal,
+                   .gap = p.gap - settings.contact_distance,
+                   .pair = job.pair,
+                   .feature = id});
+  }
+
+  static void sort_last(int count, std::vector<ContactPoint>& out) {
+    std::sort(out.end() - count, out.end(),
               [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
   }
 
@@ -184,7 +205,8 @@ class CollisionEngine {
   std::vector<Index> half_spaces_;
   std::vector<CandidatePair> pairs_;
   std::vector<Job> jobs_;
-  std::vector<PairMemory> memory_, next_memory_;
+  std::vector<RestingPair> memory_, next_memory_;
+  std::array<PatchPoint, PairMemory::capacity> repeated_;
 };
 
 }  // namespace delassus

@@ -32,6 +32,11 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
   r.simplex.weight[0] = 1;
   Vec3 v = r.simplex.p[0].w;
   double size = v.norm(), length = size;
+  // Of round cores the gap is what the radius leaves of the length: it shall have digits as well.
+  const double radius = difference.radius();
+  const auto slack = [&](double l) {
+    return radius > 0 ? std::min(1e-10 * l, std::max(1e-7 * std::abs(l - radius), 1e-15 * size)) : 1e-10 * l;
+  };
   const auto prove = [&](const Vec3& n) {
     const DifferencePoint q = difference.core(n);
     size = std::max(size, q.w.norm());
@@ -43,7 +48,7 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
   for (int iteration = 0; iteration < 128 && length > 1e-10 * size; ++iteration) {
     const Vec3 n = -v / length;
     const DifferencePoint q = prove(n);
-    if (r.separation > margin || length + n.dot(q.w) <= 1e-10 * length) return r;
+    if (r.separation > margin || length + n.dot(q.w) <= slack(length)) return r;
     for (int i = 0; i < r.simplex.count; ++i)
       if ((q.w - r.simplex.p[i].w).squaredNorm() <= 1e-28 * size * size) return r;
     const Simplex before = r.simplex;

@@ -10,6 +10,8 @@ namespace delassus {
 /// Exact to 1e-9 of the size for any convex pair, apart, touching or deep. Scale free: no absolute length
 /// enters.
 struct GjkEpa {
+  static constexpr bool gives_least_depth = true;
+
   SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
                   PairCache& cache) const noexcept {
     SignedPair r;

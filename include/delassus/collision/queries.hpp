@@ -7,6 +7,7 @@
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/core/expect.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -72,6 +73,19 @@ inline bool enter(const Shape& s, const Vec3& origin, const Vec3& direction, dou
   return true;
 }
 
+/// The farthest any point of the box is from `point`, m.
+inline double farthest(const Aabb& box, const Vec3& point) {
+  Vec3 far;
+  for (int k = 0; k < 3; ++k)
+    far[k] = std::max(std::abs(box.min()[k] - point[k]), std::abs(box.max()[k] - point[k]));
+  return far.norm();
+}
+
+/// By this share of the farthest point's distance an answer may stand before the box of its body: a ray ends
+/// 1e-10 short of the surface, GJK's bounds meet to as much. So what is left out could not have been the
+/// answer, in whatever order bodies are asked.
+inline constexpr double box_slack = 1e-9;
+
 /// True when the ray meets the box within `reach`; a ray along a side may miss it or not.
 inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction, double reach) {
   double first = 0, last = reach;
@@ -90,7 +104,8 @@ inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction
 /// What is asked of a body whose shape a backend keeps: nothing can be.
 struct RefuseKept {
   void operator()(const auto& set, Index b, const Shape& shape) const {
-    refuse(set.who(b) + ": a " + name(shape.kind) + " is known to its backend alone; name it in the question (" +
+    refuse(set.who(b) + ": a " + name(shape.kind) +
+           " is known to its backend alone; name it in the question (" +
            "delassus/collision/mesh_queries.hpp), or leave the group out of the mask");
   }
 };
@@ -99,20 +114,37 @@ struct PassKept {
   void operator()(const auto&, Index, const Shape&) const {}
 };
 
-/// f(set, s, b, shape, pose) for every body with a shape whose group meets the mask, kept(set, b, shape) for those that
-/// a backend keeps; one that is not finite has none.
-template <class World, class F, class Kept>
-void each_shape(const World& world, std::uint32_t groups, const Kept& kept, const F& f) {
-  world.each([&](const auto& set, auto s) {
-    for (Index b = 0; b < set.blocks(); ++b) {
-      if (!set.has_collider(b) || (set.group(b) & groups) == 0) continue;
-      const Pose pose = set.pose(b);
-      if (!is_finite(pose.position) || !is_finite(pose.rotation)) continue;
-      const Shape shape = set.shape(b);
-      shape.is_kept() ? kept(set, b, shape) : f(set, Index(s), b, shape, pose);
-    }
-  });
+/// f(set, s, b, shape, pose) for body b of set s when it has a shape and its group meets the mask, kept(set,
+/// b, shape) when a backend keeps that; a body that is not finite has none.
+template <class Set, class F, class Kept>
+void ask(const Set& set, Index s, Index b, std::uint32_t groups, const Kept& kept, const F& f) {
+  if (!set.has_collider(b) || (set.group(b) & groups) == 0) return;
+  const Pose pose = set.pose(b);
+  if (!is_finite(pose.position) || !is_finite(pose.rotation)) return;
+  const Shape shape = set.shape(b);
+  shape.is_kept() ? kept(set, b, shape) : f(set, s, b, shape, pose);
 }
+
+}  // namespace inner
+
+/// All bodies, one by one: what is asked where no `BodyTree` is named.
+struct EveryBody {
+  /// f(set, s, b, shape, pose) for the half-spaces, and for the bodies whose tight box passes `meets`.
+  template <class World, class Kept, class Meets, class F>
+  void visit(const World& world, std::uint32_t groups, const Kept& kept, const Meets& meets,
+             const F& f) const {
+    world.each([&](const auto& set, auto s) {
+      for (Index body = 0; body < set.blocks(); ++body)
+        inner::ask(set, Index(s), body, groups, kept,
+                   [&](const auto& of, Index, Index b, const Shape& shape, const Pose& pose) {
+                     if (shape.kind == ShapeKind::half_space || meets(tight_box(shape, pose)))
+                       f(of, Index(s), b, shape, pose);
+                   });
+    });
+  }
+};
+
+namespace inner {
 
 template <class Set>
 SurfacePoint surface_point(const Set& set, Index s, Index b, const Pose& pose, const Vec3& point,
@@ -123,6 +155,86 @@ SurfacePoint surface_point(const Set& set, Index s, Index b, const Pose& pose, c
   return found;
 }
 
+/// Of two answers that are equally near, the body that comes first in the world.
+inline bool comes_before(Index s, Index b, const Anchor& other) {
+  return s != other.set ? s < other.set : b < other.block;
+}
+
+template <class World, class Bodies, class Kept>
+SurfacePoint first_on_ray(const World& world, const Bodies& bodies, const Vec3& origin, const Vec3& direction,
+                          double reach, std::uint32_t groups, const Kept& kept) {
+  const Vec3 along = direction_of(direction);
+  DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
+                  "ray_cast: origin and direction must be finite and the direction not zero");
+  DELASSUS_EXPECT(reach >= 0, "ray_cast: reach " + text(reach) + " m must be >= 0");
+  SurfacePoint first;
+  double nearest = reach;
+  const auto meets = [&](const Aabb& box) {
+    const Vec3 slack = Vec3::Constant(box_slack * farthest(box, origin));
+    return ray_meets(Aabb(box.min() - slack, box.max() + slack), origin, along, nearest);
+  };
+  bodies.visit(world, groups, kept, meets,
+               [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
+                 double way = 0;
+                 Vec3 normal;
+                 const Vec3 local = pose.rotation.transpose() * along;
+                 if (!enter(shape, pose.to_local(origin), local, nearest, way, normal)) return;
+                 if (first && (way > nearest || (way == nearest && !comes_before(s, b, first.anchor))))
+                   return;
+                 nearest = way;
+                 first = surface_point(set, s, b, pose, origin + way * along, pose.rotation * normal, way);
+               });
+  return first;
+}
+
+template <class World, class Bodies, class Kept>
+SurfacePoint nearest_surface(const World& world, const Bodies& bodies, const Vec3& point, double reach,
+                             std::uint32_t groups, const Kept& kept) {
+  DELASSUS_EXPECT(is_finite(point), "closest_point: the point is not finite");
+  DELASSUS_EXPECT(reach >= 0, "closest_point: reach " + text(reach) + " m must be >= 0");
+  SurfacePoint best;
+  double limit = reach;
+  const auto meets = [&](const Aabb& box) {
+    return box.exteriorDistance(point) <= std::max(limit, 0.0) + box_slack * farthest(box, point);
+  };
+  bodies.visit(
+      world, groups, kept, meets,
+      [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
+        const SignedPair r = measure_point(shape, pose.to_local(point));
+        if (!(r.distance <= limit) || (best && r.distance == limit && !comes_before(s, b, best.anchor)))
+          return;
+        limit = r.distance;
+        best = surface_point(set, s, b, pose, pose.to_world(r.point_a), pose.rotation * r.normal, r.distance);
+      });
+  return best;
+}
+
+template <class World, class Bodies, class Kept>
+void all_overlaps(const World& world, const Bodies& bodies, const Shape& shape, const Pose& pose,
+                  std::vector<SurfacePoint>& found, double margin, std::uint32_t groups, const Kept& kept) {
+  check(shape, "overlaps");
+  DELASSUS_EXPECT(shape.has_volume(),
+                  std::string("overlaps: a ") + name(shape.kind) + " has no volume to overlap with");
+  DELASSUS_EXPECT(is_finite(pose.position) && is_finite(pose.rotation), "overlaps: the pose is not finite");
+  found.clear();
+  const Vec3 more = Vec3::Constant(margin);
+  const Aabb tight = tight_box(shape, pose), box(tight.min() - more, tight.max() + more);
+  bodies.visit(
+      world, groups, kept, [&](const Aabb& other) { return other.intersects(box); },
+      [&](const auto& set, Index s, Index b, const Shape& other, const Pose& at) {
+        const Pose relative{.position = at.to_local(pose.position),
+                            .rotation = at.rotation.transpose() * pose.rotation};
+        const SignedPair r = measure(other, shape, relative, margin);
+        if (r.status != PairStatus::near || r.distance > margin) return;
+        found.push_back(
+            surface_point(set, s, b, at, at.to_world(r.point_a), at.rotation * r.normal, r.distance));
+      });
+  const auto order = [](const SurfacePoint& p, const SurfacePoint& q) {
+    return comes_before(p.anchor.set, p.anchor.block, q.anchor);
+  };
+  if (!std::is_sorted(found.begin(), found.end(), order)) std::sort(found.begin(), found.end(), order);
+}
+
 }  // namespace inner
 
 /// The first body that the ray from `origin` along `direction` (any length) meets within `reach` m. A body
@@ -131,26 +243,7 @@ SurfacePoint surface_point(const Set& set, Index s, Index b, const Pose& pose, c
 template <class World, class Kept = inner::RefuseKept>
 SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direction,
                       double reach = inner::forever, std::uint32_t groups = ~0u, const Kept& kept = {}) {
-  const Vec3 along = inner::direction_of(direction);
-  DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
-                  "ray_cast: origin and direction must be finite and the direction not zero");
-  DELASSUS_EXPECT(reach >= 0, "ray_cast: reach " + inner::text(reach) + " m must be >= 0");
-  SurfacePoint first;
-  double nearest = reach;
-  inner::each_shape(
-      world, groups, kept, [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
-        if (shape.kind != ShapeKind::half_space &&
-            !inner::ray_meets(tight_box(shape, pose), origin, along, nearest))
-          return;
-        double way = 0;
-        Vec3 normal;
-        const Vec3 local = pose.rotation.transpose() * along;
-        if (!inner::enter(shape, pose.to_local(origin), local, nearest, way, normal)) return;
-        if (first && !(way < first.distance)) return;
-        nearest = way;
-        first = inner::surface_point(set, s, b, pose, origin + way * along, pose.rotation * normal, way);
-      });
-  return first;
+  return inner::first_on_ray(world, EveryBody{}, origin, direction, reach, groups, kept);
 }
 
 /// The surface point nearest to `point`, of all bodies within `reach` m. Inside a body the distance is
@@ -158,21 +251,7 @@ SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direct
 template <class World, class Kept = inner::RefuseKept>
 SurfacePoint closest_point(const World& world, const Vec3& point, double reach = inner::forever,
                            std::uint32_t groups = ~0u, const Kept& kept = {}) {
-  DELASSUS_EXPECT(is_finite(point), "closest_point: the point is not finite");
-  DELASSUS_EXPECT(reach >= 0, "closest_point: reach " + inner::text(reach) + " m must be >= 0");
-  SurfacePoint best;
-  inner::each_shape(world, groups, kept,
-                    [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
-                      const double limit = best ? best.distance : reach;
-                      if (shape.kind != ShapeKind::half_space &&
-                          tight_box(shape, pose).exteriorDistance(point) > std::max(limit, 0.0))
-                        return;
-                      const SignedPair r = inner::measure_point(shape, pose.to_local(point));
-                      if (!(r.distance <= limit) || (best && r.distance == limit)) return;
-                      best = inner::surface_point(set, s, b, pose, pose.to_world(r.point_a),
-                                                  pose.rotation * r.normal, r.distance);
-                    });
-  return best;
+  return inner::nearest_surface(world, EveryBody{}, point, reach, groups, kept);
 }
 
 /// Every body that overlaps `shape` at `pose`, or comes within `margin` m of it: the point of each that lies
@@ -180,23 +259,7 @@ SurfacePoint closest_point(const World& world, const Vec3& point, double reach =
 template <class World, class Kept = inner::RefuseKept>
 void overlaps(const World& world, const Shape& shape, const Pose& pose, std::vector<SurfacePoint>& found,
               double margin = 0, std::uint32_t groups = ~0u, const Kept& kept = {}) {
-  check(shape, "overlaps");
-  DELASSUS_EXPECT(shape.has_volume(),
-                  std::string("overlaps: a ") + name(shape.kind) + " has no volume to overlap with");
-  DELASSUS_EXPECT(is_finite(pose.position) && is_finite(pose.rotation), "overlaps: the pose is not finite");
-  found.clear();
-  const Vec3 more = Vec3::Constant(margin);
-  const Aabb tight = tight_box(shape, pose), box(tight.min() - more, tight.max() + more);
-  inner::each_shape(
-      world, groups, kept, [&](const auto& set, Index s, Index b, const Shape& other, const Pose& at) {
-        if (other.kind != ShapeKind::half_space && !tight_box(other, at).intersects(box)) return;
-        const Pose relative{.position = at.to_local(pose.position),
-                            .rotation = at.rotation.transpose() * pose.rotation};
-        const SignedPair r = inner::measure(other, shape, relative, margin);
-        if (r.status != PairStatus::near || r.distance > margin) return;
-        found.push_back(
-            inner::surface_point(set, s, b, at, at.to_world(r.point_a), at.rotation * r.normal, r.distance));
-      });
+  inner::all_overlaps(world, EveryBody{}, shape, pose, found, margin, groups, kept);
 }
 
 /// The shortest way between the surfaces of two posed shapes; of two half-spaces there is none.

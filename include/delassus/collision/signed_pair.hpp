@@ -28,13 +28,12 @@ struct PairCache {
 };
 
 /// A kernel answers for shapes other than half-spaces, with B posed in the frame of A. It need not be right:
-/// each answer is certified, and replaced when it fails. It must not throw, and must give the same answer
-/// when asked again.
+/// each answer is certified, and replaced when it fails, as it is when the kernel throws. It must give the
+/// same answer when asked again.
 template <class K>
 concept NarrowKernel = requires(K& k, const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
                                 PairCache& cache) {
-  { k.pair(a, b, b_in_a, margin, cache) }
-  noexcept->std::same_as<SignedPair>;  // signed distance up to `margin`, m
+  { k.pair(a, b, b_in_a, margin, cache) } -> std::same_as<SignedPair>;  // signed distance up to `margin`, m
 };
 
 }  // namespace delassus
