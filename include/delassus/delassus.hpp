@@ -33,6 +33,7 @@
 #include <delassus/constraints/joints/weld.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
+#include <delassus/integrators/lie_poisson.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
 #include <delassus/listeners/convergence_record.hpp>
 #include <delassus/listeners/double_buffer.hpp>

@@ -34,8 +34,7 @@ class AnimationLoop {
   static constexpr bool has_constraints = Laws::pool_count > 0;
   static constexpr bool may_rest = has_constraints && has_dormant<typename Parts::Activity>;
   /// The integrator solves for joints and bodies together: there is no W, and no problem to hand out.
-  static constexpr bool solves_whole_step =
-      has_constraints && requires { requires Parts::Integrator::solves_whole_step; };
+  static constexpr bool solves_whole_step = delassus::solves_whole_step<typename Parts::Integrator, has_constraints>;
   /// A policy of the list, by type.
   template <class P>
   static constexpr bool has = (std::is_same_v<P, Policies> || ...);

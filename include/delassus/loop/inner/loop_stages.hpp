@@ -168,12 +168,17 @@ template <class... Policies>
 void AnimationLoop<Policies...>::solve_whole_step() {
   if constexpr (solves_whole_step) {
     linearize();
-    work_.reports.assign(1, work_.hold.solve(world(), laws(), work_.rows, part<role::Integrator>(), h_));
-    report_.status = worse(report_.status, work_.reports[0].status);
-    report_.residual = work_.reports[0].measure.residual;
-    report_.islands = 1;
-    keep_impulses(laws(), work_.rows, work_.contacts);
-    inner::note_broken(laws(), h_);
+    if constexpr (has_constraints) {
+      work_.reports.assign(1, work_.whole_step.solve(world(), laws(), work_.rows, part<role::Integrator>(), h_));
+      report_.status = worse(report_.status, work_.reports[0].status);
+      report_.residual = work_.reports[0].measure.residual;
+      report_.islands = 1;
+      keep_impulses(laws(), work_.rows, work_.contacts);
+      inner::note_broken(laws(), h_);
+    } else {
+      typename Work::Rows none;
+      work_.whole_step.solve(world(), laws(), none, part<role::Integrator>(), h_);
+    }
     tell<stage::Solve>();
     tell<stage::Correct>();
   }
