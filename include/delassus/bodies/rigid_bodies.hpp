@@ -91,7 +91,6 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
-
   Vec3 position(Handle body) const { return position_of(checked(body)); }
   Quat orientation(Handle body) const { return state_.q[checked(body)].template cast<double>(); }
   using Places::velocity;
@@ -210,6 +209,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
       else ++held_;
     }
   }
+  auto& targets() { return targets_; }
 
   /// What collision detection needs of each body.
   bool has_collider(Index b) const { return this->is_alive(b) && shapes_.kind(b) != ShapeKind::none; }

@@ -243,6 +243,14 @@ consteval bool whole_step_fits() {
   }
 }
 
+/// A step in parts has one detection: who sleeps or wakes between them would be missing in it.
+template <class Scheme, class Activity>
+consteval bool substeps_fit() {
+  constexpr bool fit = !(requires { requires Scheme::divides_step; } && has_dormant<Activity>);
+  static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
+  return fit;
+}
+
 template <class Scheme, class Loop>
 consteval bool scheme_runs() {
   constexpr bool runs = requires(const Scheme& scheme, Loop& loop) {
@@ -284,6 +292,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
   else if constexpr (!constraints_are_sound<Parts>()) return false;
   else if constexpr (!whole_step_fits<Parts, Policies...>()) return false;
+  else if constexpr (!substeps_fit<typename Parts::Scheme, typename Parts::Activity>()) return false;
   else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;
   else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
 }

@@ -82,6 +82,17 @@ struct whole_step<I, World, Laws, Rows> {
   using type = typename I::template WholeStep<World, Laws, Rows>;
 };
 
+/// A scheme that does a step in parts brings what it needs for that.
+template <class Scheme, class World, class Laws, class Rows>
+struct substeps_of {
+  using type = Nothing<8>;
+};
+template <class Scheme, class World, class Laws, class Rows>
+  requires requires { requires Scheme::divides_step; }
+struct substeps_of<Scheme, World, Laws, Rows> {
+  using type = typename Scheme::template Parts<World, Laws, Rows>;
+};
+
 /// Arrays of a step; `reset` keeps their capacity, so a warm step allocates nothing.
 template <class World, class Laws, class Compliance, class Solver, class Integrator, class Stabilisation,
           class Scheme, class Activity>
@@ -112,6 +123,7 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<predicts, Impulses<Rows>, Nothing<5>> predicted;
   [[no_unique_address]] typename whole_step<Integrator, World, Laws, Rows>::type whole_step;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
+  [[no_unique_address]] typename substeps_of<Scheme, World, Laws, Rows>::type substeps;
 };
 
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
@@ -120,6 +132,7 @@ struct Workspace<World, Constraints<>, C, S, I, St, Sc, Ac> {
   using Rows = typename rows_of<World, Constraints<>>::type;
   explicit Workspace(const auto&) {}
   [[no_unique_address]] typename inner::whole_step<I, World, Constraints<>, Rows>::type whole_step;
+  [[no_unique_address]] typename substeps_of<Sc, World, Constraints<>, Rows>::type substeps;
 };
 
 }  // namespace delassus::inner

@@ -233,6 +233,35 @@ void AnimationLoop<Policies...>::advance() {
 }
 
 template <class... Policies>
+void AnimationLoop<Policies...>::begin_substeps(int count) {
+  if constexpr (divides_step) {
+    work_.substeps.begin(world(), count, h_, start_, steps_);
+    start_ = time();
+    steps_ = 0;
+    h_ /= count;
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::end_substep(int left) {
+  if constexpr (divides_step) {
+    auto& parts = work_.substeps;
+    if constexpr (has_constraints) parts.add_impulses(laws(), work_.contacts);
+    if (left > 0) {
+      parts.go_on(world(), left);
+      if constexpr (Laws::has_contacts) parts.follow(std::as_const(*this).world(), laws(), work_, h_);
+      last_h_ = h_;
+    } else {
+      if constexpr (has_constraints) parts.give_impulses(laws(), work_.contacts);
+      h_ = parts.h;
+      start_ = parts.start;
+      steps_ = parts.steps + 1;
+      report_.time = time();
+    }
+  }
+}
+
+template <class... Policies>
 void AnimationLoop<Policies...>::end_advance() {
   if (report_.quarantined > 0) report_.status = worse(report_.status, Status::quarantined);
   ++steps_;
