@@ -15,6 +15,7 @@
 #include <delassus/constraints/contact/frictionless.hpp>
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
+#include <delassus/constraints/contact/sequential_restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/constraints/joints/breakable.hpp>
 #include <delassus/constraints/joints/coupling.hpp>

@@ -50,12 +50,18 @@ using PoolRowsOf = typename pool_rows_of<W, R>::type;
 template <class L>
 inline constexpr bool law_restitutes = requires(const L& law, const typename L::Item& i) { law.restitution(i); };
 
+/// The law inside `Contact` lets impacts go from contact to contact.
+template <class L>
+inline constexpr bool passes_impacts_on =
+    requires(const L& law) { requires std::remove_cvref_t<decltype(law.law)>::passes_impacts_on; };
+
 template <class World, class Laws>
 struct rows_of;
 template <class World, class... L>
 struct rows_of<World, Constraints<L...>> {
   using type = RowSystem<typename World::Scalar, typename widths_of<World>::type, L::rows...>;
   static constexpr bool restitutes = (law_restitutes<L> || ...);
+  static constexpr bool passes_impacts_on = (inner::passes_impacts_on<L> || ...);
 };
 
 /// Takes no room, once for each thing that is absent.
@@ -100,6 +106,7 @@ struct Workspace {
   using Rows = typename rows_of<World, Laws>::type;
   using Operator = typename Compliance::template Operator<Rows>;
   static constexpr bool restitutes = rows_of<World, Laws>::restitutes;
+  static constexpr bool passes_impacts_on = rows_of<World, Laws>::passes_impacts_on;
   static constexpr bool at_midpoint = requires { requires Integrator::linearises_at_midpoint; };
   static constexpr bool has_dormant = delassus::has_dormant<Activity>;
   static constexpr bool predicts = requires { requires Scheme::predicts; };
@@ -124,6 +131,7 @@ struct Workspace {
   [[no_unique_address]] typename whole_step<Integrator, World, Laws, Rows>::type whole_step;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
   [[no_unique_address]] typename substeps_of<Scheme, World, Laws, Rows>::type substeps;
+  [[no_unique_address]] std::conditional_t<passes_impacts_on, std::vector<Vec3>, Nothing<9>> impacts;
 };
 
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.

@@ -6,6 +6,7 @@
 #include <delassus/loop/stages/correct.hpp>
 #include <delassus/loop/stages/free_motion.hpp>
 #include <delassus/loop/stages/linearize.hpp>
+#include <delassus/loop/stages/pass_on_impacts.hpp>
 #include <delassus/loop/stages/predict.hpp>
 #include <delassus/loop/stages/project_position.hpp>
 #include <delassus/loop/stages/push_apart.hpp>
@@ -79,6 +80,8 @@ void AnimationLoop<Policies...>::linearize() {
     if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
     else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
     warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
+    if constexpr (Work::passes_impacts_on)
+      pass_on_impacts(world(), laws(), work_.rows, work_.impacts, work_.contacts.results.size(), h_);
     report_.rows = work_.rows.row_count();
     report_.max_joint_violation = worst_equality(laws(), work_.rows);
   }
@@ -160,6 +163,8 @@ void AnimationLoop<Policies...>::solve() {
     inner::note_broken(laws(), h_);
     forget_lost_islands(laws(), work_.rows, work_.W, work_.contacts, work_.islands, work_.reports);
     work_.contacts.remember();
+    if constexpr (Work::passes_impacts_on)  // they are no start for the next step
+      for (std::size_t i = 0; i < work_.impacts.size(); ++i) work_.contacts.results[i].impulse += work_.impacts[i];
   }
   tell<stage::Solve>();
 }
