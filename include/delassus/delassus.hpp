@@ -15,6 +15,7 @@
 #include <delassus/constraints/contact/frictionless.hpp>
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
+#include <delassus/constraints/contact/sequential_restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/constraints/joints/breakable.hpp>
 #include <delassus/constraints/joints/coupling.hpp>
@@ -33,6 +34,7 @@
 #include <delassus/constraints/joints/weld.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
+#include <delassus/integrators/lie_poisson.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
 #include <delassus/listeners/convergence_record.hpp>
 #include <delassus/listeners/double_buffer.hpp>

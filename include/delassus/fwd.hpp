@@ -40,6 +40,7 @@ struct Weld;
 struct SymplecticEuler;
 struct ImplicitEuler;
 struct ImplicitMidpoint;
+struct LiePoisson;
 struct MatrixFreeCompliance;
 struct HandPicked;
 struct Sleeping;

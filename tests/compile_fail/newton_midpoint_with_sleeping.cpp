@@ -1,4 +1,4 @@
-// expect: delassus: NewtonMidpoint makes its step at once, without W
+// expect: delassus: NewtonMidpoint, Rattle and RungeKutta4 make their step at once, without W
 #include <delassus/delassus.hpp>
 #include <delassus/loop/newton_midpoint.hpp>
 

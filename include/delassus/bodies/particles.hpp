@@ -1,6 +1,7 @@
 /// Point masses as a structure of arrays, with springs between them and to points of the world.
 #pragma once
 
+#include <delassus/bodies/inner/particle_path.hpp>
 #include <delassus/bodies/inner/places.hpp>
 #include <delassus/bodies/springs.hpp>
 #include <delassus/core/expect.hpp>
@@ -191,6 +192,19 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
       if (moves(b)) x_[b] += T(h) * v_[b];
   }
   void restore() { x_ = shifted_x_; }
+
+  /// What a scheme that finds x and v of the end itself does with each particle; it leaves x there, and v_next.
+  using Path = inner::ParticlePath<T>;
+  auto& state() { return x_; }
+  void arrive(double) {
+    held_ = 0;
+    for (const Index b : slots_.active()) {
+      load_[b].setZero();
+      if (!moves(b)) continue;
+      if (is_finite(v_next[b])) v_[b] = v_next[b];
+      else ++held_;
+    }
+  }
 
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
   Shape shape(Index b) const { return Sphere{radius_[b]}; }

@@ -4,6 +4,7 @@
 #include <delassus/bodies/body_input.hpp>
 #include <delassus/bodies/inner/places.hpp>
 #include <delassus/bodies/inner/rigid_midpoint.hpp>
+#include <delassus/bodies/inner/rigid_path.hpp>
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/bodies/inner/shapes.hpp>
 #include <delassus/bodies/inner/targets.hpp>
@@ -90,7 +91,6 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
-
   Vec3 position(Handle body) const { return position_of(checked(body)); }
   Quat orientation(Handle body) const { return state_.q[checked(body)].template cast<double>(); }
   using Places::velocity;
@@ -158,6 +158,8 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   void advance(double h) { advance_with(h, T(0)); }
   /// The midpoint rule: x₊ = x + h (v + v_next)/2, and rotation with the angular impulse I (ω_next − ω).
   void advance_midpoint(double h) { advance_with(h, T(0.5)); }
+  /// Kick and drift, where the free rotation is a splitting into turns.
+  void advance_by_turns(double h) { advance_with(h, ByTurns{}); }
 
   /// One body at a time.
   struct Blocks {
@@ -168,7 +170,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     void add_force(Index b, Velocity& p) const { set.add_force(b, p); }
     void add_mass_times_velocity(Index b, Velocity& p, double s) const { set.add_mass_times_velocity(b, p, s); }
     Velocity solve(Index b, const Velocity& p) const { return set.template solve_block<1>(b, p); }
-    void advance(Index b, const Velocity& next, double h, T old_share) const { set.advance_block(b, next, h, old_share); }
+    void advance(Index b, const Velocity& next, double h, auto share) const { set.advance_block(b, next, h, share); }
   };
   Blocks by_block(SystemScale scale) {
     factor(scale);
@@ -196,7 +198,18 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
 
   /// What a midpoint rule that is solved by Newton's method does with each body.
   using Midpoint = inner::RigidMidpoint<T>;
-  auto& midpoint_state() { return state_; }
+  auto& state() { return state_; }
+  /// What a scheme that finds q and v of the end itself does with each body; it leaves q there, and v_next.
+  using Path = inner::RigidPath<T>;
+  void arrive(double h) {
+    held_ = 0;
+    for (const Index b : slots_.active()) {
+      if (motion_[b] != Motion::dynamic) advance_block(b, v_next[b], h, T(0));
+      else if (load_[b].setZero(); is_finite(v_next[b])) v_[b] = v_next[b];
+      else ++held_;
+    }
+  }
+  auto& targets() { return targets_; }
 
   /// What collision detection needs of each body.
   bool has_collider(Index b) const { return this->is_alive(b) && shapes_.kind(b) != ShapeKind::none; }
@@ -223,17 +236,17 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     DELASSUS_EXPECT(inner::fits<T>(position), who(b) + ": position " + inner::beyond<T>(position, "m"));
   }
   void set_mass(Index b) { state_.set_mass(b, motion_[b] == Motion::dynamic); }
-  void advance_with(double h, T old_share) {
+  void advance_with(double h, auto share) {
     held_ = 0;
-    for (const Index b : slots_.active()) advance_block(b, v_next[b], h, old_share);
+    for (const Index b : slots_.active()) advance_block(b, v_next[b], h, share);
   }
   /// q and v of body b from its v_next.
-  void advance_block(Index b, const Velocity& next, double h_, T old_share) {
+  void advance_block(Index b, const Velocity& next, double h_, auto share) {
     if (motion_[b] == Motion::fixed) return;
     const T h = T(h_);
     load_[b].setZero();
     const bool is_done =
-        motion_[b] == Motion::kinematic ? follow(b, next, h) : state_.drift(b, v_[b], next, h, old_share);
+        motion_[b] == Motion::kinematic ? follow(b, next, h) : state_.drift(b, v_[b], next, h, share);
     if (!is_done) ++held_;
   }
   /// A kinematic body goes where it was told, or on with its velocity.

@@ -34,8 +34,8 @@ class AnimationLoop {
   static constexpr bool has_constraints = Laws::pool_count > 0;
   static constexpr bool may_rest = has_constraints && has_dormant<typename Parts::Activity>;
   /// The integrator solves for joints and bodies together: there is no W, and no problem to hand out.
-  static constexpr bool solves_whole_step =
-      has_constraints && requires { requires Parts::Integrator::solves_whole_step; };
+  static constexpr bool solves_whole_step = delassus::solves_whole_step<typename Parts::Integrator, has_constraints>;
+  static constexpr bool divides_step = requires { requires Parts::Scheme::divides_step; };
   /// A policy of the list, by type.
   template <class P>
   static constexpr bool has = (std::is_same_v<P, Policies> || ...);
@@ -248,6 +248,9 @@ class AnimationLoop {
   void solve_whole_step();
   /// All of them at once, for a loop without constraints: the same bits, fewer passes.
   void move_freely();
+  /// For a scheme that does a step in parts: h is h/count from here on, until a part ends after which none is left.
+  void begin_substeps(int count);
+  void end_substep(int left);
 
   /// No constraint, nobody who listens between Begin and Step, and parts that treat each block by itself.
   static constexpr bool moves_freely =

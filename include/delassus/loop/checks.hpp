@@ -209,33 +209,46 @@ consteval bool holds_exactly() {
   return true;
 }
 
+/// The order of the stages knows what a whole step is.
+template <class Scheme>
+inline constexpr bool takes_whole_steps = requires { requires Scheme::takes_whole_steps; };
+
 /// An integrator that solves for joints and bodies together leaves no room for parts between FreeMotion and Correct.
 template <class Parts, class... Policies>
 consteval bool whole_step_fits() {
-  if constexpr (Parts::Laws::pool_count == 0 || !requires { requires Parts::Integrator::solves_whole_step; }) {
+  using I = typename Parts::Integrator;
+  if constexpr (!solves_whole_step<I, (Parts::Laws::pool_count > 0)>) {
     return true;
   } else {
     constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
       return (holds_exactly<L>() && ...);
     }(static_cast<const typename Parts::Laws*>(nullptr));
-    constexpr bool are_rigid = []<class... S>(const delassus::World<S...>*) {
-      return (requires { typename S::Midpoint; } && ...);
+    constexpr bool can_move = []<class... S>(const delassus::World<S...>*) {
+      return (I::template can_move<S> && ...);
     }(static_cast<const typename Parts::World*>(nullptr));
-    constexpr bool is_plain = std::is_same_v<typename Parts::Scheme, PlainOrder> &&
+    constexpr bool is_plain = takes_whole_steps<typename Parts::Scheme> &&
                               std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...);
     static_assert(are_equal,
-                  "delassus: NewtonMidpoint solves equalities; contacts, limits, motors and drives need another integrator, "
-                  "such as ImplicitMidpoint, or take their laws out");
+                  "delassus: NewtonMidpoint, Rattle and RungeKutta4 solve equalities; contacts, limits, motors and drives "
+                  "need another integrator, such as ImplicitMidpoint, or take their laws out");
     if constexpr (are_equal)
-      static_assert(are_rigid,
-                    "delassus: NewtonMidpoint moves rigid bodies only; take the other sets out of World{...}, or use "
-                    "ImplicitMidpoint");
-    if constexpr (are_equal && are_rigid)
+      static_assert(can_move,
+                    "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles; take the "
+                    "other sets out of World{...}, or use ImplicitMidpoint");
+    if constexpr (are_equal && can_move)
       static_assert(is_plain,
-                    "delassus: NewtonMidpoint makes its step at once, without W; take out the scheme, the activity and the "
-                    "listeners that publish the problem");
-    return are_equal && are_rigid && is_plain;
+                    "delassus: NewtonMidpoint, Rattle and RungeKutta4 make their step at once, without W; take out the "
+                    "scheme, the activity and the listeners that publish the problem");
+    return are_equal && can_move && is_plain;
   }
+}
+
+/// A step in parts has one detection: who sleeps or wakes between them would be missing in it.
+template <class Scheme, class Activity>
+consteval bool substeps_fit() {
+  constexpr bool fit = !(requires { requires Scheme::divides_step; } && has_dormant<Activity>);
+  static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
+  return fit;
 }
 
 template <class Scheme, class Loop>
@@ -279,6 +292,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
   else if constexpr (!constraints_are_sound<Parts>()) return false;
   else if constexpr (!whole_step_fits<Parts, Policies...>()) return false;
+  else if constexpr (!substeps_fit<typename Parts::Scheme, typename Parts::Activity>()) return false;
   else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;
   else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
 }

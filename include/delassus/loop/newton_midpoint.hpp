@@ -21,6 +21,10 @@ struct NewtonMidpoint {
   using plays = role::Integrator;
   using each_block_alone = NewtonMidpoint;
   static constexpr bool solves_whole_step = true;
+  template <class World, class Laws, class Rows>
+  using WholeStep = MidpointHold<World, Laws, Rows>;
+  template <class Set>
+  static constexpr bool can_move = requires { typename Set::Midpoint; };
   double tolerance = 1e-10;  ///< of what is missing in every equation, in units of the largest velocity
   int max_iterations = 20;   ///< factorizations; reaching it is a status
 

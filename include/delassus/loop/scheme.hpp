@@ -30,6 +30,7 @@ void solve_to_advance(auto& loop) {
 /// Detect, linearise, move freely, and solve: the plain order. A scheme calls the stages of a loop in its own order.
 struct PlainOrder {
   using plays = role::Scheme;
+  static constexpr bool takes_whole_steps = true;
 
   void run(auto& loop) const {
     if constexpr (std::remove_reference_t<decltype(loop)>::moves_freely) {

@@ -5,6 +5,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/loop/activity.hpp>
 #include <delassus/loop/stages/detect.hpp>
+#include <delassus/loop/stages/move_freely.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/island_problem.hpp>
@@ -18,9 +19,11 @@
 
 namespace delassus {
 
-/// With `NewtonMidpoint`, which brings it.
-template <class World, class Laws, class Rows>
-class MidpointHold;
+/// An integrator that solves for joints and bodies together brings `WholeStep<World, Laws, Rows>`, whose solve(world, laws,
+/// rows, integrator, h) leaves v_next and λ, and returns a SolveReport. One that moves each block alone where there are no
+/// constraints needs it only where there are.
+template <class I, bool has_constraints>
+inline constexpr bool solves_whole_step = requires { requires I::solves_whole_step; } && (has_constraints || !EachBlockAlone<I>);
 
 }  // namespace delassus
 
@@ -47,12 +50,18 @@ using PoolRowsOf = typename pool_rows_of<W, R>::type;
 template <class L>
 inline constexpr bool law_restitutes = requires(const L& law, const typename L::Item& i) { law.restitution(i); };
 
+/// The law inside `Contact` lets impacts go from contact to contact.
+template <class L>
+inline constexpr bool passes_impacts_on =
+    requires(const L& law) { requires std::remove_cvref_t<decltype(law.law)>::passes_impacts_on; };
+
 template <class World, class Laws>
 struct rows_of;
 template <class World, class... L>
 struct rows_of<World, Constraints<L...>> {
   using type = RowSystem<typename World::Scalar, typename widths_of<World>::type, L::rows...>;
   static constexpr bool restitutes = (law_restitutes<L> || ...);
+  static constexpr bool passes_impacts_on = (inner::passes_impacts_on<L> || ...);
 };
 
 /// Takes no room, once for each thing that is absent.
@@ -69,13 +78,25 @@ struct activity_state<Activity, World, Laws> {
   using type = typename Activity::template State<World, Laws>;
 };
 
-template <bool holds, class World, class Laws, class Rows>
-struct midpoint_hold {
+template <class I, class World, class Laws, class Rows>
+struct whole_step {
   using type = Nothing<7>;
 };
-template <class World, class Laws, class Rows>
-struct midpoint_hold<true, World, Laws, Rows> {
-  using type = MidpointHold<World, Laws, Rows>;
+template <class I, class World, class Laws, class Rows>
+  requires(solves_whole_step<I, (Laws::pool_count > 0)>)
+struct whole_step<I, World, Laws, Rows> {
+  using type = typename I::template WholeStep<World, Laws, Rows>;
+};
+
+/// A scheme that does a step in parts brings what it needs for that.
+template <class Scheme, class World, class Laws, class Rows>
+struct substeps_of {
+  using type = Nothing<8>;
+};
+template <class Scheme, class World, class Laws, class Rows>
+  requires requires { requires Scheme::divides_step; }
+struct substeps_of<Scheme, World, Laws, Rows> {
+  using type = typename Scheme::template Parts<World, Laws, Rows>;
 };
 
 /// Arrays of a step; `reset` keeps their capacity, so a warm step allocates nothing.
@@ -85,8 +106,8 @@ struct Workspace {
   using Rows = typename rows_of<World, Laws>::type;
   using Operator = typename Compliance::template Operator<Rows>;
   static constexpr bool restitutes = rows_of<World, Laws>::restitutes;
+  static constexpr bool passes_impacts_on = rows_of<World, Laws>::passes_impacts_on;
   static constexpr bool at_midpoint = requires { requires Integrator::linearises_at_midpoint; };
-  static constexpr bool holds_at_midpoint = requires { requires Integrator::solves_whole_step; };
   static constexpr bool has_dormant = delassus::has_dormant<Activity>;
   static constexpr bool predicts = requires { requires Scheme::predicts; };
   static constexpr bool projects_position = requires { requires Stabilisation::projects_position; };
@@ -107,14 +128,19 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<restitutes || projects_position, std::array<Impulses<Rows>, 2>, Nothing<3>> aside;
   [[no_unique_address]] typename activity_state<Activity, World, Laws>::type activity;
   [[no_unique_address]] std::conditional_t<predicts, Impulses<Rows>, Nothing<5>> predicted;
-  [[no_unique_address]] typename midpoint_hold<holds_at_midpoint, World, Laws, Rows>::type hold;
+  [[no_unique_address]] typename whole_step<Integrator, World, Laws, Rows>::type whole_step;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
+  [[no_unique_address]] typename substeps_of<Scheme, World, Laws, Rows>::type substeps;
+  [[no_unique_address]] std::conditional_t<passes_impacts_on, std::vector<Vec3>, Nothing<9>> impacts;
 };
 
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
 template <class World, class C, class S, class I, class St, class Sc, class Ac>
 struct Workspace<World, Constraints<>, C, S, I, St, Sc, Ac> {
+  using Rows = typename rows_of<World, Constraints<>>::type;
   explicit Workspace(const auto&) {}
+  [[no_unique_address]] typename inner::whole_step<I, World, Constraints<>, Rows>::type whole_step;
+  [[no_unique_address]] typename substeps_of<Sc, World, Constraints<>, Rows>::type substeps;
 };
 
 }  // namespace delassus::inner

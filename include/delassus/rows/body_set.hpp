@@ -46,6 +46,9 @@ concept FramedSet = BodySet<S> && requires(const S set, const Anchor anchor, Vec
   { set.about(anchor, 0, axis) } -> std::same_as<Vec<S::width, typename S::Scalar>>;
 };
 
+/// In place of a share of velocities: bodies turn freely by exact turns about axes of their own (`advance_by_turns`).
+struct ByTurns {};
+
 namespace inner {
 
 /// The velocity that moves q: `old_share` of the one before the step, the rest of the one after.

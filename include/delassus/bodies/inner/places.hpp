@@ -46,6 +46,8 @@ class Places {
   void rouse(Index b) { slots_.set_awake(b, true); }
 
   const Velocity& load(Index b) const { return load_[b]; }
+  /// N and N·m; each is taken when its body has moved.
+  std::vector<Velocity>& loads() { return load_; }
   /// At the start of the step, and of kinematic bodies for this one.
   const std::vector<Velocity>& velocity() const { return v_; }
   std::vector<Velocity>& velocity() { return v_; }

@@ -1,6 +1,7 @@
 /// Poses, masses and inertias of rigid bodies as arrays, and how a velocity moves them.
 #pragma once
 
+#include <delassus/math/free_turns.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -124,6 +125,19 @@ struct RigidState {
       return false;
     }
     v = twist<T>(linear_part(next), rate);
+    return true;
+  }
+
+  /// Kick and drift: the same after the impulses, the free rotation by turns.
+  bool drift(Index b, Velocity& v, const Velocity& next, T h, ByTurns) {
+    const Vector moved = x[b] + h * linear_part(next);
+    const Vector spatial = R[b] * (inertia[b] * (R[b].transpose() * angular_part(next)));
+    const Eigen::Quaternion<T> turned = turn_freely<T>(inverse_inertia[b], q[b], spatial, h);
+    if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
+    x[b] = moved;
+    q[b] = turned;
+    turn(b);
+    v = twist<T>(linear_part(next), R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial)));
     return true;
   }
 

@@ -35,11 +35,14 @@ class Targets {
   /// Puts the body where it was told, exactly, and forgets that it was; false when it was not told.
   template <class T>
   bool reach(Index b, RigidState<T>& state) {
-    if (!targets_[b].is_set) return false;
+    if (is_on_the_way_ || !targets_[b].is_set) return false;
     state.place(b, targets_[b].position, targets_[b].orientation);
     drop(b);
     return true;
   }
+
+  /// While a step is done in parts, its end is not reached before the last of them.
+  void stay_on_the_way(bool is_on_the_way) { is_on_the_way_ = is_on_the_way; }
 
   void memory(auto& archive) { archive(targets_, are_any_); }
 
@@ -51,6 +54,7 @@ class Targets {
   };
   std::vector<Target> targets_;
   bool are_any_ = false;  ///< one is set and the step that goes there is not over
+  bool is_on_the_way_ = false;
 };
 
 }  // namespace delassus::inner

@@ -6,6 +6,7 @@
 #include <delassus/loop/stages/correct.hpp>
 #include <delassus/loop/stages/free_motion.hpp>
 #include <delassus/loop/stages/linearize.hpp>
+#include <delassus/loop/stages/pass_on_impacts.hpp>
 #include <delassus/loop/stages/predict.hpp>
 #include <delassus/loop/stages/project_position.hpp>
 #include <delassus/loop/stages/push_apart.hpp>
@@ -79,6 +80,8 @@ void AnimationLoop<Policies...>::linearize() {
     if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
     else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
     warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
+    if constexpr (Work::passes_impacts_on)
+      pass_on_impacts(world(), laws(), work_.rows, work_.impacts, work_.contacts.results.size(), h_);
     report_.rows = work_.rows.row_count();
     report_.max_joint_violation = worst_equality(laws(), work_.rows);
   }
@@ -160,6 +163,8 @@ void AnimationLoop<Policies...>::solve() {
     inner::note_broken(laws(), h_);
     forget_lost_islands(laws(), work_.rows, work_.W, work_.contacts, work_.islands, work_.reports);
     work_.contacts.remember();
+    if constexpr (Work::passes_impacts_on)  // they are no start for the next step
+      for (std::size_t i = 0; i < work_.impacts.size(); ++i) work_.contacts.results[i].impulse += work_.impacts[i];
   }
   tell<stage::Solve>();
 }
@@ -168,12 +173,17 @@ template <class... Policies>
 void AnimationLoop<Policies...>::solve_whole_step() {
   if constexpr (solves_whole_step) {
     linearize();
-    work_.reports.assign(1, work_.hold.solve(world(), laws(), work_.rows, part<role::Integrator>(), h_));
-    report_.status = worse(report_.status, work_.reports[0].status);
-    report_.residual = work_.reports[0].measure.residual;
-    report_.islands = 1;
-    keep_impulses(laws(), work_.rows, work_.contacts);
-    inner::note_broken(laws(), h_);
+    if constexpr (has_constraints) {
+      work_.reports.assign(1, work_.whole_step.solve(world(), laws(), work_.rows, part<role::Integrator>(), h_));
+      report_.status = worse(report_.status, work_.reports[0].status);
+      report_.residual = work_.reports[0].measure.residual;
+      report_.islands = 1;
+      keep_impulses(laws(), work_.rows, work_.contacts);
+      inner::note_broken(laws(), h_);
+    } else {
+      typename Work::Rows none;
+      work_.whole_step.solve(world(), laws(), none, part<role::Integrator>(), h_);
+    }
     tell<stage::Solve>();
     tell<stage::Correct>();
   }
@@ -225,6 +235,35 @@ void AnimationLoop<Policies...>::advance() {
     if constexpr (Work::has_dormant) work_.activity.settle(part<role::Activity>(), world(), laws(), work_.islands);
   end_advance();
   tell<stage::Advance>();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::begin_substeps(int count) {
+  if constexpr (divides_step) {
+    work_.substeps.begin(world(), count, h_, start_, steps_);
+    start_ = time();
+    steps_ = 0;
+    h_ /= count;
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::end_substep(int left) {
+  if constexpr (divides_step) {
+    auto& parts = work_.substeps;
+    if constexpr (has_constraints) parts.add_impulses(laws(), work_.contacts);
+    if (left > 0) {
+      parts.go_on(world(), left);
+      if constexpr (Laws::has_contacts) parts.follow(std::as_const(*this).world(), laws(), work_, h_);
+      last_h_ = h_;
+    } else {
+      if constexpr (has_constraints) parts.give_impulses(laws(), work_.contacts);
+      h_ = parts.h;
+      start_ = parts.start;
+      steps_ = parts.steps + 1;
+      report_.time = time();
+    }
+  }
 }
 
 template <class... Policies>

@@ -96,7 +96,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
       for (auto& f : force) f.setZero();
       integrator.impulse(set, force, h);
       for (const Index b : set.active()) {
-        body.begin(set.midpoint_state(), b, set.velocity()[b], set.moves(b), T(h));
+        body.begin(set.state(), b, set.velocity()[b], set.moves(b), T(h));
         speed_ = std::max(speed_, double(linear_part(set.velocity()[b]).norm()));
         if (set.moves(b))
           speed_ = std::max(speed_, double(linear_part(set.template solve_block<1>(b, force[b])).norm()));
@@ -108,7 +108,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   void linearize_both(World& world, const Laws& laws, Rows& rows, double h) {
     const auto place = [&](auto&& put) {
       world.each([&](auto& set, auto s) {
-        for (const Index b : set.active()) put(std::get<s>(bodies_), set.midpoint_state(), b);
+        for (const Index b : set.active()) put(std::get<s>(bodies_), set.state(), b);
       });
     };
     place([&](auto& bodies, auto& state, Index b) { bodies.to_end(state, b, T(h)); });
@@ -141,7 +141,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
       for (const Index b : set.active())
         if (set.moves(b)) {
           const double missing =
-              double(std::get<s>(bodies_).balance(set.midpoint_state(), b, std::get<s>(impulse_)[b], T(h)));
+              double(std::get<s>(bodies_).balance(set.state(), b, std::get<s>(impulse_)[b], T(h)));
           most = std::max(most, missing);
           spoilt += 0 * missing;  // NaN for one that is no number, which a maximum would lose
         }
@@ -233,7 +233,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     });
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active())
-        if (set.moves(b)) std::get<s>(bodies_).move(set.midpoint_state(), b, std::get<s>(impulse_)[b]);
+        if (set.moves(b)) std::get<s>(bodies_).move(set.state(), b, std::get<s>(impulse_)[b]);
     });
   }
 
@@ -246,7 +246,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active()) {
         set.v_next[b] = set.velocity()[b];
-        if (set.moves(b)) set.v_next[b] = std::get<s>(bodies_).next(set.midpoint_state(), b);
+        if (set.moves(b)) set.v_next[b] = std::get<s>(bodies_).next(set.state(), b);
         if (is_lost && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
       }
     });

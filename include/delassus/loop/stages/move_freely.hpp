@@ -21,6 +21,11 @@ struct OneBlock {
   }
   void advance(double h) { blocks.advance(b, v_next, h, 0); }
   void advance_midpoint(double h) { blocks.advance(b, v_next, h, 0.5); }
+  void advance_by_turns(double h)
+    requires requires { blocks.advance(b, v_next, h, ByTurns{}); }
+  {
+    blocks.advance(b, v_next, h, ByTurns{});
+  }
 };
 
 /// An integrator that treats every block by itself says so by its own name, so that one derived from it has to say it anew:

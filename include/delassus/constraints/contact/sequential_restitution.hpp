@@ -1,0 +1,47 @@
+/// Restitution whose impacts go from contact to contact, as in Newton's cradle.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+
+namespace delassus {
+
+/// Contacts that close are hit one after the other, u_n⁺ = −e u_n⁻ each, until none of them closes: three
+/// balls that touch, e = 1, the first with speed 1, end with (0, 0, 1). Under `Restitution` all are hit at
+/// once, and end with (−1/3, 2/3, 2/3). Both keep momentum, and energy at e = 1; which one a scene shows is a
+/// choice of the model: bodies that are stiff against what lies between them pass an impact on, as balls do.
+/// The order is that of the contacts, round after round; what closes after `most_rounds` is left to the
+/// simultaneous law. Joints answer after the impacts, in the solve of the step. Source: docs/references.md,
+/// [Brogliato2016], chapters 5 and 6.
+template <class Law>
+struct SequentialRestitution {
+  using wraps = Law;
+  static constexpr int rows = Law::rows;
+  static constexpr auto kinds = Law::kinds;
+  static constexpr bool passes_impacts_on = true;
+
+  Law law{};
+  double restitution = 0;  ///< e in [0, 1], where neither the pair nor the materials say otherwise
+  int most_rounds = 1000;
+
+  struct Parameters : Law::Parameters {
+    double restitution;
+  };
+
+  void check() const {
+    law.check();
+    DELASSUS_EXPECT(restitution >= 0 && restitution <= 1,
+                    "SequentialRestitution: restitution " + inner::text(restitution) + " must be in [0, 1]");
+    DELASSUS_EXPECT(most_rounds >= 0,
+                    "SequentialRestitution: most_rounds " + inner::text(most_rounds) + " must be >= 0");
+  }
+
+  Parameters parameters() const { return {law.parameters(), restitution}; }
+  static void set_restitution(Parameters& p, double restitution) { p.restitution = restitution; }
+};
+
+template <class Law>
+SequentialRestitution(Law, double) -> SequentialRestitution<Law>;
+template <class Law>
+SequentialRestitution(Law) -> SequentialRestitution<Law>;
+
+}  // namespace delassus

@@ -1,0 +1,47 @@
+/// Störmer and Verlet's method with joints held in position and velocity.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/stages/rattle_step.hpp>
+
+namespace delassus {
+
+/// Half a kick, free motion, half a kick; φ(q₊) = 0 and H₊ v₊ = 0. Second order, symmetric and symplectic:
+/// the energy varies by O(h²) and does not drift, and steps that are turned back return to the start. Forces
+/// are asked twice a step, so they need not be those of the start. Explicit: stable for h ω < 2, ω also of
+/// springs and of what swings sideways under a tension; a heavy chain at a large step wants `NewtonMidpoint`.
+/// For rigid bodies, particles, and laws whose rows are equalities; soft rows are forces. All islands are
+/// solved as one, without W; the solver, the compliance and the stabilisation of the loop are not asked. The
+/// free rotation of bodies is that of `LiePoisson`.
+struct Rattle {
+  using plays = role::Integrator;
+  static constexpr bool solves_whole_step = true;
+  template <class World, class Laws, class Rows>
+  using WholeStep = RattleStep<World, Laws, Rows>;
+  template <class Set>
+  static constexpr bool can_move = requires {
+    typename Set::Path;
+  };
+  double tolerance =
+      1e-12;  ///< of what the joints are apart at the end, in units of the way of the fastest body
+  int max_iterations = 20;  ///< factorizations; reaching it is a status
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0, "Rattle: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations > 0,
+                    "Rattle: max_iterations " + inner::text(max_iterations) + " must be > 0");
+  }
+  SystemScale scale(double) const { return {.mass = 1}; }
+  void impulse(const auto& set, auto& p, double h) const {
+    set.add_forces(p);
+    times(p, h);
+  }
+  /// The step has put the bodies where they are.
+  void advance(auto& set, double h) const {
+    if constexpr (requires { set.arrive(h); }) set.arrive(h);
+  }
+};
+static_assert(Integrator<Rattle>);
+
+}  // namespace delassus

@@ -1,0 +1,46 @@
+/// The classical Runge-Kutta method with joints.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/stages/runge_kutta_step.hpp>
+
+namespace delassus {
+
+/// Four evaluations of forces and, where there are joints, of the accelerations they allow; the end of the
+/// step is brought back onto the joints. Fourth order for smooth scenes: the cheapest way to many digits. It
+/// keeps no invariant: over long runs energy leaks. Stable for h ω < 2.828. For rigid bodies, particles, and
+/// laws whose rows are equalities; soft rows are forces. All islands are solved as one, without W; the
+/// solver, the compliance and the stabilisation of the loop are not asked. Forces of the host are those of
+/// the start, and constant over the step.
+struct RungeKutta4 {
+  using plays = role::Integrator;
+  static constexpr bool solves_whole_step = true;
+  template <class World, class Laws, class Rows>
+  using WholeStep = RungeKuttaStep<World, Laws, Rows>;
+  template <class Set>
+  static constexpr bool can_move = requires {
+    typename Set::Path;
+  };
+  double tolerance =
+      1e-12;  ///< of what the joints are apart at the end, in units of the way of the fastest body
+  int max_iterations = 20;  ///< factorizations of the projection; reaching it is a status
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0, "RungeKutta4: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations > 0,
+                    "RungeKutta4: max_iterations " + inner::text(max_iterations) + " must be > 0");
+  }
+  SystemScale scale(double) const { return {.mass = 1}; }
+  void impulse(const auto& set, auto& p, double h) const {
+    set.add_forces(p);
+    times(p, h);
+  }
+  /// The step has put the bodies where they are.
+  void advance(auto& set, double h) const {
+    if constexpr (requires { set.arrive(h); }) set.arrive(h);
+  }
+};
+static_assert(Integrator<RungeKutta4>);
+
+}  // namespace delassus

@@ -1,0 +1,10 @@
+// expect: delassus: NewtonMidpoint, Rattle and RungeKutta4 solve equalities; contacts, limits, motors and drives need another integrator
+#include <delassus/delassus.hpp>
+#include <delassus/loop/rattle.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}, BallJoint{}}, Rattle{}};
+  loop.step(1e-3);
+}

@@ -1,0 +1,10 @@
+// expect: delassus: NewtonMidpoint, Rattle and RungeKutta4 make their step at once, without W
+#include <delassus/delassus.hpp>
+#include <delassus/loop/runge_kutta4.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{Particles{}}, RungeKutta4{}, PredictiveScheme{}};
+  loop.step(1e-3);
+}

@@ -1,0 +1,10 @@
+// expect: delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out
+#include <delassus/delassus.hpp>
+#include <delassus/loop/substeps.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, Substeps{}, Sleeping{}};
+  loop.step(1e-3);
+}

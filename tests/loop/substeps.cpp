@@ -1,0 +1,139 @@
+// One detection and several solves a step.
+#include <delassus/loop/rattle.hpp>
+#include <delassus/loop/substeps.hpp>
+
+#include "convergence_order.hpp"
+#include "scenes.hpp"
+
+#include <array>
+
+#include "catch.hpp"
+
+using namespace scenes;
+
+// Without contacts the parts are steps: same bits.
+TEST_CASE("four substeps are four steps of a quarter where there are no contacts, to the bit") {
+  const auto tumble = [](auto scheme, int count) {
+    AnimationLoop loop{World{RigidBodies{}}, LiePoisson{}, scheme};
+    auto& set = rigid_bodies(loop);
+    const auto box = set.add({.angular_velocity = {1, 2, 3}, .mass = 1.0, .shape = Box{1, 2, 3}});
+    for (int n = 0; n < 20 * count; ++n) loop.step(0.04 / count);
+    REQUIRE(loop.time() == Approx(0.8).epsilon(1e-14));
+    return std::pair{set.position(box), set.orientation(box)};
+  };
+  const auto parts = tumble(Substeps{4}, 1), steps = tumble(PlainOrder{}, 4);
+  CHECK(parts.first == steps.first);
+  CHECK(parts.second.coeffs() == steps.second.coeffs());
+}
+
+TEST_CASE("a load acts over the whole of a divided step, and a kinematic body arrives at its end") {
+  AnimationLoop loop{World{RigidBodies{}}, Substeps{5}};
+  auto& set = rigid_bodies(loop);
+  set.gravity.setZero();
+  const auto pushed = set.add({.mass = 2.0, .shape = Sphere{1}});
+  const auto moved = set.add({.motion = Motion::kinematic});
+  set.apply_force(pushed, {4, 0, 0});
+  set.move_to(moved, {1, 2, 3});
+  loop.step(0.1);
+  CHECK(set.velocity(pushed).x() == Approx(0.2).epsilon(1e-14));
+  CHECK(set.position(moved) == Vec3(1, 2, 3));
+  loop.step(0.1);
+  CHECK(set.velocity(pushed).x() == Approx(0.2).epsilon(1e-14));  // it acted once
+  CHECK(set.position(moved) == Vec3(1, 2, 3));
+}
+
+namespace {
+
+/// A ball that rolls, a box that slides and a box that falls over its edge, all on one plane.
+template <class... Scheme>
+auto on_a_plane(Scheme... scheme) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.3}}, BallJoint{}},
+                     scheme...};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  set.add({.position = {0, 0, 0.2},
+           .velocity = {2, 0, 0},
+           .angular_velocity = {0, 10, 0},
+           .mass = 1.0,
+           .shape = Sphere{0.2}});
+  set.add({.position = {0, 3, 0.25}, .velocity = {5, 0, 0}, .mass = 1.0, .shape = Box{0.5, 0.5, 0.5}});
+  set.add({.position = {0, 6, 0.55},
+           .orientation = exponential<double>({0, 0.9, 0}),
+           .mass = 1.0,
+           .shape = Box{0.5, 0.5, 1}});
+  return loop;
+}
+
+}  // namespace
+
+// The ball keeps rolling: a contact point that stayed behind by a part's way, 2 m/s / 60, would brake it at g
+// · 3 cm/0.2 m. The box stops after v²/(2 μ g) = 4.2475 m, early by at most h v.
+TEST_CASE("a ball rolls on, a box slides as far, and nothing sinks in under substeps") {
+  auto loop = on_a_plane(Substeps{4});
+  auto& set = rigid_bodies(loop);
+  const double h = 1.0 / 60;
+  double deepest = 0;
+  for (int n = 0; n < 180; ++n) deepest = std::max(deepest, loop.step(h).max_penetration);
+  CHECK(set.velocity(set.handle(1)).x() == Approx(2).epsilon(1e-3));
+  CHECK(set.position(set.handle(2)).x() == Approx(25 / (2 * 0.3 * g)).margin(5 * h));
+  CHECK(set.velocity(set.handle(2)).norm() <= 1e-6);
+  // The first meeting may go below by what the turned edge falls in a step, h²g, and by its turn, (h ω)² of
+  // half a diagonal.
+  CHECK(deepest <= h * h * g + h * h * 9 * 0.6);
+  CHECK(set.position(set.handle(3)).z() == Approx(0.25).margin(2e-3));
+}
+
+// Points that stayed behind, by up to 7.5 cm, would have the rear corners carry more; on ice all four carry
+// the same.
+TEST_CASE("the corners of a box that slides on ice carry the same under substeps") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0}}, BallJoint{}},
+                     Substeps{4}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  set.add({.position = {0, 0, 0.25}, .velocity = {6, 0, 0}, .mass = 1.0, .shape = Box{0.5, 0.5, 0.5}});
+  for (int n = 0; n < 30; ++n) loop.step(1.0 / 60);
+  REQUIRE(loop.contacts().size() == 4);
+  for (const ContactResult& c : loop.contacts())
+    CHECK(std::abs(c.impulse.z()) == Approx(g / 60 / 4).epsilon(1e-3));
+}
+
+// Standing still, each part carries a quarter of the weight's impulse: the sum is that of a step without
+// parts.
+TEST_CASE("the impulses of a divided step are the sums of its parts") {
+  auto loop = on_a_plane(Substeps{4});
+  auto& set = rigid_bodies(loop);
+  for (int n = 0; n < 240; ++n) loop.step(1.0 / 60);
+  double up = 0;
+  for (const ContactResult& c : loop.contacts()) up += c.impulse.z();
+  CHECK(std::abs(up) == Approx(3 * g / 60).epsilon(1e-4));
+  CHECK(set.velocity(set.handle(2)).norm() <= 1e-6);
+}
+
+namespace {
+
+/// A pendulum's end after a second at h, and its worst energy, under substeps.
+template <class Integrator>
+std::array<double, 2> swing(int count, double h) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, Integrator{}, Substeps{count}};
+  auto& set = rigid_bodies(loop);
+  const auto rod = set.add(
+      {.position = {0.5, 0, 0}, .mass = 1.0, .inertia = Mat3(Vec3(1e-3, 1. / 12, 1. / 12).asDiagonal())});
+  loop.add(BallJoint::Item{anchor(set, rod, {-0.5, 0, 0}), world_anchor(Vec3::Zero())});
+  double energy = 0;
+  for (int n = 0; n < std::lround(1 / h); ++n) {
+    loop.step(h);
+    energy = std::max(energy, std::abs(kinetic_energy(set) + potential_energy(set)));
+  }
+  return {set.position(rod).x(), energy};
+}
+
+}  // namespace
+
+TEST_CASE("substeps of Rattle are of second order, and divide the swing of its energy by their square") {
+  const double there = swing<Rattle>(1, 1.0 / 6400)[0];
+  const auto orders =
+      convergence_orders([&](double h) { return std::abs(swing<Rattle>(3, h)[0] - there); }, 1.0 / 20);
+  CAPTURE(orders[0], orders[1]);
+  CHECK(are_of_order(orders, 2));
+  CHECK(swing<Rattle>(1, 0.02)[1] == Approx(16 * swing<Rattle>(4, 0.02)[1]).epsilon(0.1));
+}
