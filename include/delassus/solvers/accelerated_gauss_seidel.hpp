@@ -10,6 +10,8 @@
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
+#include <algorithm>
+
 namespace delassus {
 
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
@@ -49,7 +51,8 @@ struct BasicAcceleratedGaussSeidel {
                     "AcceleratedGaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
   }
 
-  static constexpr int shortest = 400;  ///< sweeps in which the error must halve, at first
+  /// Sweeps in which the error must halve, at first: momentum needs as many as there are rows, at most.
+  static int first_patience(int rows) { return std::clamp(3 * rows, 100, 400); }
 
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
@@ -58,6 +61,7 @@ struct BasicAcceleratedGaussSeidel {
     const auto exact = [&](auto&... curvature) { return problem.sweep(relaxation, curvature...); };
     const auto one_projection = [&](auto& x, double& curvature) { return problem.project_once(x, curvature); };
     const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, sweep); };
+    const int shortest = first_patience(problem.row_count());
     for (int patience = shortest;; patience *= 2) {
       const auto open = [&](const char* name, int factor) {
         if (pursuit.is_over()) return false;

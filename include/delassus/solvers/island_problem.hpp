@@ -145,6 +145,7 @@ class IslandProblem {
     each([&](auto p, Index i) {
       auto& last = std::get<p>(before.pools)[i];
       const auto here = rows_.template pool<p>().lambda[i];
+      if (here == last) return;  // an open contact, most of all
       Vec<Rows::template rows_of<p>, T> next = here + T(beta) * (here - last);
       last = here;
       book_.template clamp<p>(i, next);
