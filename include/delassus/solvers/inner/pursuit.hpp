@@ -72,6 +72,9 @@ class Pursuit {
   bool is_over() const { return is_met_ || is_last_ || is_quarantined(); }
   bool is_quarantined() const { return report_.status == Status::quarantined; }
 
+  /// What is left of the sweeps.
+  int left() const { return solver_.max_iterations - report_.sweeps; }
+
   /// λ ← the best measured.
   void back_to_best() { problem_.load(best_set_); }
 
