@@ -1,6 +1,6 @@
 // Solves friction problems from files, one line each:
 //
-//   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|plain] [--warm FILE] [--out FILE]
+//   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|newton|plain] [--warm FILE] [--out FILE]
 //             [--save FILE] [--time-limit S]
 //
 // err is Siconos' error, err_s the scale-free one; by default both must be within the tolerance. `build` is the own blocks'
@@ -14,6 +14,7 @@
 #include <delassus/io/problem_file.hpp>
 #include <delassus/loop/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/contact_newton.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/law_book.hpp>
 #include <delassus/solvers/with_deadline.hpp>
@@ -104,7 +105,10 @@ Result run_named(FrictionProblem& problem, const Options& o) {
   if (o.solver == "plain")
     return run(problem, BasicGaussSeidel<Criterion>{.tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},
                o.time_limit);
-  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is neither 'accelerated' nor 'plain'");
+  if (o.solver == "newton")
+    return run(problem, BasicContactNewton<Criterion>{.tolerance = o.tolerance, .min_iterations = 0, .max_sweeps = no_limit},
+               o.time_limit);
+  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'newton' and 'plain'");
   return run(problem,
              BasicAcceleratedGaussSeidel<Criterion>{
                  .tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},
@@ -137,7 +141,7 @@ Options parse(int count, char** words) {
     else inner::refuse("there is no option " + word);
   }
   DELASSUS_EXPECT(!o.files.empty(), "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] "
-                                    "[--solver accelerated|plain] [--warm FILE] [--out FILE] [--save FILE] [--time-limit S]");
+                                    "[--solver accelerated|newton|plain] [--warm FILE] [--out FILE] [--save FILE] [--time-limit S]");
   DELASSUS_EXPECT(o.files.size() == 1 || (o.warm.empty() && o.out.empty() && o.save.empty()),
                   "--warm, --out and --save go with one problem");
   return o;

@@ -10,7 +10,7 @@ constexpr double h = 0.01;
 
 }  // namespace
 
-// The walls push out at 1 m/s at most, friction and rounding let the box tumble; a body that is fed energy flies.
+// The walls push out at 1 m/s at most, by as much from both sides; a body that is fed energy flies.
 TEST_CASE("a box between walls that leave it no room stays slow, and is free when a wall goes") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
   auto& set = rigid_bodies(loop);
@@ -20,8 +20,8 @@ TEST_CASE("a box between walls that leave it no room stays slow, and is free whe
   const auto box = set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
   int lost = 0;
   for (int n = 0; n < 1000; ++n) {
-    lost += loop.step(h).status == Status::max_iterations;
-    REQUIRE(set.velocity(box).norm() <= 10);
+    lost += loop.step(h).status == Status::infeasible;
+    REQUIRE(set.velocity(box).norm() <= 1);
   }
   REQUIRE(lost > 500);  // and it says so
   loop.remove(wall);

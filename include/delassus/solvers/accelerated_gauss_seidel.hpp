@@ -5,10 +5,14 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
+#include <delassus/solvers/inner/contradiction.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/pursuit.hpp>
+#include <delassus/solvers/inner/softened.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
 
 namespace delassus {
 
@@ -21,6 +25,10 @@ namespace delassus {
 ///
 /// and from the start again with twice the patience. The best measured iterate is kept, and the report names the stage that
 /// ended the solve. A solve that does not stall is in the first stage alone.
+///
+/// Where λ runs away because the rows contradict each other, which `inner::Contradiction` proves when momentum has stalled, the
+/// status is `infeasible` and λ that of rows which yield by 3 % of their own W: a compromise, bounded, the same whatever came
+/// before.
 template <class Criterion = Residual>
 struct BasicAcceleratedGaussSeidel {
   using plays = role::Solver;
@@ -49,7 +57,8 @@ struct BasicAcceleratedGaussSeidel {
                     "AcceleratedGaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
   }
 
-  static constexpr int shortest = 400;  ///< sweeps in which the error must halve, at first
+  /// Sweeps in which the error must halve, at first: momentum needs as many as there are rows, at most.
+  static int first_patience(int rows) { return std::clamp(3 * rows, 100, 400); }
 
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
@@ -58,6 +67,7 @@ struct BasicAcceleratedGaussSeidel {
     const auto exact = [&](auto&... curvature) { return problem.sweep(relaxation, curvature...); };
     const auto one_projection = [&](auto& x, double& curvature) { return problem.project_once(x, curvature); };
     const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, sweep); };
+    const int shortest = first_patience(problem.row_count());
     for (int patience = shortest;; patience *= 2) {
       const auto open = [&](const char* name, int factor) {
         if (pursuit.is_over()) return false;
@@ -66,11 +76,33 @@ struct BasicAcceleratedGaussSeidel {
         return true;
       };
       if (open("momentum", 1)) momentum(exact);
+      if (!pursuit.is_over() && inner::contradicts(problem, pursuit, work.x))
+        return compromise(problem, pursuit.finish(), work);
       if (open("anderson", 1)) inner::anderson(problem, pursuit, work.history, exact);
       if (open("projection", 4)) momentum(one_projection);
       if (open("patient", 10)) momentum(exact);
       if (pursuit.is_over()) return pursuit.finish();
     }
+  }
+
+ private:
+  /// The rows contradict each other: λ of rows that yield, from zero, and the errors of the rows as they are.
+  template <class Problem, class Workspace>
+  SolveReport compromise(Problem& problem, SolveReport report, Workspace& work) const {
+    inner::Softened<Problem> soft(problem);
+    const BasicAcceleratedGaussSeidel<Residual> solver{.tolerance = 1e-6, .max_iterations = 1000};
+    inner::Pursuit<Residual, BasicAcceleratedGaussSeidel<Residual>, inner::Softened<Problem>, decltype(work.best)> pursuit(
+        solver, soft, work.best);
+    if (pursuit.begin()) {
+      pursuit.open("compromise", solver.max_iterations);
+      inner::momentum(soft, pursuit, work.x, [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });
+    }
+    report.sweeps += pursuit.finish().sweeps;
+    soft.restore();
+    report.measure = problem.measure();
+    report.status = Status::infeasible;
+    report.ended_by = "compromise";
+    return report;
   }
 };
 

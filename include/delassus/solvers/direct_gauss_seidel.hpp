@@ -80,6 +80,7 @@ struct BasicDirectGaussSeidel {
       sweep_others(problem, work, report);
       settle(problem, joints);
       report.measure = problem.measure();
+      if (report.status == Status::infeasible) return report;
       if (is_done(report.measure, problem.row_count()) || problem.is_out_of_time()) break;
     }
     problem.tell(report.sweeps + report.factorizations, report.measure);
@@ -178,6 +179,7 @@ struct BasicDirectGaussSeidel {
     rest.each([&](auto p, Index i) { rest.template prepare<p>(i, work.others.template diagonal<p>(i)); });
     const SolveReport swept = sweeper(max_iterations - report.sweeps).solve(rest, work.sweeps);
     report.sweeps += swept.sweeps;
+    if (swept.status == Status::infeasible) report.status = swept.status;
     rest.each([&](auto p, Index i) {
       auto& lambda = problem.impulse(p, i);
       const auto found = lambda;

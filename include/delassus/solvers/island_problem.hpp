@@ -40,6 +40,8 @@ class IslandProblem {
  public:
   using T = typename Rows::Scalar;
   using Observes = Observer;
+  using RowsType = Rows;
+  using OperatorType = Operator;
   using BookType = Book;
   static constexpr int pools = Rows::pool_count;
 
@@ -51,6 +53,12 @@ class IslandProblem {
   IslandProblem<Book, Rows, OtherOperator, Observer, OtherGroups> with(OtherOperator& W, const OtherGroups& items) const {
     return {book_, rows_, W, items, island_, h_, observer_};
   }
+  /// The same items too.
+  template <class OtherOperator>
+  IslandProblem<Book, Rows, OtherOperator, Observer, Groups> with(OtherOperator& W) const {
+    return {book_, rows_, W, islands_, island_, h_, observer_};
+  }
+  Operator& compliance() const { return W_; }
   /// Laws that keep something of their own block of W make it anew from `own_block`.
   template <int p, class Own>
   void prepare(Index i, const Own& own_block) {
@@ -145,6 +153,7 @@ class IslandProblem {
     each([&](auto p, Index i) {
       auto& last = std::get<p>(before.pools)[i];
       const auto here = rows_.template pool<p>().lambda[i];
+      if (here == last) return;  // an open contact, most of all
       Vec<Rows::template rows_of<p>, T> next = here + T(beta) * (here - last);
       last = here;
       book_.template clamp<p>(i, next);

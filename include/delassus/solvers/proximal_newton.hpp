@@ -170,6 +170,10 @@ struct BasicProximalNewton {
       const SolveReport swept = sweep(now.problem, work, left, 1);
       now.report.sweeps += swept.sweeps;
       now.report.measure = swept.measure;
+      if (swept.status == Status::infeasible) {
+        now.report.status = swept.status;
+        return now.report;
+      }
     } else {
       now.report.measure = now.problem.measure();
     }

@@ -52,6 +52,7 @@ Mat<3, 3, T> project_on_cone_slope(const Vec<3, T>& x, T friction) {
 /// (De Saxcé's form). Source: [AcaryBremondHuber2018].
 template <class T>
 Vec<3, T> coulomb_natural_map(const Vec<3, T>& lambda, const Vec<3, T>& u, T friction, T scale) {
+  if (lambda[0] == T(0) && u[0] >= T(0) && lambda[1] == T(0) && lambda[2] == T(0)) return lambda;  // open
   const Vec<3, T> x = scale * lambda;
   Vec<3, T> y = x - u;
   y[0] -= friction * inner::length(u[1], u[2]);

@@ -68,8 +68,7 @@ void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
   double least = 0, limit = -1;
   for (;;) {
     problem.gather(h.x);
-    sweep();
-    if (!pursuit.goes_on()) return;
+    if (!pursuit.goes_on(sweep())) return;
     problem.gather(h.z);
     if (limit < 0) limit = 100 * dot(h.z, h.z);
     for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];

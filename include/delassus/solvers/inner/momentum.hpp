@@ -10,10 +10,11 @@ namespace delassus::inner {
 ///
 ///   x⁺ = z,  θ⁺ = (1 + √(1 + 4 θ²))/2,
 ///
-/// restarted (θ = 1, y = z) when (y − z)·(z − x) > 0 or when the sweep moved more than `slack` times the one before, in
-/// energy. No slack converges where rows are soft, and is slow on rigid ones; a slack of 4 the other way round. It begins
-/// without, and changes over after 60 sweeps none of which halved the movement. `x` is room for the impulses before;
-/// sweep(x, curvature) sets that product and returns how much it moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the gradient restart.
+/// restarted (θ = 1, y = z) when (y − z)·(z − x) > 0 or when the sweep moved more than `slack` times the one
+/// before, in energy. No slack converges where rows are soft, and is slow on rigid ones; a slack of 4 the
+/// other way round. It begins without, and changes over after 60 sweeps none of which halved the movement.
+/// `x` is room for the impulses before; sweep(x, curvature) sets that product and returns how much it moved.
+/// Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the gradient restart.
 template <class Problem, class Pursuit, class Impulses, class Sweep>
 void momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -23,7 +24,7 @@ void momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
   for (;;) {
     double curvature = 0;
     const double moved = sweep(x, curvature);  // λ is z now
-    if (!pursuit.goes_on()) return;
+    if (!pursuit.goes_on(moved)) return;
     if (moved < 0.25 * least) {
       least = moved;
       unhalved = 0;
@@ -38,7 +39,10 @@ void momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
       last = infinity;
     } else {
       const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
-      problem.extrapolate(x, (theta - 1) / next);
+      if (theta > 1)
+        problem.extrapolate(x, (theta - 1) / next);
+      else
+        problem.save(x);
       theta = next;
       last = moved;
     }

@@ -17,7 +17,9 @@ template <class Criterion, class Solver, class Problem, class Impulses>
 class Pursuit {
  public:
   Pursuit(const Solver& solver, Problem& problem, Impulses& best)
-      : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {}
+      : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {
+    reach_ = near * solver.tolerance * (solver.scale_tolerance ? rows_ : 1);
+  }
 
   /// False: there is nothing to sweep. The start itself is measured only where that can end the solve or
   /// somebody asks for every sweep: a measure costs about a sweep, and most warm starts are within the
@@ -40,16 +42,16 @@ class Pursuit {
     mark_ = Criterion::sum(best_);
   }
 
-  /// After a sweep of the present stage, λ being what it made: false when the stage, or the solve, is over.
-  bool goes_on() {
+  /// After a sweep of the present stage that moved λ by `moved` in energy, λ being what it made: false when
+  /// the stage, or the solve, is over.
+  bool goes_on(double moved) {
     ++report_.sweeps;
     is_last_ = report_.sweeps >= solver_.max_iterations ||
                (report_.sweeps >= solver_.min_iterations && problem_.is_out_of_time());
-    const int batch =
-        Problem::Observes::every_sweep || !Criterion::needs_measure ? 1 : inner::patience(report_.sweeps);
-    if (report_.sweeps - measured_ < batch && !is_last_) return true;
+    if (!is_last_ && !is_due(moved)) return true;
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
+    per_root_of_movement_ = Criterion::sum(report_.measure) / std::sqrt(moved);
     problem_.tell(report_.sweeps, report_.measure);
     if (std::isinf(best_.residual) && is_not_finite()) return false;
     is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
@@ -69,6 +71,9 @@ class Pursuit {
   /// The tolerance is met, or no sweep is left.
   bool is_over() const { return is_met_ || is_last_ || is_quarantined(); }
   bool is_quarantined() const { return report_.status == Status::quarantined; }
+
+  /// What is left of the sweeps.
+  int left() const { return solver_.max_iterations - report_.sweeps; }
 
   /// λ ← the best measured.
   void back_to_best() { problem_.load(best_set_); }
@@ -94,11 +99,19 @@ class Pursuit {
   bool is_done(const Measure& m) const {
     return inner::is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
   }
+  /// The error is foretold from the sweep's movement, their ratio being that of the last measure: where that
+  /// is within the tolerance it is time to measure, and no later than after twice the usual number of sweeps.
+  bool is_due(double moved) const {
+    if (Problem::Observes::every_sweep || !Criterion::needs_measure || measured_ == 0) return true;
+    const bool is_near = per_root_of_movement_ * std::sqrt(moved) <= reach_;
+    return is_near || report_.sweeps - measured_ >= 2 * inner::patience(report_.sweeps);
+  }
   bool stalls() const {
     return Criterion::needs_measure &&
            report_.sweeps - progressed_ > std::max(patience_, (progressed_ - opened_) / 2);
   }
 
+  static constexpr double near = 1.5;  ///< of the tolerance, at which an error foretold is worth a measure
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
 
@@ -108,7 +121,7 @@ class Pursuit {
   SolveReport report_{};
   Measure best_ = unmeasured;
   int rows_, measured_ = 0, patience_ = 0, opened_ = 0, progressed_ = 0;
-  double mark_ = infinity;
+  double mark_ = infinity, per_root_of_movement_ = infinity, reach_;
   bool is_met_ = false, is_last_ = false;
 };
 

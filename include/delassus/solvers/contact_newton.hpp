@@ -1,0 +1,146 @@
+/// Newton's method in the impulses, inside a proximal point iteration, for problems that have no bodies.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/contact_space.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace delassus {
+
+/// Accelerated sweeps first; where they did not end the solve, the proximal point λ̂ ← λ, each found by
+/// Newton's method on F of `inner::ContactSpace`, with steps halved until |F| falls, while ε shrinks. The
+/// matrix is dense, of the rows that carry: one factorization of n rows costs n³/3 multiplications, so that
+/// this is for problems of some hundred rows; where there are bodies, `ProximalNewton` needs six unknowns a
+/// body. The smallest measured error is kept, and where Newton's method fails, sweeps go on from there.
+/// Source: [Rockafellar1976] for the proximal point, [QiSun1993] for Newton's method on it,
+/// [AcaryBremondHuber2018] for both.
+template <class Criterion = Residual>
+struct BasicContactNewton {
+  static_assert(
+      Criterion::needs_measure,
+      "delassus: ContactNewton stops on a measured error; use the criterion Residual or SiconosError");
+  using plays = role::Solver;
+  double tolerance = 1e-8;       ///< of the criterion
+  int max_iterations = 100;      ///< factorizations
+  int min_iterations = 1;        ///< sweeps even when the warm start is within the tolerance
+  int first_sweeps = 100;        ///< accelerated sweeps before the first factorization
+  int max_sweeps = 4000;         ///< in all
+  int max_rows = 600;            ///< more are swept only
+  bool scale_tolerance = false;  ///< tolerance × number of rows
+  bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+
+  template <class Rows>
+  struct Workspace {
+    inner::ContactSpace<Rows> space;
+    Impulses<Rows> best;
+    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    void reset(const Rows& rows) {
+      sweeps.reset(rows);
+      best.resize_like(rows);
+    }
+  };
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0, "ContactNewton: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations >= 0,
+                    "ContactNewton: max_iterations " + inner::text(max_iterations) + " must be >= 0");
+    DELASSUS_EXPECT(first_sweeps >= 1,
+                    "ContactNewton: first_sweeps " + inner::text(first_sweeps) + " must be >= 1");
+    DELASSUS_EXPECT(max_sweeps >= first_sweeps,
+                    "ContactNewton: max_sweeps " + inner::text(max_sweeps) + " must be >= first_sweeps");
+    DELASSUS_EXPECT(max_rows >= 0, "ContactNewton: max_rows " + inner::text(max_rows) + " must be >= 0");
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work) const {
+    SolveReport report = sweep(problem, work, first_sweeps, min_iterations);
+    if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
+    if (work.space.gather(problem, max_rows)) {
+      problem.save(work.best);
+      descend(problem, work, report);
+      problem.load(work.best);
+      report.ended_by = "newton";
+    }
+    if (!is_done(report.measure, problem.row_count()) && !problem.is_out_of_time() &&
+        report.sweeps < max_sweeps) {
+      const int factorizations = report.factorizations, before = report.sweeps;
+      report = sweep(problem, work, max_sweeps - before, 1);
+      report.sweeps += before;
+      report.factorizations = factorizations;
+      return report;
+    }
+    report.status = inner::verdict<Criterion>(*this, report.measure, problem.row_count());
+    return report;
+  }
+
+ private:
+  template <class Problem, class Workspace>
+  void descend(Problem& problem, Workspace& work, SolveReport& report) const {
+    auto& space = work.space;
+    const int rows = problem.row_count();
+    double epsilon = 1e-4, last = Criterion::sum(report.measure);
+    space.take(problem);
+    for (int stalled = 0; stalled < 8 && !is_done(report.measure, rows);) {
+      if (report.factorizations >= max_iterations || problem.is_out_of_time()) return;
+      const double fall = approach(space, epsilon, report);
+      space.give(problem);
+      const Measure now = problem.measure();
+      problem.tell(report.sweeps + report.factorizations, now);
+      const bool is_better = Criterion::sum(now) < Criterion::sum(report.measure);
+      if (is_better) {
+        report.measure = now;
+        problem.save(work.best);
+      }
+      stalled = is_better ? 0 : stalled + 1;
+      if (!(Criterion::sum(now) <= 2 * last)) problem.load(work.best);  // lost: from the best again
+      epsilon = fall < 0.3 ? std::max(0.1 * epsilon, 1e-10) : std::min(10 * epsilon, 10.0);
+      last = std::min(Criterion::sum(now), 2 * last);
+      space.take(problem);
+    }
+  }
+
+  /// Newton's method around one λ̂, until |F| has fallen by a hundred or does not fall; how far it fell.
+  template <class Space>
+  double approach(Space& space, double epsilon, SolveReport& report) const {
+    const double first = space.evaluate(epsilon);
+    double size = first;
+    for (int step = 0; step < 12 && size > 1e-2 * first && report.factorizations < max_iterations; ++step) {
+      if (!space.find_direction(epsilon)) return 1;
+      ++report.factorizations;
+      double best = 0, least = std::numeric_limits<double>::infinity();
+      for (double t = 1; t > 2e-4; t *= 0.5) {
+        const double trial = space.evaluate(epsilon, t);
+        if (trial < least) least = trial, best = t;
+        if (trial <= (1 - 1e-3 * t) * size) break;
+      }
+      if (!(least < 0.999 * size)) return size / first;
+      space.advance(best);
+      size = space.evaluate(epsilon);
+    }
+    return first > 0 ? size / first : 0;
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport sweep(Problem& problem, Workspace& work, int most, int least) const {
+    const BasicAcceleratedGaussSeidel<Criterion> solver{.tolerance = tolerance,
+                                                        .max_iterations = most,
+                                                        .min_iterations = least,
+                                                        .scale_tolerance = scale_tolerance,
+                                                        .all_verified = all_verified};
+    return solver.solve(problem, work.sweeps);
+  }
+  bool is_done(const Measure& m, int rows) const {
+    return inner::is_within<Criterion>(*this, m, rows) || m.residual <= m.floor;
+  }
+};
+
+using ContactNewton = BasicContactNewton<>;
+
+}  // namespace delassus

@@ -1,0 +1,240 @@
+/// The laws of an island as equations for its impulses alone, and the matrix of a Newton step for them.
+#pragma once
+
+#include <delassus/constraints/contact/cone.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/linear/dense_elimination.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/island_problem.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace delassus::inner {
+
+/// With u = d + W λ + ε w (λ − λ̂), ũ = u + μ |u_t| e_n in a contact and u elsewhere, w = tr(W_ii)/rows,
+///
+///   F_i(λ) = w λ − P_K(w λ − ũ),     K a cone, λ ≥ 0, or all impulses,
+///   J_i = (1 − G) w + G Q (W + ε w)_i,  G = dP_K,  Q = dũ/du.
+///
+/// Where G = 0 (a contact that is open) F_i is w λ_i, so that only the rows of the others meet in the matrix.
+/// Source: [AlartCurnier1991], [AcaryBremondHuber2018].
+template <class Rows>
+class ContactSpace {
+  struct Item {
+    Index pool, item, first;  ///< its first row
+    int rows;
+    bool is_cone, is_active = false;
+    double friction, w;
+    Mat3 slope, turned;  ///< G, and G Q, of a cone; their first entries, of a row
+  };
+
+ public:
+  /// False where a law has no such form, or there are more rows than `most`.
+  template <class Problem>
+  bool gather(Problem& problem, int most) {
+    items_.clear();
+    bool is_known = problem.row_count() <= most;
+    Index row = 0;
+    problem.each([&](auto p, Index i) {
+      constexpr int R = Rows::template rows_of<p>;
+      constexpr bool is_cone = Problem::BookType::template has_cone<p>();
+      is_known = is_known && (is_cone || (R == 1 && has_rows_alone<Problem, p>()));
+      Item item{p, i, row, R, is_cone, false, 0, 0, Mat3::Zero(), Mat3::Zero()};
+      if constexpr (is_cone) item.friction = problem.book().template friction<p>(i);
+      if constexpr (Problem::BookType::template kinds<p>()[0] == RowKind::equality) item.friction = -1;
+      item.w = double(problem.template local<p>(i).W.trace()) / R;
+      is_known = is_known && item.w > 0;
+      items_.push_back(item);
+      row += R;
+    });
+    if (!is_known) return false;
+    const std::size_t n = std::size_t(row);
+    for (auto* v : {&lambda, &centre_, &d_, &u_, &F_, &direction_, &trial_}) v->assign(n, 0);
+    W_.assign(n * n, 0);
+    read_W(problem);
+    return true;
+  }
+
+  /// λ̂ ← λ ← what the problem has.
+  template <class Problem>
+  void take(const Problem& problem) {
+    std::size_t at = 0;
+    problem.each([&](auto p, Index i) {
+      for (const auto x : problem.rows().template pool<p>().lambda[i]) lambda[at++] = double(x);
+    });
+    recentre();
+  }
+  void recentre() { centre_ = lambda; }
+  /// The problem takes λ, each brought into its law's cone.
+  template <class Problem>
+  void give(Problem& problem) const {
+    std::size_t at = 0;
+    problem.each([&](auto p, Index i) {
+      Vec<Rows::template rows_of<p>, typename Rows::Scalar> next;
+      for (auto& x : next) x = typename Rows::Scalar(lambda[at++]);
+      problem.book().template clamp<p>(i, next);
+      problem.template assign<p>(i, next);
+    });
+  }
+
+  /// |F| at λ + t δ.
+  double evaluate(double epsilon, double t = 0) {
+    for (std::size_t i = 0; i < lambda.size(); ++i)
+      trial_[i] = t == 0 ? lambda[i] : lambda[i] + t * direction_[i];
+    multiply(trial_);
+    double sum = 0;
+    for (Item& item : items_) sum += evaluate_item(item, epsilon);
+    return std::sqrt(sum);
+  }
+  void advance(double t) {
+    for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] += t * direction_[i];
+  }
+
+  /// J δ = −F of the last `evaluate`; false when J is singular.
+  bool find_direction(double epsilon) {
+    active_.clear();
+    for (const Item& item : items_) {
+      if (item.is_active)
+        for (int k = 0; k < item.rows; ++k) active_.push_back(item.first + k);
+      else
+        for (int k = 0; k < item.rows; ++k) direction_[item.first + k] = -F_[item.first + k] / item.w;
+    }
+    matrix_.resize(Index(active_.size()));
+    right_.assign(active_.size(), 0);
+    Index row = 0;
+    for (const Item& item : items_)
+      if (item.is_active) {
+        fill(item, row, epsilon);
+        row += item.rows;
+      }
+    if (!matrix_.factor()) return false;
+    matrix_.solve(right_);
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      if (!std::isfinite(right_[k])) return false;
+      direction_[active_[k]] = right_[k];
+    }
+    return true;
+  }
+
+  std::vector<double> lambda;
+
+ private:
+  template <class Problem, int p>
+  static constexpr bool has_rows_alone() {
+    for (const RowKind kind : Problem::BookType::template kinds<p>())
+      if (kind != RowKind::equality && kind != RowKind::lower) return false;
+    return true;
+  }
+
+  /// W column by column, from the answer to an impulse on each row; d with it.
+  template <class Problem>
+  void read_W(Problem& problem) {
+    using T = typename Rows::Scalar;
+    const std::size_t n = lambda.size();
+    Impulses<Rows>& was = was_;
+    was.resize_like(problem.rows());
+    problem.save(was);
+    problem.each(
+        [&](auto p, Index i) { problem.template assign<p>(i, Vec<Rows::template rows_of<p>, T>::Zero()); });
+    const auto read = [&](double* to) {
+      std::size_t at = 0;
+      problem.each([&](auto p, Index i) {
+        for (const T x : problem.template local<p>(i).d) to[at++] = double(x);
+      });
+    };
+    read(d_.data());
+    double scale = 1;
+    for (const double x : d_) scale = std::max(scale, std::abs(x));
+    std::size_t column = 0;
+    problem.each([&](auto p, Index i) {
+      constexpr int R = Rows::template rows_of<p>;
+      const double size = 1e3 * scale * R / double(problem.template local<p>(i).W.trace());
+      for (int k = 0; k < R; ++k, ++column) {
+        Vec<R, T> impulse = Vec<R, T>::Zero();
+        impulse[k] = T(size);
+        problem.template assign<p>(i, impulse);
+        read(&W_[column * n]);
+        for (std::size_t row = 0; row < n; ++row)
+          W_[column * n + row] = (W_[column * n + row] - d_[row]) / size;
+      }
+      problem.template assign<p>(i, Vec<R, T>::Zero());
+    });
+    problem.load(was);
+  }
+
+  /// u ← d + W x.
+  void multiply(const std::vector<double>& x) {
+    const std::size_t n = x.size();
+    u_ = d_;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (x[j] == 0) continue;
+      const double* const w = &W_[j * n];
+      for (std::size_t i = 0; i < n; ++i) u_[i] += w[i] * x[j];
+    }
+  }
+
+  /// Sets F, G and Q of one constraint; returns |F_i|².
+  double evaluate_item(Item& item, double epsilon) {
+    const Index at = item.first;
+    for (int k = 0; k < item.rows; ++k) u_[at + k] += epsilon * item.w * (trial_[at + k] - centre_[at + k]);
+    if (!item.is_cone) {
+      const double x = item.w * trial_[at] - u_[at];
+      item.is_active = item.friction < 0 || x > 0;
+      F_[at] = item.is_active ? u_[at] : item.w * trial_[at];
+      return F_[at] * F_[at];
+    }
+    const Vec<3> scaled(item.w * trial_[at], item.w * trial_[at + 1], item.w * trial_[at + 2]);
+    const double slip = length(u_[at + 1], u_[at + 2]);
+    const Vec<3> x(scaled[0] - u_[at] - item.friction * slip, scaled[1] - u_[at + 1], scaled[2] - u_[at + 2]);
+    item.slope = project_on_cone_slope(x, item.friction);
+    item.turned = item.slope;
+    item.is_active = item.slope(0, 0) > 0;
+    if (slip > 0)
+      for (int row = 0; row < 3; ++row)
+        for (int k = 1; k < 3; ++k)
+          item.turned(row, k) += item.slope(row, 0) * item.friction * u_[at + k] / slip;
+    const Vec<3> projected = project_on_cone(x, item.friction);
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      F_[at + k] = scaled[k] - projected[k];
+      sum += F_[at + k] * F_[at + k];
+    }
+    return sum;
+  }
+
+  /// The rows of one active constraint, on the active columns and, known, the others.
+  void fill(const Item& item, Index row, double epsilon) {
+    const std::size_t n = lambda.size();
+    const auto turned = [&](int k, int l) { return item.is_cone ? item.turned(k, l) : 1.0; };
+    const auto times = [&](int k, std::size_t column) {  // (G Q W)_k, column
+      double sum = 0;
+      for (int l = 0; l < item.rows; ++l) sum += turned(k, l) * W_[column * n + std::size_t(item.first + l)];
+      return sum;
+    };
+    for (int k = 0; k < item.rows; ++k) {
+      double right = -F_[item.first + k];
+      for (const Item& other : items_)
+        if (!other.is_active)
+          for (int l = 0; l < other.rows; ++l)
+            if (const double x = direction_[other.first + l]; x != 0)
+              right -= times(k, std::size_t(other.first + l)) * x;
+      right_[row + k] = right;
+      for (Index j = 0; j < Index(active_.size()); ++j)
+        matrix_.at(row + k, j) = times(k, std::size_t(active_[j]));
+      for (int l = 0; l < item.rows; ++l)
+        matrix_.at(row + k, row + l) +=
+            item.w * ((k == l ? 1 : 0) - (item.is_cone ? item.slope(k, l) : 1.0) + epsilon * turned(k, l));
+    }
+  }
+
+  std::vector<Item> items_;
+  std::vector<double> centre_, d_, u_, F_, direction_, trial_, right_, W_;  ///< W column by column
+  std::vector<Index> active_;
+  DenseElimination matrix_;
+  Impulses<Rows> was_;
+};
+
+}  // namespace delassus::inner

@@ -1,0 +1,134 @@
+/// A proof that the rows of an island contradict each other.
+#pragma once
+
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/island_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delassus::inner {
+
+/// Impulses z that move nothing and yet would do work against what the rows ask: z free on an equality, ≥ 0
+/// on a lower row, ≤ 0 on an upper one, 0 where friction or a bound holds, and
+///
+///   W z = 0,   dᵀz < 0.
+///
+/// Velocities u = d + W λ that meet the rows have zᵀu ≥ 0, but zᵀu = dᵀz < 0 whatever λ is: there are none.
+/// In numbers W z is not zero, and what is proved is that λ would have to be large: with y_i = √w_i λ_i,
+///
+///   |y| ≥ −dᵀz/√(Σ |(W z)_i|²/w_i),
+///
+/// which must be `margin` times √(Σ |d_i|²/w_i). A mass ratio r needs y of r times that, so that the margin
+/// is beyond any ratio that sweeps get through. Source: [Gale1960], the theorem of the alternative.
+template <class Problem>
+class Contradiction {
+  using T = typename Problem::T;
+  static constexpr double margin_power = 0.65;  ///< of 1/rounding: 1.5e10 in double, 3e4 in float
+  struct Sums {
+    double work = 0, moved = 0, free = 0, size = 0;
+  };
+
+ public:
+  explicit Contradiction(Problem& problem) : problem_(problem) {}
+
+  /// From the direction in which λ has gone since `before` was saved; λ is something else afterwards.
+  template <class Impulses>
+  bool is_proved(const Impulses& before) {
+    problem_.each([&](auto p, Index i) {
+      auto z = problem_.rows().template pool<p>().lambda[i];
+      z -= std::get<p>(before.pools)[i];
+      clear_bounded<p>(z);
+      problem_.template assign<p>(i, z);
+    });
+    const double margin = std::pow(double(std::numeric_limits<T>::epsilon()), -margin_power);
+    double last = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 40; ++round) {
+      const Sums s = measure();
+      const double moved = std::sqrt(s.moved), free = std::sqrt(s.free), size = std::sqrt(s.size);
+      if (s.work > 1e-6 * free * size && s.work >= margin * moved * free) return true;
+      if (!(s.work > 1e-6 * free * size) || !(moved < 0.7 * last) || problem_.is_out_of_time()) return false;
+      last = moved;
+      for (int k = 0; k < 8; ++k) sweep();
+    }
+    return false;
+  }
+
+ private:
+  template <int p, class Z>
+  static void clear_bounded(Z& z) {
+    constexpr auto kinds = Problem::BookType::template kinds<p>();
+    for (std::size_t k = 0; k < kinds.size(); ++k) z[Index(k)] = allowed(kinds[k], z[Index(k)]);
+  }
+  static T allowed(RowKind kind, T z) {
+    switch (kind) {
+      case RowKind::equality:
+        return z;
+      case RowKind::lower:
+        return std::max(z, T(0));
+      case RowKind::upper:
+        return std::min(z, T(0));
+      case RowKind::friction:
+        break;
+    }
+    return 0;
+  }
+
+  /// (W z)_i.
+  template <int p>
+  auto moved_by(Index i, const auto& c) const {
+    auto u = c.d;
+    u -= problem_.rows().template pool<p>().d[i];
+    return u;
+  }
+
+  Sums measure() const {
+    Sums s;
+    problem_.each([&](auto p, Index i) {
+      const auto c = problem_.template local<p>(i);
+      const auto u = moved_by<p>(i, c);
+      const auto& d = problem_.rows().template pool<p>().d[i];
+      const double w = double(c.W.trace()) / double(d.size());
+      if (!(w > 0)) return;
+      s.work -= double(d.dot(c.lambda));
+      s.moved += double(u.squaredNorm()) / w;
+      s.free += double(d.squaredNorm()) / w;
+      s.size += w * double(c.lambda.squaredNorm());
+    });
+    return s;
+  }
+
+  /// Gauss-Seidel on min ½ zᵀ W z, row by row.
+  void sweep() {
+    problem_.each([&](auto p, Index i) {
+      constexpr auto kinds = Problem::BookType::template kinds<p>();
+      const auto c = problem_.template local<p>(i);
+      auto u = moved_by<p>(i, c);
+      auto z = c.lambda;
+      for (std::size_t row = 0; row < kinds.size(); ++row) {
+        const Index k = Index(row);
+        if (kinds[row] == RowKind::friction || !(c.W(k, k) > T(0))) continue;
+        const T next = allowed(kinds[row], z[k] - u[k] / c.W(k, k)), change = next - z[k];
+        z[k] = next;
+        for (Index j = 0; j < Index(kinds.size()); ++j) u[j] += c.W(j, k) * change;
+      }
+      problem_.template assign<p>(i, z);
+    });
+  }
+
+  Problem& problem_;
+};
+
+/// Whether λ runs away because the rows contradict each other: asked where sweeps have stalled. Costs sixteen
+/// sweeps where λ does not, and at most some three hundred; `before` is room for impulses.
+template <class Problem, class Pursuit, class Impulses>
+bool contradicts(Problem& problem, Pursuit& pursuit, Impulses& before) {
+  problem.save(before);
+  for (int k = 0; k < 16; ++k) problem.sweep();
+  if (Contradiction<Problem>(problem).is_proved(before)) return true;
+  pursuit.back_to_best();
+  return false;
+}
+
+}  // namespace delassus::inner

@@ -1,0 +1,80 @@
+// When the stages of a solve look at the error, on errors that are given.
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/inner/pursuit.hpp>
+
+#include "catch.hpp"
+
+#include <cmath>
+#include <functional>
+
+using namespace delassus;
+
+namespace {
+
+struct Quiet {
+  static constexpr bool every_sweep = false;
+};
+
+/// An error for each number of sweeps, and who asks for it.
+struct Given {
+  using Observes = Quiet;
+  std::function<double(int)> error;
+  int sweeps = 0, measures = 0, saved = 0;
+
+  int row_count() const { return 100; }
+  Measure measure() {
+    ++measures;
+    return {.residual = error(sweeps), .siconos = error(sweeps)};
+  }
+  void save(int& to) const { to = sweeps; }
+  void load(int) {}
+  void tell(int, const Measure&) const {}
+  static constexpr bool is_out_of_time() { return false; }
+};
+
+/// Sweeps that move as far as the error says, until the pursuit ends.
+SolveReport follow(Given& problem, double tolerance) {
+  const AcceleratedGaussSeidel solver{.tolerance = tolerance};
+  int best = 0;
+  inner::Pursuit<Residual, AcceleratedGaussSeidel, Given, int> pursuit(solver, problem, best);
+  REQUIRE(pursuit.begin());
+  pursuit.open("sweeps", 1000);
+  do ++problem.sweeps;
+  while (pursuit.goes_on(std::pow(7 * problem.error(problem.sweeps), 2)));
+  return pursuit.finish();
+}
+
+}  // namespace
+
+// 0.97^k = 1e-5 at k = 378. The movement foretells the error without fault here, and it is looked at
+// from 1.5e-5 on: at 364 first, then at most at every sweep.
+TEST_CASE("a solve whose movement falls with its error ends in the very sweep that meets the tolerance") {
+  Given problem{[](int k) { return std::pow(0.97, k); }};
+  const SolveReport r = follow(problem, 1e-5);
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(r.sweeps == 378);
+  // At intervals alone: 4 to sweep 4, 12 to 64, 14 to 364; then 15.
+  REQUIRE(problem.measures <= 45);
+}
+
+// The error dips for one sweep; at intervals of 32 nobody would look there.
+TEST_CASE("an error that dips below the tolerance for a single sweep is caught") {
+  Given problem{[](int k) { return k == 201 ? 0.5e-3 : 2e-3 + std::pow(0.9, k); }};
+  const SolveReport r = follow(problem, 1e-3);
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(r.sweeps == 201);
+}
+
+TEST_CASE("a movement that foretells a large error does not keep the solve from looking") {
+  // The sweeps move as far as ever (a row that nothing resists), the error falls.
+  Given problem{[](int k) { return std::pow(0.5, k); }};
+  const AcceleratedGaussSeidel solver{.tolerance = 1e-9};
+  int best = 0;
+  inner::Pursuit<Residual, AcceleratedGaussSeidel, Given, int> pursuit(solver, problem, best);
+  REQUIRE(pursuit.begin());
+  pursuit.open("sweeps", 1000);
+  do ++problem.sweeps;
+  while (pursuit.goes_on(1));
+  REQUIRE(pursuit.finish().status == Status::converged);
+  REQUIRE(problem.sweeps <= 30 + 16);  // 2^-30 = 9.3e-10, and twice an interval of 8
+}
