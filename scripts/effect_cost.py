@@ -21,7 +21,7 @@ from programs import has_valgrind, instructions, run  # noqa: E402
 
 SETTLED, COUNTED = 300, 100
 
-# Row of the table · number in effects.cpp · the row it is compared with · whether it can be stacked
+# Row of the table · name in effects.cpp · the row it is compared with · whether it can be stacked
 EFFECTS = [
     ("bodies that fall, nothing else", "bodies_alone", None, False),
     ("contact without friction", "frictionless", "bodies_alone", True),
@@ -35,13 +35,11 @@ EFFECTS = [
     ("`Sleeping`, all asleep", "sleeping_asleep", "friction", True),
     ("a joint law without a joint", "law_without_item", "friction", True),
     ("listener `Stopwatch`", "stopwatch", "friction", True),
-    ("listener `ConvergenceRecord`", "convergence_record", "friction", True),
     ("listener `DoubleBuffer`", "double_buffer", "friction", True),
     ("a ball joint each, no contact", "ball_joint", "bodies_alone", False),
     ("a hinge each", "hinge", "bodies_alone", False),
     ("a limit on each hinge, out of reach", "hinge_far_limit", "hinge", False),
     ("a limit on each hinge, at its stop", "hinge_at_limit", "hinge", False),
-    ("a motor on each hinge", "hinge_motor", "hinge", False),
 ]
 
 

@@ -1,4 +1,4 @@
-// Ten boxes of 1 kg for a number of steps, with one effect more or less: DELASSUS_EFFECT is its number in the
+// Ten boxes of 1 kg for a number of steps, with one effect more or less: DELASSUS_EFFECT is its name in the
 // list below. The difference of two runs under callgrind is the instructions of a step;
 // scripts/effect_cost.py makes the table.
 //   effects <apart|stacked> <steps>
@@ -39,7 +39,6 @@ enum Effect {
   position_projection,
   law_without_item,
   stopwatch,
-  convergence_record,
   double_buffer,
   sleeping_awake,
   sleeping_asleep,
@@ -47,8 +46,7 @@ enum Effect {
   ball_joint,
   hinge,
   hinge_far_limit,
-  hinge_at_limit,
-  hinge_motor
+  hinge_at_limit
 };
 
 template <Effect effect>
@@ -72,8 +70,6 @@ auto make() {
     return with(Constraints{coulomb, BallJoint{}}, sweeps);
   else if constexpr (effect == stopwatch)
     return with(Constraints{coulomb}, sweeps, Stopwatch{});
-  else if constexpr (effect == convergence_record)
-    return with(Constraints{coulomb}, sweeps, ConvergenceRecord{});
   else if constexpr (effect == double_buffer)
     return with(Constraints{coulomb}, sweeps, DoubleBuffer{});
   else if constexpr (effect == sleeping_awake)
@@ -86,8 +82,6 @@ auto make() {
     return with(Constraints{BallJoint{}}, sweeps);
   else if constexpr (effect == hinge)
     return with(Constraints{Hinge{}}, sweeps);
-  else if constexpr (effect == hinge_motor)
-    return with(Constraints{Hinge{}, Motor<Turn>{}}, sweeps);
   else
     return with(Constraints{Hinge{}, Limit<Turn>{}}, sweeps);
 }
@@ -117,7 +111,6 @@ void run(bool is_stacked, int steps) {
         loop.add(Limit<Turn>::Item{.a = hook, .b = box, .lower = -1, .upper = 1});
       if constexpr (effect == hinge_at_limit)
         loop.add(Limit<Turn>::Item{.a = hook, .b = box, .lower = 0, .upper = 1});
-      if constexpr (effect == hinge_motor) loop.add(Motor<Turn>::Item{.a = hook, .b = box, .max_force = 1});
     }
   }
   for (int n = 0; n < steps; ++n) loop.step(h);
