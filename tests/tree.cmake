@@ -41,6 +41,8 @@ delassus_tree_test(tree/includes_self_test ${Python3_EXECUTABLE} ${scripts}/chec
 delassus_tree_test(tree/docs ${Python3_EXECUTABLE} ${scripts}/check_docs.py ${PROJECT_SOURCE_DIR})
 delassus_tree_test(tree/docs_self_test ${Python3_EXECUTABLE} ${scripts}/check_docs.py --self-test)
 
+delassus_tree_test(tree/front_page ${Python3_EXECUTABLE} ${scripts}/front_page.py --check)
+
 # --- the mutants of scripts/mutants.py still find what they replace --------------------------------------------------
 delassus_tree_test(tree/mutants ${Python3_EXECUTABLE} ${scripts}/mutants.py --check)
 

@@ -1,6 +1,8 @@
 // The tables and the page of delassus_ladders.
 #include "report.hpp"
 
+#include "peers.hpp"
+
 #include <delassus/io/inner/text.hpp>
 
 namespace ladders {
@@ -86,7 +88,10 @@ Table figures(const std::vector<Climbed>& all) {
 }
 
 std::string markdown(const std::vector<Climbed>& all) {
-  const Table table = summary(all);
+  Table table = summary(all);
+  table.columns.push_back("best peer");
+  for (std::size_t k = 0; k < all.size(); ++k)
+    table.rows[k].push_back(std::string(best_peer(all[k].row->id, all[k].row->title)));
   std::string out;
   const auto append_line = [&](const auto& text_of) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) out += "| " + text_of(c) + " ";
@@ -114,7 +119,8 @@ std::string page(const std::vector<Climbed>& all) {
     for (const Rung& rung : ladder.rungs)
       out += "<span class=\"r " + std::string(name(rung.level)) + "\" title=\"" + html(all_figures(rung)) +
              "\"></span>";
-    out += "<td><small>" + html(first_failing(ladder)) + "</small>\n";
+    out += "<td><small>" + html(first_failing(ladder)) + "</small><td><small>" +
+           html(std::string(best_peer(ladder.row->id, ladder.row->title))) + "</small>\n";
   }
   out += "</table><h2>Not run</h2><ul>";
   for (const Missing& row : missing)

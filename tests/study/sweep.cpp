@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 using namespace scripted;
 
@@ -207,6 +209,20 @@ TEST_CASE(
   REQUIRE(mended.runs.size() == 8);
   CHECK(mended.runs[7].errors == whole.runs[7].errors);
   CHECK(sweep(stage.scene, list, plan, measures, references, stage.clock()).resumed == 8);
+
+  // Numbers that no run has, in the fields of the number, the outcome and the steps of one line.
+  std::ifstream file(plan.log);
+  const std::string sound((std::istreambuf_iterator<char>(file)), {});
+  for (const int field : {2, 7, 11})
+    for (const char* wrong : {"1e300", "-1", "nan", "9e99"}) {
+      std::size_t start = sound.rfind('\n', sound.find("\trun\t")) + 1;
+      for (int k = 0; k < field; ++k) start = sound.find('\t', start) + 1;
+      std::string damaged = sound;
+      damaged.replace(start, sound.find('\t', start) - start, wrong);
+      std::ofstream(plan.log) << damaged;
+      CAPTURE(field, wrong);
+      CHECK(sweep(stage.scene, list, plan, measures, references, stage.clock()).resumed == 7);
+    }
 
   StudyPlan longer = plan;
   longer.duration = 2;

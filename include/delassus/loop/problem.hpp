@@ -37,7 +37,7 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver) 
     worst.status = worse(worst.status, r.status);
     worst.sweeps = std::max(worst.sweeps, r.sweeps);
     worst.factorizations = std::max(worst.factorizations, r.factorizations);
-    if (r.measure.residual >= worst.measure.residual) {
+    if (!(r.measure.residual < worst.measure.residual)) {  // NaN is the worst of all
       worst.measure = r.measure;
       worst.ended_by = r.ended_by;
     }

@@ -5,6 +5,7 @@
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 
 namespace delassus {
@@ -40,10 +41,11 @@ inline int patience(int sweeps) {
   return sweeps < 4 ? 1 : sweeps < 8 ? 2 : sweeps < 24 ? 4 : sweeps < 64 ? 8 : sweeps < 512 ? 16 : 32;
 }
 
-/// Converged, at the rounding floor above the tolerance, or out of sweeps.
+/// Converged, at the rounding floor above the tolerance, out of sweeps, or away to where there are no numbers.
 template <class Criterion, class Solver>
 Status verdict(const Solver& solver, const Measure& m, int rows) {
   if (is_within<Criterion>(solver, m, rows)) return Status::converged;
+  if (!std::isfinite(m.residual)) return Status::quarantined;
   return m.residual <= m.floor ? Status::stalled : Status::max_iterations;
 }
 

@@ -3,10 +3,12 @@
 
 #include <delassus/study/study.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -85,24 +87,32 @@ class StudyLog {
     std::istringstream stream(line);
     for (std::string field; std::getline(stream, field, '\t');) fields.push_back(field);
     const auto number = [&](std::size_t k) { return std::strtod(fields[k].c_str(), nullptr); };
+    // A count that a double holds exactly; −1 for what somebody else wrote there.
+    const auto count = [&](std::size_t k, double most) {
+      const double value = number(k);
+      return value >= 0 && value <= most ? long(value) : -1l;
+    };
     if (fields.size() < 2 || fields[0] != key_) return;
     if (fields[1] == "reference" && fields.size() == 2 + measures) {
       uncertainties_.emplace();
       for (std::size_t k = 2; k < fields.size(); ++k) uncertainties_->push_back(number(k));
     }
     if (fields[1] != "run" || fields.size() != 13 + measures) return;
-    StudyRun run{.number = int(number(2)),
-                 .combination = int(number(3)),
+    const long outcome = count(7, double(Outcome::too_slow));
+    constexpr double most_runs = std::numeric_limits<int>::max(), most_steps = 9007199254740992.0;  // 2⁵³
+    StudyRun run{.number = int(count(2, most_runs)),
+                 .combination = int(count(3, most_runs)),
                  .code = fields[4],
                  .tolerance = number(5),
                  .h = number(6),
-                 .outcome = Outcome(int(number(7))),
+                 .outcome = Outcome(outcome),
                  .cost = number(8),
                  .least_cost = number(9),
                  .sweeps = number(10),
-                 .steps = long(number(11)),
-                 .capped_steps = long(number(12)),
+                 .steps = count(11, most_steps),
+                 .capped_steps = count(12, most_steps),
                  .errors = {}};
+    if (std::min({long(run.number), long(run.combination), outcome, run.steps, run.capped_steps}) < 0) return;
     for (std::size_t k = 13; k < fields.size(); ++k) run.errors.push_back(number(k));
     runs_.push_back(std::move(run));
   }

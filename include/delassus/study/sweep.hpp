@@ -142,6 +142,7 @@ class Sweeper {
     ((code += (code.empty() ? "" : ", ") + code_of(policies)), ...);
     if (const StudyRun* known = log_->find(number, code)) {
       study_.runs.push_back(*known);
+      study_.runs.back().combination = combination;
       ++study_.resumed;
     } else {
       if (!has_reference_) find_reference();

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""What each effect costs: instructions of a step of ten boxes, counted by callgrind.
+
+    scripts/effect_cost.py                    prints the table
+    scripts/effect_cost.py --docs FILE        and puts it between the two marks `effects` of a page
+    scripts/effect_cost.py NAME...            only these rows, "ball joint" say
+
+Counts depend on compiler, flags and Eigen, not on the machine's load. Every row is a program of its own, compiled with -O3: some
+five seconds and 400 MB each. The steps counted are the hundred after the first three hundred, in which the boxes come to rest.
+"""
+import argparse
+import os
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests" / "zero_cost"))
+from programs import has_valgrind, instructions, run  # noqa: E402
+
+SETTLED, COUNTED = 300, 100
+
+# Row of the table · name in effects.cpp · the row it is compared with · whether it can be stacked
+EFFECTS = [
+    ("bodies that fall, nothing else", "bodies_alone", None, False),
+    ("contact without friction", "frictionless", "bodies_alone", True),
+    ("Coulomb friction", "friction", "frictionless", True),
+    ("restitution", "restitution", "friction", True),
+    ("no warm start", "cold_start", "friction", True),
+    ("`SoftContact` for `Baumgarte`", "soft_contact", "friction", True),
+    ("`PositionProjection` for `Baumgarte`", "position_projection", "friction", True),
+    ("`ProximalNewton` for sweeps", "newton", "friction", True),
+    ("`Sleeping`, all awake", "sleeping_awake", "friction", True),
+    ("`Sleeping`, all asleep", "sleeping_asleep", "friction", True),
+    ("a joint law without a joint", "law_without_item", "friction", True),
+    ("listener `Stopwatch`", "stopwatch", "friction", True),
+    ("listener `DoubleBuffer`", "double_buffer", "friction", True),
+    ("a ball joint each, no contact", "ball_joint", "bodies_alone", False),
+    ("a hinge each", "hinge", "bodies_alone", False),
+    ("a limit on each hinge, out of reach", "hinge_far_limit", "hinge", False),
+    ("a limit on each hinge, at its stop", "hinge_at_limit", "hinge", False),
+]
+
+
+def count(program, place):
+    """Instructions of one step."""
+    less, more = (instructions(program, place, steps)[0] for steps in (SETTLED, SETTLED + COUNTED))
+    return (more - less) / COUNTED
+
+
+def measure(names, compiler, system):
+    """{effect: [apart, stacked or None]}"""
+    figures = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for title, effect, _, can_stack in EFFECTS:
+            if names and not any(name in title or name == effect for name in names):
+                continue
+            program = Path(folder) / effect
+            run(compiler, "-std=c++20", "-O3", "-DNDEBUG", f"-DDELASSUS_EFFECT={effect}", "-I",
+                ROOT / "include", "-isystem", system, ROOT / "scripts" / "effect_cost" / "effects.cpp", "-o", program)
+            figures[effect] = [count(program, place) if place == "apart" or can_stack else None for place in ("apart", "stacked")]
+            print(title, figures[effect], flush=True)
+    return figures
+
+
+def number(value):
+    return "" if value is None else f"{round(value):,}".replace(",", " ")
+
+
+def beside(value, base):
+    """How much more than another row, in per cent or in times."""
+    if value is None or base is None:
+        return ""
+    ratio = value / base
+    if 0.1 <= ratio < 2:
+        return "±0" if round(value) == round(base) else f"{100 * (ratio - 1):+.2g} %" if abs(ratio - 1) < 0.1 else f"{100 * (ratio - 1):+.0f} %"
+    return f"{ratio:.2g} ×" if ratio >= 2 else f"{100 * ratio:.2g} %"
+
+
+def table(figures):
+    titles = {effect: title for title, effect, _, _ in EFFECTS}
+    lines = ["| effect | compared with | apart | beside it | stacked | beside it |", "| --- | --- | --: | --: | --: | --: |"]
+    for title, effect, base, _ in EFFECTS:
+        if effect not in figures:
+            continue
+        own, other = figures[effect], figures.get(base, [None, None])
+        cells = [title, titles.get(base, ""), number(own[0]), beside(own[0], other[0]), number(own[1]), beside(own[1], other[1])]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def put(page, text):
+    old = page.read_text(encoding="utf-8")
+    new, found = re.subn(r"(<!-- effects -->\n).*?(<!-- end of effects -->)", lambda m: m[1] + text + m[2], old, flags=re.DOTALL)
+    if found != 1:
+        sys.exit(f"{page} has no lines '<!-- effects -->' and '<!-- end of effects -->' for the table to stand between")
+    page.write_text(new, encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--docs", type=Path)
+    parser.add_argument("--compiler", default=os.environ.get("CXX", "g++"))
+    parser.add_argument("--system", default="/usr/include/eigen3", help="the include directory of Eigen")
+    options = parser.parse_args()
+    if not has_valgrind():
+        return 1
+    figures = measure(options.names, options.compiler, options.system)
+    if not figures:
+        print("no effect of this name")
+        return 2
+    text = table(figures)
+    print(text, end="")
+    if options.docs:
+        put(options.docs, text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
