@@ -33,6 +33,7 @@ struct WithCompounds {
   /// Keeps a compound; the shape it returns is for bodies of the loop that has this backend, as many as
   /// wanted. A dynamic body takes `mass()` and `inertia()` of the compound.
   Shape add(Compound compound) {
+    DELASSUS_EXPECT(compound.part_count() > 0, "this compound has no part; give it some");
     const Vec3 reach = compound.reach();
     compounds_.push_back(std::move(compound));
     return KeptShape{ShapeKind::compound, int(compounds_.size()) - 1, reach};
@@ -69,7 +70,7 @@ struct WithCompounds {
   }
 
   void memory(auto& archive) {
-    archive(names_, next_name_);
+    archive(compounds_, names_, next_name_);
     inner::remember(backend, archive);
   }
   CollisionSettings settings() const { return inner::settings_of(backend); }

@@ -39,11 +39,13 @@ struct WithMeshes {
   /// Keeps a surface; the shape it returns is for bodies of the loop that has this backend, as many as
   /// wanted.
   Shape add(TriangleMesh mesh) {
+    DELASSUS_EXPECT(mesh.triangle_count() > 0, "this mesh has no triangle; give it some");
     const inner::Bounds bounds = mesh.bounds();
     meshes_.push_back(std::move(mesh));
     return kept(false, Index(meshes_.size()) - 1, bounds);
   }
   Shape add(HeightField field) {
+    DELASSUS_EXPECT(field.triangle_count() > 0, "this height field has no point; give it some");
     const inner::Bounds bounds = field.bounds();
     fields_.push_back(std::move(field));
     return kept(true, Index(fields_.size()) - 1, bounds);
@@ -84,7 +86,7 @@ struct WithMeshes {
   }
 
   void memory(auto& archive) {
-    pairs_.memory(archive);
+    archive(meshes_, fields_, kinds_, pairs_);
     inner::remember(backend, archive);
   }
   CollisionSettings settings() const { return inner::settings_of(backend); }

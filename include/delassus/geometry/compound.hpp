@@ -26,6 +26,7 @@ struct CompoundPart {
 ///   m = Σ mᵢ,   c = Σ mᵢ cᵢ / m,   I = Σ Rᵢ Iᵢ Rᵢᵀ + mᵢ (|dᵢ|² 1 − dᵢ dᵢᵀ),   dᵢ = cᵢ − c.
 class Compound {
  public:
+  Compound() = default;  ///< no part, until `memory` reads one
   explicit Compound(std::span<const CompoundPart> parts) {
     DELASSUS_EXPECT(!parts.empty(), "a compound needs at least one part");
     std::vector<MassProperties> masses;
@@ -66,6 +67,8 @@ class Compound {
     }
     return reach;
   }
+
+  void memory(auto& archive) { archive(shapes_, poses_, hull_of_, hulls_, mass_, centre_, inertia_); }
 
  private:
   /// Keeps a part and returns its mass in the given frame.

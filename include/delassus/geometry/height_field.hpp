@@ -18,6 +18,7 @@ namespace delassus {
 /// opposite one; the solid is below.
 class HeightField {
  public:
+  HeightField() = default;  ///< no point, until `memory` reads one
   HeightField(Index columns, Index rows, double dx, double dy, std::span<const double> heights)
       : columns_(columns), rows_(rows), dx_(dx), dy_(dy), heights_(heights.begin(), heights.end()) {
     DELASSUS_EXPECT(columns >= 2 && rows >= 2, "a height field of " + std::to_string(columns) + " x " +
@@ -110,6 +111,8 @@ class HeightField {
     });
   }
 
+  void memory(auto& archive) { archive(columns_, rows_, dx_, dy_, heights_, tree_); }
+
  private:
   using GridPoint = std::array<Index, 2>;
 
@@ -135,8 +138,8 @@ class HeightField {
     return b;
   }
 
-  Index columns_, rows_;
-  double dx_, dy_;
+  Index columns_ = 1, rows_ = 1;
+  double dx_ = 1, dy_ = 1;
   std::vector<double> heights_;
   inner::FlatTree tree_;
 };

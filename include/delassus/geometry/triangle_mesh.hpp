@@ -20,6 +20,7 @@ namespace delassus {
 /// triangles share or that two run through in one direction.
 class TriangleMesh {
  public:
+  TriangleMesh() = default;  ///< no triangle, until `memory` reads one
   TriangleMesh(std::span<const Vec3> vertices, std::span<const std::array<Index, 3>> triangles)
       : vertices_(vertices.begin(), vertices.end()), corners_(triangles.begin(), triangles.end()) {
     DELASSUS_EXPECT(!corners_.empty(), "a triangle mesh needs at least one triangle");
@@ -95,6 +96,8 @@ class TriangleMesh {
   void refit() {
     tree_.fit([&](Index t) { return bounds_of(t); });
   }
+
+  void memory(auto& archive) { archive(vertices_, normals_, corners_, topology_, tree_); }
 
  private:
   static void check_vertices(std::span<const Vec3> vertices) {

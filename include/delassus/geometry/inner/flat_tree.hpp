@@ -89,6 +89,8 @@ class FlatTree {
     if (!a.node_.empty() && !b.node_.empty()) cross_from(a, 0, b, 0, meets, visit);
   }
 
+  void memory(auto& archive) { archive(node_, item_); }
+
  private:
   struct Node {
     Bounds box;

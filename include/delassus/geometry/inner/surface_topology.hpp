@@ -47,6 +47,8 @@ class SurfaceTopology {
     for (const SharedEdge& e : faults_) f(e, e.third >= 0);
   }
 
+  void memory(auto& archive) { archive(neighbours_, owned_, ring_start_, ring_, faults_); }
+
  private:
   struct Edge {
     Index low, high, triangle;
