@@ -181,6 +181,25 @@ TEST_CASE("a convex edge carries, a hollow one does not") {
   }
 }
 
+TEST_CASE("a ball over an edge that is nearly flat touches it") {
+  // Both sides fall by 3e-3 rad: seen along either normal, the ball's lowest point is beside that triangle.
+  const double slope = 3e-3;
+  const std::vector<Vec3> v{{0, -2, 0},           {0, 2, 0},          {2, -2, -2 * slope}, {2, 2, -2 * slope},
+                            {-2, -2, -2 * slope}, {-2, 2, -2 * slope}};
+  for (const double x : {0.0, 5e-4, 4e-3}) {
+    MeshScene scene;
+    const Shape roof = scene.collision.add(
+        TriangleMesh(v, std::vector<Corners>{{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}}));
+    scene.add(roof, {0, 0, 0}, Mat3::Identity(), false);
+    scene.add(Sphere{0.5}, {x, 0.3, 0.499});
+    scene.detect();
+    REQUIRE(scene.contacts.size() == 1);
+    // The normal is between those of the sides; the depth is 1e-3 m but for cosines of 3e-3.
+    CHECK((scene.contacts[0].normal - Vec3(0, 0, 1)).norm() < 1.001 * slope);
+    CHECK(std::abs(scene.contacts[0].gap + 1e-3) < 2e-5);
+  }
+}
+
 TEST_CASE("a meshed box on a half-space has the contacts of the box") {
   const Mat3 tilt = Eigen::AngleAxisd(0.01, Vec3(0.3, 1, 0).normalized()).toRotationMatrix();
   Scene solid;

@@ -165,18 +165,24 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
     return solve_mass<C>(b, x);
   }
 
-  /// Of an element four, the fixed ones of them with A⁻¹ = 0.
-  int anchor_blocks(const Anchor& a) const { return a.element >= 0 ? 4 : moves(a.block) ? 1 : 0; }
+  /// Of an element those of its corners that have a share in the point, the fixed ones with A⁻¹ = 0.
+  int anchor_blocks(const Anchor& a) const {
+    if (a.element < 0) return moves(a.block) ? 1 : 0;
+    int count = 0;
+    for (int k = 0; k < 4; ++k) count += weight(a, k) != 0 ? 1 : 0;
+    return count;
+  }
   Index anchor_block(const Anchor& a, int k) const {
-    return a.element >= 0 ? body_at(a).block_of(a.element, k) : a.block;
+    return a.element >= 0 ? body_at(a).block_of(a.element, corner(a, k)) : a.block;
   }
   Velocity along(const Anchor& a, int k, const Vec3&, const Vec3& direction) const {
-    return (weight(a, k) * direction).template cast<T>();
+    return (weight(a, corner(a, k)) * direction).template cast<T>();
   }
   Vec3 point(const Anchor& a) const {
     if (a.element < 0) return x_[a.block].template cast<double>();
     Vec3 x = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) x += weight(a, k) * Vec3(x_[anchor_block(a, k)].template cast<double>());
+    for (int k = 0; k < 4; ++k)
+      x += weight(a, k) * Vec3(x_[body_at(a).block_of(a.element, k)].template cast<double>());
     return x;
   }
 
@@ -194,6 +200,10 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   }
   void restore() { x_ = shifted_x_; }
 
+  /// f(k, generation, body) for every body, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
+  void each_mesh(auto&& f) const {
+    for (const Index k : body_slots_.active()) f(k, body_slots_.generation(k), bodies_[k]);
+  }
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
   Shape shape(Index b) const { return Sphere{radius_[b]}; }
   Pose pose(Index b) const { return {x_[b].template cast<double>(), Mat3::Identity()}; }
@@ -217,6 +227,13 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   static double weight(const Anchor& a, int k) {
     if (a.element < 0) return 1;
     return k == 0 ? 1 - a.local[0] - a.local[1] - a.local[2] : a.local[k - 1];
+  }
+  /// The k-th corner of the element that has a share in the point.
+  static int corner(const Anchor& a, int k) {
+    if (a.element < 0) return 0;
+    int at = 0;
+    for (;; ++at)
+      if (weight(a, at) != 0 && k-- == 0) return at;
   }
   void each_body(auto&& f) const {
     for (const Index k : body_slots_.active()) f(bodies_[k]);

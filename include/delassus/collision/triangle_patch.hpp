@@ -94,8 +94,8 @@ enum class PatchTrust : std::uint8_t { none, sure, doubtful };
 ///   1. the shape's lowest point over the triangle and above it: the normal is the triangle's;
 ///   2. else the shortest way apart, by GJK and EPA of the cores, a closed form for spheres;
 ///   3. a normal within 0.02 rad and 1e-5 L as good, or one that the rim does not allow, becomes the
-///   triangle's; in
-///      the latter case the answer is `doubtful`: it holds on a plain and not at the rim of a cliff.
+///      triangle's; in the latter case the answer is `doubtful`: it holds on a plain and not at the rim of a
+///      cliff.
 inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& pose, double margin,
                                  double scale, Patch& patch, Vec3& normal) {
   patch.count = 0;
@@ -112,9 +112,10 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
                .point_a = lowest - height * t.normal,
                .point_b = lowest};
   bool is_flat = is_over && height >= 0, is_doubtful = false;
+  SignedPair shortest = r;
   if (!is_flat) {
-    SignedPair shortest = s.kind == ShapeKind::sphere ? inner::triangle_and_sphere(t, s.size[0], centre)
-                                                      : GjkEpa::convex(t, s, pose, margin, t.normal);
+    shortest = s.kind == ShapeKind::sphere ? inner::triangle_and_sphere(t, s.size[0], centre)
+                                           : GjkEpa::convex(t, s, pose, margin, t.normal);
     if (shortest.status == PairStatus::far ||
         (shortest.status == PairStatus::near && shortest.distance > margin))
       return PatchTrust::none;
@@ -141,6 +142,10 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
       inner::overlap_of_faces(rim, face, n, true, margin, slack, patch);
   }
   inner::drop_twins(scale, patch);
+  // A round shape over an edge that is nearly flat is beside both its triangles: the shortest way is its
+  // contact.
+  if (is_flat && !is_over && !is_doubtful && patch.count == 0)
+    r = shortest, normal = r.normal, is_flat = false;
   if (!is_flat || is_over)
     inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale, patch);
   if (patch.count == 0) return PatchTrust::none;

@@ -25,6 +25,10 @@ struct WithCompounds {
       !requires { Backend::asks_for_joints; },
       "delassus: WithFilter goes outermost; write WithFilter{WithCompounds{...}}");
 
+  static_assert(
+      !requires { Backend::has_surfaces; },
+      "delassus: WithSurfaces goes around WithCompounds; write WithSurfaces{WithCompounds{...}}");
+
   Backend backend{};
 
   WithCompounds() = default;

@@ -31,6 +31,9 @@ struct WithMeshes {
       !requires { Backend::splits_bodies; },
       "delassus: WithCompounds goes around WithMeshes; write WithCompounds{WithMeshes{...}}");
 
+  static_assert(!requires { Backend::has_surfaces; },
+                "delassus: WithSurfaces goes around WithMeshes; write WithSurfaces{WithMeshes{...}}");
+
   Backend backend{};
 
   WithMeshes() = default;

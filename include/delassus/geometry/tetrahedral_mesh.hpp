@@ -113,8 +113,14 @@ inline TetrahedralMesh oriented(TetrahedralMesh mesh) {
   return mesh;
 }
 
-/// The triangles that belong to one tetrahedron only, normals outwards, in the order of the tetrahedra.
-inline std::vector<std::array<Index, 3>> surface(const TetrahedralMesh& mesh) {
+/// A triangle of the outer surface, its normal outwards, and the tetrahedron behind it.
+struct OuterFace {
+  std::array<Index, 3> triangle;
+  Index tetrahedron;
+};
+
+/// The triangles that belong to one tetrahedron only, in the order of the tetrahedra.
+inline std::vector<OuterFace> outer_faces(const TetrahedralMesh& mesh) {
   struct Side {
     std::array<Index, 3> sorted, triangle;
     std::size_t number;
@@ -136,8 +142,15 @@ inline std::vector<std::array<Index, 3>> surface(const TetrahedralMesh& mesh) {
     if (next == k + 1) outer.push_back(faces[k]);
   }
   std::sort(outer.begin(), outer.end(), [](const Side& a, const Side& b) { return a.number < b.number; });
+  std::vector<OuterFace> out;
+  for (const Side& face : outer) out.push_back({face.triangle, Index(face.number / 4)});
+  return out;
+}
+
+/// The triangles of `outer_faces`.
+inline std::vector<std::array<Index, 3>> surface(const TetrahedralMesh& mesh) {
   std::vector<std::array<Index, 3>> triangles;
-  for (const Side& face : outer) triangles.push_back(face.triangle);
+  for (const OuterFace& face : outer_faces(mesh)) triangles.push_back(face.triangle);
   return triangles;
 }
 

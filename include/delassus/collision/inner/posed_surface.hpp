@@ -54,6 +54,15 @@ struct PosedSurface {
     return is_in_cone;
   }
 
+  /// Whether the vertex v may be what touches along n. Of a rigid surface it is what lies farthest; where
+  /// vertices move by themselves, each that looks that way.
+  bool may_touch_along(Index v, const Vec3& n) const {
+    if constexpr (requires { surface.outward_at(v); })
+      return n.dot(pose.rotation * surface.outward_at(v)) > 0;
+    else
+      return is_farthest(v, n);
+  }
+
   /// Whether x, `depth` behind the surface at `foot` whose normal there is n, is to leave that way: no
   /// triangle is nearer, but for those in front of that plane, such as the floor to what is in the wall.
   bool is_way_out(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {

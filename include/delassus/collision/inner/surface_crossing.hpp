@@ -4,6 +4,9 @@
 #include <delassus/collision/inner/posed_surface.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -30,17 +33,18 @@ inline std::uint32_t edges_name(Index t, int k, Index s, int l) {
   return 3u << 30 | ((e * 0x9e3779b9u + f * 0x85ebca6bu) & 0x3fffffffu);
 }
 
-/// Each feature is compared once, by the triangle that owns it, and only where its own surface allows the
-/// normal. A vertex behind a triangle must have its shortest way out there. Edges that crossed must cross
-/// still when the bodies part as far as a shallower contact says: else that one parts them.
+/// Each vertex and each edge is compared by the triangle that owns it alone, and only where its own surface
+/// allows the normal. A vertex behind a triangle must have its shortest way out there. Edges that crossed
+/// must cross still when the bodies part as far as a shallower contact says: else that one parts them.
 template <class A, class B>
 class SurfaceCrossing {
  public:
+  /// Of a surface with itself, `is_self`, neighbours do not meet.
   SurfaceCrossing(const PosedSurface<A>& a, const PosedSurface<B>& b, const TouchRange& range,
-                  std::vector<FeatureContact>& out)
-      : a_(a), b_(b), range_(range), out_(out) {}
+                  std::vector<FeatureContact>& out, bool is_self = false)
+      : a_(a), b_(b), range_(range), out_(out), is_self_(is_self) {}
 
-  /// All contacts in the range, in an order that the two trees fix; returns how many pairs of triangles were
+  /// All contacts in the range, by name; returns how many pairs of triangles were
   /// looked at.
   Index collect() {
     queries_ = 0;
@@ -48,8 +52,10 @@ class SurfaceCrossing {
     FlatTree::cross(a_.surface.tree(), b_.surface.tree(), meets, [&](Index i, Index j) {
       for (Index t = i * A::triangles_per_item; t < (i + 1) * A::triangles_per_item; ++t)
         for (Index s = j * B::triangles_per_item; s < (j + 1) * B::triangles_per_item; ++s)
-          if (near(bounds_of(a_.points_of(t)), bounds_of(b_.points_of(s)))) compare(t, s);
+          if ((t != s || !is_self_) && near(bounds_of(a_.points_of(t)), bounds_of(b_.points_of(s))))
+            compare(t, s);
     });
+    drop_twins();
     for (FeatureContact& c : out_) c.is_dropped = c.edge_a >= 0 && c.point.gap < 0 && is_parted(c);
     std::erase_if(out_, [](const FeatureContact& c) { return c.is_dropped; });
     return queries_;
@@ -68,13 +74,38 @@ class SurfaceCrossing {
     return x.meets(y);
   }
 
+  /// A vertex beside a triangle, or over an edge of flat ones, is found by all that share what it touches.
+  void drop_twins() {
+    const auto key = [](const FeatureContact& c) {
+      return std::array{std::int64_t(c.point.name), std::int64_t(c.triangle_a), std::int64_t(c.triangle_b)};
+    };
+    std::sort(out_.begin(), out_.end(),
+              [&](const FeatureContact& x, const FeatureContact& y) { return key(x) < key(y); });
+    for (std::size_t i = 1; i < out_.size(); ++i)
+      for (std::size_t j = i; j-- > 0 && out_[j].point.name == out_[i].point.name;)
+        if ((out_[j].normal - out_[i].normal).squaredNorm() < 1e-12 &&
+            std::abs(out_[j].point.gap - out_[i].point.gap) < 1e-9 * range_.scale)
+          out_[i].is_dropped = true;
+    std::erase_if(out_, [](const FeatureContact& c) { return c.is_dropped; });
+  }
+
+  /// Whether two vertices of one surface are one or share an edge: their features are neighbours and do not
+  /// meet.
+  bool is_joined(Index v, Index w) const {
+    bool is_one = v == w;
+    a_.surface.each_around(v, [&](Index u) { is_one = is_one || u == w; });
+    return is_one;
+  }
+
+  /// Of one surface with itself every two triangles come in both orders.
   void compare(Index t, Index s) {
     ++queries_;
     const Triangle T = a_.triangle(t), S = b_.triangle(s);
     for (int k = 0; k < 3; ++k) {
       if (b_.surface.owns_corner(s, k)) put_on(a_, t, T, b_, s, S, k, false);
-      if (a_.surface.owns_corner(t, k)) put_on(b_, s, S, a_, t, T, k, true);
+      if (a_.surface.owns_corner(t, k) && !is_self_) put_on(b_, s, S, a_, t, T, k, true);
     }
+    if (is_self_ && t > s) return;
     for (int k = 0; k < 3; ++k) {
       if (T.lean[k] < cone_slack || !a_.surface.owns_edge(t, k)) continue;
       for (int l = 0; l < 3; ++l)
@@ -89,11 +120,11 @@ class SurfaceCrossing {
     const Vec3& x = S.point[k];
     PointTouch touch;
     if (!touches(T, x, range_, touch)) return;
-    if (touch.edge >= 0 && !faces.surface.owns_edge(t, touch.edge)) return;
-    if (touch.corner >= 0 && (!faces.surface.owns_corner(t, touch.corner) ||
-                              !faces.is_farthest(T.corner[touch.corner], touch.normal)))
-      return;
-    if (!points.is_farthest(S.corner[k], -touch.normal)) return;
+    if (is_self_)
+      for (const Index v : T.corner)
+        if (is_joined(v, S.corner[k])) return;
+    if (touch.corner >= 0 && !faces.is_farthest(T.corner[touch.corner], touch.normal)) return;
+    if (!points.may_touch_along(S.corner[k], -touch.normal)) return;
     if (touch.gap < 0 && !faces.is_way_out(x, touch.foot, touch.normal, -touch.gap)) return;
     const std::uint32_t name = vertex_name(is_point_of_a, S.corner[k]);
     if (is_point_of_a)
@@ -105,6 +136,10 @@ class SurfaceCrossing {
   void cross(Index t, const Triangle& T, int k, Index s, const Triangle& S, int l) {
     EdgeTouch touch;
     if (!touches(a_.edge(t, T, k), b_.edge(s, S, l), range_, touch)) return;
+    if (is_self_)
+      for (const int i : {k, (k + 1) % 3})
+        for (const int j : {l, (l + 1) % 3})
+          if (is_joined(T.corner[i], S.corner[j])) return;
     const PatchPoint point{touch.a, touch.b, touch.gap, edges_name(t, k, s, l)};
     out_.push_back({point, touch.normal, t, s, k, l});
   }
@@ -129,6 +164,7 @@ class SurfaceCrossing {
   const PosedSurface<B>& b_;
   const TouchRange& range_;
   std::vector<FeatureContact>& out_;
+  bool is_self_;
   Index queries_ = 0;
 };
 

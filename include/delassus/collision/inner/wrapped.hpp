@@ -26,6 +26,23 @@ CollisionSettings settings_of(const Backend& backend) {
     return {backend.margin, backend.contact_distance, backend.max_points};
 }
 
+/// Shows the world to the layer of the backend that asks for it, before it detects.
+template <class Backend, class World>
+void show_world(Backend& backend, const World& world) {
+  if constexpr (requires { backend.see(world); })
+    backend.see(world);
+  else if constexpr (requires { backend.backend; })
+    show_world(backend.backend, world);
+}
+/// Lets that layer say where the ends of its contacts are, when these are not at the bodies' own anchors.
+template <class Backend, class Results>
+void place_ends(const Backend& backend, Results& results) {
+  if constexpr (requires { backend.place_ends(results); })
+    backend.place_ends(results);
+  else if constexpr (requires { backend.backend; })
+    place_ends(backend.backend, results);
+}
+
 /// The order in which every backend answers: by pair, then by feature.
 inline void sort_by_name(std::vector<ContactPoint>& contacts) {
   std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {

@@ -1,6 +1,7 @@
 /// The stages of AnimationLoop, in the plain order: each fits the functions of `stages/` to the arrays of the loop.
 #pragma once
 
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/stages/correct.hpp>
@@ -47,6 +48,7 @@ void AnimationLoop<Policies...>::detect() {
     contacts.gather(std::as_const(*this).world());
     if constexpr (requires { Parts::Collision::asks_for_joints; })
       part<role::Collision>().refresh(std::as_const(*this).world(), [&](const auto& f) { each_joint(f); });
+    inner::show_world(part<role::Collision>(), std::as_const(*this).world());
     const auto detect_all = [&] {
       return part<role::Collision>().detect(std::span<const Collider>(contacts.colliders), h_, contacts.points);
     };
@@ -54,6 +56,7 @@ void AnimationLoop<Policies...>::detect() {
     if constexpr (Work::has_dormant) found = detect_awake(world(), laws(), work_.activity, contacts, h_, detect_all);
     else found = detect_all();
     contacts.record();
+    inner::place_ends(part<role::Collision>(), contacts.results);
     const Index unclaimed = route_contacts(laws(), contacts, work_.materials);
     if (unclaimed > 0) report_.status = worse(report_.status, Status::unclaimed_contact);
     report_.contacts = Index(contacts.points.size());

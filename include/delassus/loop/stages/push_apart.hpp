@@ -58,11 +58,11 @@ void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
         const Vec3 force = item.frame.template topRows<rows>().transpose() * f;
         for (const double side : {-1.0, 1.0})
           inner::each_block_at<rows>(world, side < 0 ? item.record.a : item.record.b, point, item.frame,
-                                     [&](auto& set, Index b, const auto&) {
+                                     [&](auto& set, Index b, const auto& J) {
                                        if (!set.moves(b)) return;
                                        if constexpr (requires { set.apply_force(set.handle(b), force, point); })
                                          set.apply_force(set.handle(b), side * force, point);
-                                       else set.apply_force(set.handle(b), side * force);
+                                       else set.apply_force(set.handle(b), side * Vec3(J.transpose() * f));
                                      });
         book.results[item.result].impulse = h * force;
       }

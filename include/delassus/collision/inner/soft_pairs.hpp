@@ -1,0 +1,136 @@
+/// What touches the surface of a deformable body between its nodes: convex shapes, meshes, surfaces.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/soft_surface.hpp>
+#include <delassus/collision/inner/surface_crossing.hpp>
+#include <delassus/collision/triangle_patch.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace delassus::inner {
+
+/// Fills `found` with features in touch, in the world, distances without any thickness; a on the soft
+/// surface.
+class SoftPairs {
+ public:
+  std::vector<FeatureContact> found;
+
+  /// A convex shape on the triangles. Points at nodes are left out: nodes are spheres to the backend.
+  Index collide(const SoftSurface& soft, const Shape& shape, const Pose& pose, double reach, double scale) {
+    found.clear();
+    Index queries = 0;
+    const Aabb tight = tight_box(shape, pose);
+    const Bounds near{tight.min() - Vec3::Constant(reach), tight.max() + Vec3::Constant(reach)};
+    if (!is_finite(near.low) || !is_finite(near.high)) return 0;
+    double sure = std::numeric_limits<double>::infinity(), doubtful = -sure;
+    doubt_.clear();
+    soft.visit([&](const Bounds& box) { return box.meets(near); },
+               [&](Index t) {
+                 if (is_zero(soft.normal(t))) return;
+                 ++queries;
+                 Vec3 n;
+                 const PatchTrust trust =
+                     triangle_patch(soft.triangle(t), shape, pose, reach, scale, patch_, n);
+                 if (trust == PatchTrust::none) return;
+                 for (int i = 0; i < patch_.count; ++i) {
+                   const double gap = patch_.point[i].gap;
+                   if (trust == PatchTrust::sure)
+                     sure = std::min(sure, gap);
+                   else
+                     doubtful = std::max(doubtful, gap);
+                   add(soft, t, patch_.point[i], n, trust == PatchTrust::doubtful);
+                 }
+               });
+    // A normal that an inner edge forbids stays where it says no more than those that are sure.
+    const double limit = (std::isfinite(sure) ? sure : doubtful) - 5e-3 * scale;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      found[i].is_dropped = doubt_[i] && !(found[i].point.gap >= limit);
+    drop();
+    drop_twins_of_edges(scale);
+    return queries;
+  }
+
+  /// A mesh or a height field. Soft nodes on its triangles are left out: the backend has them.
+  template <class Surface>
+  Index cross(const SoftSurface& soft, const Surface& mesh, const Pose& pose, const TouchRange& range) {
+    const Index queries =
+        cross_all(PosedSurface<SoftSurface>{soft}, PosedSurface<Surface>{mesh, pose}, range);
+    for (FeatureContact& c : found) c.is_dropped = c.point.name >> 30 == 1;
+    drop();
+    return queries;
+  }
+  /// Another soft surface, or the same one.
+  Index cross(const SoftSurface& a, const SoftSurface& b, const TouchRange& range) {
+    return cross_all(PosedSurface<SoftSurface>{a}, PosedSurface<SoftSurface>{b}, range, &a == &b);
+  }
+
+  /// Makes the names of the contacts differ, in their order.
+  void name_apart() {
+    std::stable_sort(found.begin(), found.end(), [](const FeatureContact& x, const FeatureContact& y) {
+      return x.point.name < y.point.name;
+    });
+    for (std::size_t i = 1; i < found.size(); ++i)
+      if (found[i].point.name <= found[i - 1].point.name) found[i].point.name = found[i - 1].point.name + 1;
+  }
+
+ private:
+  template <class A, class B>
+  Index cross_all(const PosedSurface<A>& a, const PosedSurface<B>& b, const TouchRange& range,
+                  bool is_self = false) {
+    found.clear();
+    return SurfaceCrossing<A, B>(a, b, range, found, is_self).collect();
+  }
+
+  /// A point on an edge gets the triangle that owns the edge, whichever of its two triangles found it.
+  void add(const SoftSurface& soft, Index t, const PatchPoint& p, const Vec3& n, bool is_doubtful) {
+    const Vec3 w = soft.shares(t, p.a);
+    const int zeros = (w[0] == 0) + (w[1] == 0) + (w[2] == 0);
+    if (zeros == 2) return;
+    FeatureContact c{p, n, t, -1};
+    std::uint32_t name = 4u * std::uint32_t(t) * 0x9e3779b9u + p.name * 0x85ebca6bu;
+    if (zeros == 1) {
+      int k = w[2] == 0 ? 0 : w[0] == 0 ? 1 : 2;
+      const Index other = soft.neighbour(t, k);
+      if (other >= 0 && !soft.owns_edge(t, k)) {
+        for (int j = 0; j < 3; ++j)
+          if (soft.neighbour(other, j) == t) k = j;
+        c.triangle_a = other;
+      }
+      c.edge_a = k;
+      name = (4u * std::uint32_t(c.triangle_a) + std::uint32_t(k) + 1u) * 0x9e3779b9u;
+    }
+    c.point.name = 3u << 30 | (name & 0x3fffffffu);
+    found.push_back(c);
+    doubt_.push_back(is_doubtful);
+  }
+
+  void drop() {
+    std::erase_if(found, [](const FeatureContact& c) { return c.is_dropped; });
+  }
+
+  /// Both triangles of an edge find what touches it: of points nearer than 1e-3 L with normals within 5° the
+  /// first stays.
+  void drop_twins_of_edges(double scale) {
+    std::stable_sort(found.begin(), found.end(), [](const FeatureContact& x, const FeatureContact& y) {
+      return x.point.name < y.point.name;
+    });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i].edge_a < 0) continue;
+      for (std::size_t j = i; j-- > 0 && found[j].point.name == found[i].point.name;)
+        if (!found[j].is_dropped && found[j].edge_a >= 0 && found[j].normal.dot(found[i].normal) > 0.9962 &&
+            (found[j].point.a - found[i].point.a).squaredNorm() < 1e-6 * scale * scale)
+          found[i].is_dropped = true;
+    }
+    drop();
+  }
+
+  Patch patch_;
+  std::vector<char> doubt_;
+};
+
+}  // namespace delassus::inner

@@ -1,0 +1,209 @@
+/// The outer surface of a deformable body: the triangles stay, the vertices are its nodes.
+#pragma once
+
+#include <delassus/geometry/inner/flat_tree.hpp>
+#include <delassus/geometry/inner/surface_topology.hpp>
+#include <delassus/geometry/tetrahedral_mesh.hpp>
+#include <delassus/geometry/triangle.hpp>
+#include <delassus/rows/anchor.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace delassus::inner {
+
+/// Made once a body, followed step by step: positions, normals and boxes, in the world. A triangle without
+/// area has no normal and speaks for nothing.
+class SoftSurface {
+ public:
+  SoftSurface(Index set, Index body, std::uint32_t generation, const TetrahedralMesh& mesh,
+              std::span<const Index> blocks)
+      : set_(set), body_(body), generation_(generation) {
+    std::vector<Index> vertex(mesh.points.size(), -1);
+    for (const OuterFace& face : outer_faces(mesh)) {
+      std::array<Index, 3> corners{};
+      std::array<int, 3> places{};
+      for (int k = 0; k < 3; ++k) {
+        const Index node = face.triangle[k];
+        if (vertex[node] < 0) {
+          vertex[node] = Index(block_.size());
+          block_.push_back(blocks[node]);
+          rest_.push_back(mesh.points[node]);
+        }
+        corners[k] = vertex[node];
+        while (mesh.tetrahedra[face.tetrahedron][places[k]] != node) ++places[k];
+      }
+      corners_.push_back(corners);
+      places_.push_back(places);
+      element_.push_back(face.tetrahedron);
+      base_.push_back(blocks[mesh.tetrahedra[face.tetrahedron][0]]);
+    }
+    topology_ = SurfaceTopology(corners_, Index(block_.size()));
+    vertices_ = rest_;
+    velocities_.assign(block_.size(), Vec3::Zero());
+    moves_.assign(block_.size(), 0);
+    normals_.resize(corners_.size());
+    outward_ = vertices_;
+    find_normals();
+    tree_.build(Index(corners_.size()), [&](Index t) { return bounds_of(t); });
+  }
+
+  bool is_of(Index set, Index body, std::uint32_t generation) const {
+    return set_ == set && body_ == body && generation_ == generation;
+  }
+  Index set() const { return set_; }
+  std::span<const Index> blocks() const { return block_; }
+
+  /// Takes over where the nodes are now and how fast, and fits the tree, in time proportional to the
+  /// triangles.
+  template <class Set>
+  void follow(const Set& nodes) {
+    radius_ = nodes.shape(block_[0]).size[0];
+    Vec3 mean = Vec3::Zero();
+    is_sound_ = true;
+    is_movable_ = false;
+    for (std::size_t v = 0; v < block_.size(); ++v) {
+      vertices_[v] = nodes.pose(block_[v]).position;
+      velocities_[v] = nodes.velocity()[block_[v]].template cast<double>();
+      moves_[v] = nodes.moves(block_[v]) ? 1 : 0;
+      mean += velocities_[v] / double(block_.size());
+      is_sound_ = is_sound_ && is_finite(vertices_[v]) && is_finite(velocities_[v]);
+      is_movable_ = is_movable_ || moves_[v];
+    }
+    top_speed_ = inner_speed_ = 0;
+    for (const Vec3& v : velocities_) {
+      top_speed_ = std::max(top_speed_, v.norm());
+      inner_speed_ = std::max(inner_speed_, (v - mean).norm());
+    }
+    find_normals();
+    tree_.fit([&](Index t) { return bounds_of(t); });
+  }
+
+  bool is_sound() const { return is_sound_; }
+  bool is_movable() const { return is_movable_; }
+  double radius() const { return radius_; }            ///< its thickness on the outer side, m
+  double top_speed() const { return top_speed_; }      ///< of any node, m/s
+  double inner_speed() const { return inner_speed_; }  ///< of any node against the mean of all, m/s
+  Bounds bounds() const { return tree_.bounds(); }
+  double scale() const {  ///< largest half edge of the box around it, m
+    const Vec3 size = bounds().high - bounds().low;
+    return 0.5 * size[largest_entry(size)];
+  }
+
+  // --- as of a TriangleMesh --------------------------------------------------------------------------------
+
+  static constexpr Index triangles_per_item = 1;
+  const FlatTree& tree() const { return tree_; }
+  const Vec3& vertex(Index v) const { return vertices_[v]; }
+  std::array<Vec3, 3> points_of(Index t) const {
+    const auto& [a, b, c] = corners_[t];
+    return {vertices_[a], vertices_[b], vertices_[c]};
+  }
+  const Vec3& normal(Index t) const { return normals_[t]; }
+  /// The sum of the normals around a vertex.
+  const Vec3& outward_at(Index v) const { return outward_[v]; }
+  Index neighbour(Index t, int k) const { return topology_.neighbour(t, k); }
+  bool owns_corner(Index t, int k) const { return topology_.owns_corner(t, k); }
+  bool owns_edge(Index t, int k) const { return topology_.owns_edge(t, k); }
+  template <class F>
+  void each_around(Index v, const F& f) const {
+    topology_.each_around(v, f);
+  }
+  template <class Meets, class Visit>
+  void visit(const Meets& meets, const Visit& visit) const {
+    tree_.visit(meets, visit);
+  }
+  Triangle triangle(Index t) const {
+    Triangle out;
+    out.corner = corners_[t];
+    out.normal = normals_[t];
+    out.point = points_of(t);
+    for (int k = 0; k < 3; ++k) {
+      const Index other = neighbour(t, k);
+      out.lean[k] = other < 0 ? 1 : lean_towards(out.normal, normals_[other], out.outward(k));
+    }
+    return out;
+  }
+
+  // --- a point on a triangle, by the shares of its corners -------------------------------------------------
+
+  /// Shares w ≥ 0, Σ w = 1, of the point of triangle t next to x; a corner within 1e-6 is that corner.
+  Vec3 shares(Index t, const Vec3& x) const {
+    const auto [a, b, c] = points_of(t);
+    const Vec3 area = (b - a).cross(c - a);
+    const double size2 = area.squaredNorm();
+    Vec3 w(-(x - a).squaredNorm(), -(x - b).squaredNorm(), -(x - c).squaredNorm());
+    if (size2 > 0) {
+      w = Vec3(area.dot((c - b).cross(x - b)), area.dot((a - c).cross(x - c)),
+               area.dot((b - a).cross(x - a))) /
+          size2;
+      for (int k = 0; k < 3; ++k) w[k] = w[k] > 1e-6 ? w[k] : 0.0;
+      w /= w[0] + w[1] + w[2];
+      if (!(std::max({w[0], w[1], w[2]}) > 1 - 1e-6)) return w;
+    }
+    int nearest = 0;
+    for (int k = 1; k < 3; ++k)
+      if (w[k] > w[nearest]) nearest = k;
+    return unit_axis(nearest);
+  }
+  Vec3 rest_point(Index t, const Vec3& w) const { return mix(rest_, t, w); }
+  Vec3 velocity(Index t, const Vec3& w) const { return mix(velocities_, t, w); }
+  bool moves(Index t, const Vec3& w) const {
+    for (int k = 0; k < 3; ++k)
+      if (w[k] > 0 && moves_[corners_[t][k]]) return true;
+    return false;
+  }
+  Index block(Index t, int k) const { return block_[corners_[t][k]]; }
+
+  /// A node, or a point of the element behind the triangle.
+  Anchor anchor(Index t, const Vec3& w) const {
+    for (int k = 0; k < 3; ++k)
+      if (w[k] == 1) return {.set = set_, .block = block(t, k), .has_frame = false};
+    Anchor out{.set = set_, .block = base_[t], .has_frame = false, .element = element_[t]};
+    bool has_first = false;
+    for (int k = 0; k < 3; ++k) {
+      has_first = has_first || places_[t][k] == 0;
+      if (places_[t][k] > 0) out.local[places_[t][k] - 1] = w[k];
+    }
+    // The share of corner 0 is 1 less the others: to the bit none where it is not of this triangle.
+    if (!has_first) out.local[2] = 1 - out.local[0] - out.local[1];
+    return out;
+  }
+
+ private:
+  Bounds bounds_of(Index t) const {
+    Bounds b;
+    for (const Index v : corners_[t]) b.add(vertices_[v]);
+    return b;
+  }
+  void find_normals() {
+    for (Vec3& o : outward_) o.setZero();
+    for (std::size_t t = 0; t < corners_.size(); ++t) {
+      const auto& [a, b, c] = corners_[t];
+      normals_[t] = triangle_normal(vertices_[a], vertices_[b], vertices_[c]);
+      for (const Index v : corners_[t]) outward_[v] += normals_[t];
+    }
+  }
+  Vec3 mix(const std::vector<Vec3>& of, Index t, const Vec3& w) const {
+    const auto& [a, b, c] = corners_[t];
+    return w[0] * of[a] + w[1] * of[b] + w[2] * of[c];
+  }
+
+  Index set_, body_;
+  std::uint32_t generation_;
+  std::vector<Index> block_;                   ///< of each vertex
+  std::vector<std::array<Index, 3>> corners_;  ///< vertices of each triangle
+  std::vector<std::array<int, 3>> places_;     ///< which corners of the element behind they are
+  std::vector<Index> element_, base_;          ///< that element, and the block of its corner 0
+  SurfaceTopology topology_;
+  std::vector<Vec3> rest_, vertices_, velocities_, normals_, outward_;
+  std::vector<char> moves_;
+  FlatTree tree_;
+  double radius_ = 0, top_speed_ = 0, inner_speed_ = 0;
+  bool is_sound_ = true, is_movable_ = true;
+};
+
+}  // namespace delassus::inner
