@@ -157,7 +157,7 @@ bool solve_file(const std::string& file, const Options& o) {
                    : o.stop == "err_s" ? run_named<Residual>(problem, o)
                                        : run_named<BothErrors>(problem, o);
   std::printf("%-40s %4d %-14s %9.2e %9.2e %8d %3d %9.4f %10.4f %s\n", name_of(file).c_str(), int(lambda.size()),
-              name(r.report.status), r.report.measure.siconos, r.report.measure.residual, r.report.sweeps, 0, 1e3 * r.build,
+              name(r.report.status), r.report.measure.siconos, r.report.measure.residual, r.report.sweeps, r.report.factorizations, 1e3 * r.build,
               1e3 * r.solve, r.report.ended_by);
   std::fflush(stdout);
   if (!o.out.empty()) write_impulses(o.out, lambda);

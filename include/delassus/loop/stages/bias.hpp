@@ -113,6 +113,8 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
         } else if (kinds[k] == RowKind::equality) {
           pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
           pool.d[i][k] += T((1 - theta) / theta) * start[k];
+          if constexpr (requires { stabilisation.joint_compliance(h); })
+            pool.compliance[i][k] = T(stabilisation.joint_compliance(h));
         } else {
           const double sign = kinds[k] == RowKind::lower ? 1 : -1;
           const RowBias row = lower_bias(stabilisation,
@@ -122,6 +124,8 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
                                           .restitution = restitution},
                                          h);
           pool.bias[i][k] = T(sign * row.bias);
+          if constexpr (requires { stabilisation.contact_compliance(h); })
+            pool.compliance[i][k] = T(stabilisation.contact_compliance(h));
           // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
           if constexpr (requires { stabilisation.softness(h); }) pool.softness[i][k] = T(stabilisation.softness(h));
           if constexpr (requires { bounce.pools; })

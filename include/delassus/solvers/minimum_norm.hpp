@@ -1,0 +1,263 @@
+/// Of all impulses that make the same motion, the smallest.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace delassus {
+namespace inner {
+
+/// Room for conjugate gradients, reserved once.
+struct NormSearch {
+  std::vector<double> x, b, r, p, q;
+  std::vector<char> how;                ///< of each constraint: `Held`
+  std::vector<char> outside, limiting;  ///< of each free one
+  void reserve(std::size_t rows) {
+    for (auto* v : {&x, &b, &r, &p, &q}) v->reserve(rows);
+    for (auto* v : {&how, &outside, &limiting}) v->reserve(rows);
+  }
+  void resize(std::size_t unknowns) {
+    for (auto* v : {&x, &b, &r, &p, &q}) v->assign(unknowns, 0);
+  }
+};
+
+}  // namespace inner
+
+/// `MinimumNorm{AcceleratedGaussSeidel{}}`: where constraints are redundant (a table on four legs, a door on
+/// three hinges, a contact found twice) λ is not unique, and which one sweeps find depends on their order and
+/// start. After a solve that converged this takes
+///
+///   λ = argmin Σ w_i |λ_i|²  with  W λ unchanged,   w_i = tr(W_ii)/rows,
+///
+/// by conjugate gradients from zero on W λ = W λ*, which never leave the range of W: equal legs carry equal
+/// loads, and λ is as continuous in time as the motion is. Constraints that stand still are free in it,
+/// contacts that slip keep their direction, what is open keeps its zero. Where a cone is in the way λ goes as
+/// far as it lets it, and on without the constraint that is at its limit. The motion is that of the solve, to
+/// its tolerance; otherwise λ* is kept. It costs a product with W for each of the distinct eigenvalues of W,
+/// about. Source: [HestenesStiefel1952].
+template <class Solver>
+struct MinimumNorm {
+  using plays = role::Solver;
+  Solver solver{};
+  int max_products = 200;  ///< with W; when they run out λ stays as it was solved
+
+  template <class Rows>
+  struct Workspace {
+    typename Solver::template Workspace<Rows> solver;
+    Impulses<Rows> solved, target;
+    inner::NormSearch search;
+    void reset(const Rows& rows) {
+      if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
+      solved.resize_like(rows);
+      target.resize_like(rows);
+      search.reserve(std::size_t(rows.row_count()));
+    }
+  };
+
+  void check() const {
+    solver.check();
+    DELASSUS_EXPECT(max_products >= 0,
+                    "MinimumNorm: max_products " + inner::text(max_products) + " must be >= 0");
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work) const {
+    SolveReport report = solver.solve(problem, work.solver);
+    if (report.status > Status::stalled || problem.is_out_of_time()) return report;
+    Search<Problem, Workspace> now{problem, work};
+    now.sort(report.measure);
+    for (int round = 0; round < 4; ++round)
+      if (!now.shrink(max_products)) break;
+    const Measure after = problem.measure();
+    if (after.residual <= std::max(2 * report.measure.residual, after.floor))
+      report.measure = after;
+    else
+      problem.load(work.solved);
+    return report;
+  }
+
+ private:
+  enum Held : char { still, slips, fixed };
+
+  template <class Problem, class Workspace>
+  struct Search {
+    Problem& problem;
+    Workspace& work;
+
+    /// Which constraints are free: those whose velocity is within the error of the solve.
+    void sort(const Measure& measure) {
+      problem.save(work.solved);
+      double d = 0, u = 0;
+      problem.each([&](auto p, Index i) {
+        d += double(problem.rows().template pool<p>().d[i].squaredNorm());
+        u += double(problem.template local<p>(i).d.squaredNorm());
+      });
+      const double small = 10 * std::max(measure.residual, measure.floor) * std::sqrt(std::max(d, u));
+      work.search.how.clear();
+      problem.each([&](auto p, Index i) {
+        const auto c = problem.template local<p>(i);
+        Held how = double(c.d.norm()) <= small ? still : fixed;
+        if constexpr (Problem::BookType::template has_cone<p>())
+          if (how == fixed && double(std::abs(c.d[0])) <= small && c.lambda[0] > 0) how = slips;
+        if (!(c.W.trace() > 0)) how = fixed;
+        work.search.how.push_back(how);
+      });
+    }
+
+    /// One round: false when λ is the smallest, or nothing more can be done.
+    bool shrink(int products) {
+      auto& s = work.search;
+      problem.save(work.target);  // λ*
+      std::size_t unknowns = 0;
+      each_free([&](auto, Index, auto&&, int count) { unknowns += std::size_t(count); });
+      s.resize(unknowns);
+      gather(s.x);
+      multiply(s.x, s.b);
+      const bool is_found = find(products);
+      problem.load(work.target);
+      return is_found && !go(1) && go_as_far_as_the_cones();
+    }
+
+   private:
+    /// f(p, i, the unknowns as impulses: a function of their number, how many) for each free constraint.
+    template <class F>
+    void each_free(F&& f) {
+      std::size_t k = 0;
+      problem.each([&](auto p, Index i) {
+        constexpr int R = Problem::RowsType::template rows_of<p>;
+        const char how = work.search.how[k++];
+        if (how == fixed) return;
+        const double over = 1 / problem.template root_of_weight<p>(i);
+        const auto& at = std::get<p>(work.target.pools)[i];
+        const double length = how == slips ? double(at.norm()) : 1;
+        f(
+            p, i,
+            [&, over, how, length](int n, int row) {
+              if (how == slips) return over * double(at[row]) / length;
+              return n == row ? over : 0.0;
+            },
+            how == slips ? 1 : R);
+      });
+    }
+    /// x = √w Bᵀ λ.
+    void gather(std::vector<double>& x) {
+      std::size_t k = 0;
+      each_free([&](auto p, Index i, auto&& unit, int count) {
+        const auto& at = std::get<p>(work.target.pools)[i];
+        for (int n = 0; n < count; ++n, ++k) {
+          double sum = 0, square = 0;
+          for (int row = 0; row < int(at.size()); ++row) {
+            sum += unit(n, row) * double(at[row]);
+            square += unit(n, row) * unit(n, row);
+          }
+          x[k] = sum / square;
+        }
+      });
+    }
+    /// y = Bᵀ W B x; the problem has λ = B x afterwards, and zero elsewhere.
+    void multiply(const std::vector<double>& x, std::vector<double>& y) {
+      problem.each(
+          [&](auto p, Index i) { problem.template assign<p>(i, 0 * std::get<p>(work.target.pools)[i]); });
+      std::size_t k = 0;
+      each_free([&](auto p, Index i, auto&& unit, int count) {
+        problem.template assign<p>(i, impulse(std::get<p>(work.target.pools)[i], unit, count, &x[k]));
+        k += std::size_t(count);
+      });
+      k = 0;
+      each_free([&](auto p, Index i, auto&& unit, int count) {
+        auto u = problem.template local<p>(i).d;
+        u -= problem.rows().template pool<p>().d[i];
+        for (int n = 0; n < count; ++n, ++k) {
+          y[k] = 0;
+          for (int row = 0; row < int(u.size()); ++row) y[k] += unit(n, row) * double(u[row]);
+        }
+      });
+    }
+    /// B x of one constraint.
+    template <class V, class Unit>
+    static V impulse(const V& at, Unit&& unit, int count, const double* x) {
+      V sum = 0 * at;
+      for (int n = 0; n < count; ++n)
+        for (int row = 0; row < int(at.size()); ++row) sum[row] += typename Problem::T(unit(n, row) * x[n]);
+      return sum;
+    }
+
+    /// λ ← λ* + s (B x − λ*), in the cones; whether they let it. `outside` has who does not.
+    bool go(double s) {
+      auto& search = work.search;
+      std::size_t k = 0, free = 0;
+      bool is_inside = true;
+      search.outside.assign(search.how.size(), 0);
+      each_free([&](auto p, Index i, auto&& unit, int count) {
+        const auto& at = std::get<p>(work.target.pools)[i];
+        const auto goal = impulse(at, unit, count, &search.x[k]);
+        auto next = at;
+        for (int row = 0; row < int(at.size()); ++row)
+          next[row] += typename Problem::T(s) * (goal[row] - at[row]);
+        auto inside = next;
+        problem.book().template clamp<p>(i, inside);
+        if (double((inside - next).norm()) > 1e-12 * double(next.norm())) {
+          is_inside = false;
+          search.outside[free] = 1;
+        }
+        problem.template assign<p>(i, inside);
+        k += std::size_t(count);
+        ++free;
+      });
+      return is_inside;
+    }
+    /// The largest s, and who ends it is fixed from now on.
+    bool go_as_far_as_the_cones() {
+      double low = 0, high = 1;
+      for (int k = 0; k < 30; ++k) {
+        const double middle = 0.5 * (low + high);
+        (go(middle) ? low : high) = middle;
+      }
+      go(high);
+      auto& search = work.search;
+      search.limiting = search.outside;
+      go(low);
+      std::size_t free = 0;
+      for (char& how : search.how)
+        if (how != fixed && search.limiting[free++]) how = fixed;
+      return true;
+    }
+
+    /// Conjugate gradients from zero.
+    bool find(int products) {
+      auto& s = work.search;
+      std::fill(s.x.begin(), s.x.end(), 0.0);
+      s.r = s.b;
+      s.p = s.r;
+      double square = product(s.r, s.r);
+      const double goal = 1e-26 * square;
+      for (int k = 0; square > goal; ++k) {
+        if (k == products) return false;
+        multiply(s.p, s.q);
+        const double curvature = product(s.p, s.q);
+        if (!(curvature > 0)) return square <= 1e-20 * product(s.b, s.b);
+        const double alpha = square / curvature;
+        for (std::size_t n = 0; n < s.x.size(); ++n) s.x[n] += alpha * s.p[n], s.r[n] -= alpha * s.q[n];
+        const double next = product(s.r, s.r), beta = next / square;
+        for (std::size_t n = 0; n < s.x.size(); ++n) s.p[n] = s.r[n] + beta * s.p[n];
+        square = next;
+      }
+      return true;
+    }
+    static double product(const std::vector<double>& a, const std::vector<double>& b) {
+      double sum = 0;
+      for (std::size_t n = 0; n < a.size(); ++n) sum += a[n] * b[n];
+      return sum;
+    }
+  };
+};
+template <class Solver>
+MinimumNorm(Solver) -> MinimumNorm<Solver>;
+
+}  // namespace delassus

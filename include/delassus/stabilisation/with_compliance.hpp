@@ -1,0 +1,53 @@
+/// A floor under the compliance of every row: what is rigid yields a little, by a number in m/N.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/stabilisation/baumgarte.hpp>
+#include <delassus/stabilisation/stabilisation.hpp>
+
+#include <cmath>
+#include <concepts>
+
+namespace delassus {
+
+/// `WithCompliance{Baumgarte{}, 1e-7}`: a joint or contact under the force f comes to rest with φ = −C f, C
+/// in m/N (rad/(N·m) of a row of angles). With the bias β φ/h that the stabilisation gives, that is
+///
+///   u + β φ/h + R λ = 0,   R = β C/h²,   f = λ/h.
+///
+/// Then no λ is infinite: rows that contradict each other share what is missing like springs, λ is unique
+/// where constraints are redundant, and a body's depth of rest does not depend on h. Friction rows stay
+/// rigid, for a compliance on them would creep; springs of their own rows too. A stabilisation without a rate
+/// of its own
+/// (`PositionProjection`, which sees no φ in the velocity solve) has β = 0, and nothing yields.
+template <class S>
+struct WithCompliance {
+  using plays = role::Stabilisation;
+  static constexpr bool projects_position = requires { requires S::projects_position; };
+  S stabilisation{};
+  double least = 0;  ///< C, m/N
+
+  void check() const {
+    stabilisation.check();
+    DELASSUS_EXPECT(least >= 0 && std::isfinite(least),
+                    "WithCompliance: compliance " + inner::text(least) + " m/N must be finite and >= 0");
+  }
+  double equality(double phi, double h) const { return stabilisation.equality(phi, h); }
+  double penetration(double phi, double h) const { return stabilisation.penetration(phi, h); }
+  double softness(double h) const requires requires { stabilisation.softness(h); }
+  { return stabilisation.softness(h); }
+  double push(double phi, double h) const requires requires { stabilisation.push(phi, h); }
+  { return stabilisation.push(phi, h); }
+  /// R of an equality and of a lower or upper row, 1/kg.
+  double joint_compliance(double h) const { return equality(near, h) / near * least / h; }
+  double contact_compliance(double h) const { return penetration(-near, h) / -near * least / h; }
+
+  static constexpr double near = 1e-9;  ///< m, where no recovery is capped
+};
+template <class S>
+WithCompliance(S) -> WithCompliance<S>;
+template <class S>
+WithCompliance(S, double) -> WithCompliance<S>;
+static_assert(Stabilisation<WithCompliance<Baumgarte>>);
+
+}  // namespace delassus

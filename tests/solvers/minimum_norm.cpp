@@ -1,0 +1,142 @@
+// Where many λ make one motion, which one is chosen.
+#include <delassus/loop/friction_problem.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/minimum_norm.hpp>
+
+#include "catch.hpp"
+#include "scenes.hpp"
+
+using namespace scenes;
+
+namespace {
+
+using Twist = std::array<double, 6>;  ///< linear, then angular
+
+/// A box of 1 × 1 × 0.4 m and 2 kg on its lower corners, each given `copies` times, with a free velocity.
+FrictionProblem table(int copies, const Twist& free, double friction) {
+  const Twist inverse{0.5, 0.5, 0.5, 12 / 2.32, 12 / 2.32, 3};
+  std::vector<std::array<Twist, 3>> H;
+  for (int k = 0; k < 4 * copies; ++k) {
+    const double x = k % 2 ? 0.5 : -0.5, y = k / 2 % 2 ? 0.5 : -0.5, z = -0.2;
+    H.push_back({Twist{0, 0, 1, y, -x, 0}, Twist{1, 0, 0, 0, z, -y}, Twist{0, 1, 0, -z, 0, x}});
+  }
+  const auto product = [&](const Twist& a, const Twist& b, const Twist& weight) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 6; ++k) sum += a[k] * weight[k] * b[k];
+    return sum;
+  };
+  std::vector<Vec3> d;
+  std::vector<GivenBlock> blocks;
+  for (std::size_t i = 0; i < H.size(); ++i) {
+    d.push_back(Vec3::Zero());
+    for (std::size_t r = 0; r < 3; ++r) d[i][Index(r)] = product(H[i][r], free, {1, 1, 1, 1, 1, 1});
+    for (std::size_t j = 0; j < H.size(); ++j) {
+      GivenBlock W{Index(i), Index(j), Mat3::Zero()};
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) W.block(Index(r), Index(c)) = product(H[i][r], H[j][c], inverse);
+      blocks.push_back(W);
+    }
+  }
+  FrictionProblem p = make_friction_problem(std::vector<double>(H.size(), friction), d, blocks);
+  double uneven = 0.01;
+  for (Vec3& x : p.rows.pool<0>().lambda) x = Vec3(uneven += 0.02, 0, 0);  // a start that prefers some
+  return p;
+}
+
+const AcceleratedGaussSeidel sweeps{.tolerance = 1e-11, .max_iterations = 100000};
+const MinimumNorm smallest{sweeps};
+
+/// The motion is that of the sweeps: the largest |u_i − v_i|.
+double apart(const FrictionProblem& p, const FrictionProblem& q) {
+  double most = 0;
+  for (Index i = 0; i < p.rows.pool<0>().items(); ++i)
+    most = std::max(most, (p.W.residual<0>(p.rows, i) - q.W.residual<0>(q.rows, i)).norm());
+  return most;
+}
+double norm(const FrictionProblem& p) {
+  double sum = 0;
+  for (Index i = 0; i < p.rows.pool<0>().items(); ++i)
+    sum += p.W.diagonal<0>(i).trace() / 3 * p.rows.pool<0>().lambda[i].squaredNorm();
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+// At rest Σλ_n = m |v| = 2 × 0.1: by symmetry the smallest is a quarter on each leg, none of it across.
+TEST_CASE("the four legs of a table carry a quarter each where λ is to be smallest") {
+  FrictionProblem p = table(1, {0, 0, -0.1, 0, 0, 0}, 0.5), q = p;
+  REQUIRE(solve(q, sweeps).status < Status::max_iterations);
+  REQUIRE(solve(p, smallest).status < Status::max_iterations);
+  double unequal = 0;
+  for (const Vec3& x : q.rows.pool<0>().lambda) unequal = std::max(unequal, std::abs(x[0] - 0.05));
+  REQUIRE(unequal > 1e-3);  // what sweeps leave
+  for (const Vec3& x : p.rows.pool<0>().lambda) REQUIRE((x - Vec3(0.05, 0, 0)).norm() < 1e-9);
+  REQUIRE(apart(p, q) < 1e-10);
+}
+
+TEST_CASE("copies of a contact share its load equally, and as it would be without copies") {
+  const Twist free{0.02, -0.01, -0.1, 0.02, -0.05, 0.01};  // it stands, its load off the middle
+  FrictionProblem once = table(1, free, 0.9);
+  REQUIRE(solve(once, smallest).status < Status::max_iterations);
+  for (const int copies : {2, 5}) {
+    FrictionProblem p = table(copies, free, 0.9);
+    REQUIRE(solve(p, smallest).status < Status::max_iterations);
+    const auto& lambda = p.rows.pool<0>().lambda;
+    for (std::size_t k = 0; k < lambda.size(); ++k)
+      REQUIRE((double(copies) * lambda[k] - once.rows.pool<0>().lambda[k % 4]).norm() < 1e-8);
+  }
+}
+
+TEST_CASE("the smallest λ lies in the cones, moves bodies as the solve does, and is never larger") {
+  std::minstd_rand random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  int smaller = 0;
+  for (int n = 0; n < 60; ++n) {
+    Twist free{};
+    for (double& x : free) x = 0.3 * any(random);
+    free[2] = -0.2 - 0.1 * any(random);
+    const double friction = n % 3 == 0 ? 0.1 : n % 3 == 1 ? 0.5 : 0;
+    FrictionProblem p = table(1 + n % 2, free, friction), q = p;
+    const SolveReport solved = solve(q, sweeps), r = solve(p, smallest);
+    CAPTURE(n, friction, r.measure.residual);
+    if (solved.status >= Status::max_iterations) continue;
+    REQUIRE(r.measure.residual <= std::max(2 * solved.measure.residual, r.measure.floor));
+    REQUIRE(apart(p, q) < 1e-8);
+    REQUIRE(norm(p) <= norm(q) * (1 + 1e-9));
+    smaller += norm(p) < 0.999 * norm(q);
+    for (const Vec3& x : p.rows.pool<0>().lambda) {
+      REQUIRE(x[0] >= 0);
+      REQUIRE(x.tail<2>().norm() <= friction * x[0] * (1 + 1e-12) + 1e-15);
+    }
+  }
+  REQUIRE(smaller > 10);
+}
+
+// The load lies on one side, 0.03 of 0.2 N·s across: an equal share of that is more than the light legs hold.
+TEST_CASE("where an equal share would slip, the smallest λ goes as far as the cones let it") {
+  FrictionProblem p = table(1, {0.03, 0, -0.1, 0, -0.2, 0}, 0.35), q = p;
+  REQUIRE(solve(q, sweeps).status < Status::max_iterations);
+  REQUIRE(solve(p, smallest).status < Status::max_iterations);
+  REQUIRE(apart(p, q) < 1e-9);
+  double nearest = 1;
+  for (const Vec3& x : p.rows.pool<0>().lambda) {
+    REQUIRE(x.tail<2>().norm() <= 0.35 * x[0] * (1 + 1e-12));
+    nearest = std::min(nearest, 0.35 * x[0] - x.tail<2>().norm());
+  }
+  REQUIRE(nearest < 1e-9);             // a leg is at its limit
+  REQUIRE(norm(p) < 0.999 * norm(q));  // and λ smaller than what sweeps found
+}
+
+// Two rods side by side: in a loop, over many steps, each carries half of 1 kg × g.
+TEST_CASE("two equal rods in a running loop carry half of the weight each") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{DistanceJoint{}},
+                     MinimumNorm{AcceleratedGaussSeidel{}}};
+  auto& set = rigid_bodies(loop);
+  const auto ball = set.add({.position = {0, 0, -1}, .mass = 1.0, .shape = Sphere{0.1}});
+  const auto one = loop.add(DistanceJoint::Item{anchor(set, ball), world_anchor({0, 0, 0}), 1});
+  for (int n = 0; n < 20; ++n) loop.step(0.01);
+  const auto two = loop.add(DistanceJoint::Item{anchor(set, ball), world_anchor({0, 0, 0}), 1});
+  loop.step(0.01);
+  REQUIRE(loop.impulse(one)[0] == Approx(loop.impulse(two)[0]).epsilon(1e-9));
+  REQUIRE(std::abs(loop.impulse(one)[0]) == Approx(0.5 * g * 0.01).epsilon(1e-6));
+}
