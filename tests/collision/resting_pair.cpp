@@ -15,11 +15,12 @@ Mat3 turn(double angle, const Vec3& axis) {
 }
 
 /// One body on another, sunk in by 1e-5 m. Both are about 1 m: ε L = 5e-7 m or a little more.
-Scene resting(const Shape& below, const Shape& above) {
+Scene resting(const Shape& below, const Shape& above, bool ground_is_a = true) {
   Scene scene;
   const bool is_plane = below.kind == ShapeKind::half_space;
   scene.add(below, {0, 0, is_plane ? 0 : -0.5}, turn(0.4, Vec3::UnitZ()), false);
   scene.add(above, {0.1, 0.05, 0.5 - 1e-5}, turn(0.1, Vec3::UnitZ()));
+  if (!ground_is_a) std::swap(scene.colliders[0].key, scene.colliders[1].key);
   for (int step = 0; step < 3; ++step) scene.detect();
   return scene;
 }
@@ -50,8 +51,9 @@ TEST_CASE("what rests is not asked again, and its points, normals and gaps are t
   for (const Shape& below : {Shape(Box{1, 1, 1}), Shape(cube), Shape(Cylinder{0.5, 1}), Shape(HalfSpace{})})
     for (const Shape& above :
          {Shape(Box{1, 1, 1}), Shape(cube), Shape(Cylinder{0.5, 1}), Shape(Cone{0.5, 2})}) {
-      Scene scene = resting(below, above);
-      CAPTURE(name(below.kind), name(above.kind));
+      const bool ground_is_a = (int(below.kind) + int(above.kind)) % 2 == 0;
+      Scene scene = resting(below, above, ground_is_a);
+      CAPTURE(name(below.kind), name(above.kind), ground_is_a);
       if (above.kind == ShapeKind::cone) REQUIRE(scene.contacts.size() >= 4);
       const Pose start = scene.colliders[1].pose;
       std::mt19937 random(3);
