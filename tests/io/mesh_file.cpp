@@ -1,5 +1,7 @@
 #include <delassus/io/mesh_file.hpp>
 
+#include <delassus/geometry/box_mesh.hpp>
+
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -185,4 +187,41 @@ TEST_CASE("a mesh file that cannot be used is refused with its line and the reas
   CHECK(refuses(replaced(vtk_lists, "CELL_TYPES", "CELLS 1 2\n1 0\nCELL_TYPES"), "second time"));
   CHECK(refuses(replaced(version_2, "$EndNodes", "$EndNodes\n$Nodes\n1\n30 0 0 0\n$EndNodes"),
                 "two nodes have the tag 30"));
+}
+
+TEST_CASE("hexahedra are read from both kinds of files, the tetrahedra beside them are left out") {
+  const std::string path = "mesh_file_hexahedra.msh",
+                    points = "0 0 0  1 0 0  1 1 0  0 1 0  0 0 2  1 0 2  1 1 2  0 1 2  5 5 5\n";
+  std::string nodes;
+  const HexahedralMesh box = hexahedral_box({1, 1, 2}, {1, 1, 1});
+  const int around[8] = {0, 1, 3, 2, 4, 5, 7, 6};
+  for (int k = 0; k < 8; ++k) {
+    const Vec3& p = box.points[around[k]];
+    for (const double x : {10.0 + k, p[0], p[1], p[2]}) nodes += std::to_string(int(x)) + " ";
+    nodes += "\n";
+  }
+  const std::string
+      gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n" + nodes +
+             "$EndNodes\n$Elements\n2\n1 4 0 10 11 12 14\n"
+             "2 5 2 1 1 10 11 12 13 14 15 16 17\n$EndElements\n",
+      vtk = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n" +
+            points + "CELLS 2 14\n4 0 1 2 8\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 2\n10 12\n";
+  for (const std::string& text : {gmsh, vtk}) {
+    std::ofstream(path) << text;
+    const HexahedralMesh mesh = read_hexahedral_mesh(path);
+    check_mesh(mesh, "mesh");
+    CHECK(mesh.points.size() == 8);
+    REQUIRE(mesh.hexahedra.size() == 1);
+    CHECK(std::abs(volume(mesh, 0) - 2) < 1e-14);
+    CHECK(mesh.points[mesh.hexahedra[0][6]] == Vec3(1, 1, 2));
+  }
+  std::ofstream(path) << replaced(gmsh, "2 5 2 1 1", "2 17 2 1 1");
+  CHECK_THROWS_WITH(read_hexahedral_mesh(path), Catch::Contains("more than eight nodes"));
+  std::ofstream(path) << replaced(vtk, "10 12", "10 10");
+  CHECK_THROWS_WITH(read_hexahedral_mesh(path),
+                    Catch::Contains("is a tetrahedron") || Catch::Contains("no hexahedron"));
+  std::ofstream(path) << replaced(vtk, "4 0 1 2 8\n8 0 1 2 3 4 5 6 7", "8 0 1 2 3 4 5 6 7\n4 0 1 2 8");
+  CHECK_THROWS_WITH(read_hexahedral_mesh(path),
+                    Catch::Contains("cell 1 is a hexahedron without eight corners"));
+  std::remove(path.c_str());
 }

@@ -17,9 +17,9 @@ namespace delassus {
 /// `contact_radius` > 0 (m) makes every node of the surface a sphere for collision; at 0 nothing collides.
 /// Nodes are in a group of their own and leave it out, so that the spheres of one body do not meet each
 /// other.
-template <ElasticMaterial M>
+template <ElasticMaterial M, class Mesh = TetrahedralMesh>
 struct SoftBody {
-  TetrahedralMesh mesh{};
+  Mesh mesh{};
   M elasticity{};
   double density = 1000;  ///< kg/m³
   Vec3 position = Vec3::Zero();
@@ -33,8 +33,8 @@ struct SoftBody {
 
 namespace inner {
 
-template <class T, ElasticMaterial M>
-void check_soft_body(const SoftBody<M>& body, const std::string& who) {
+template <class T, ElasticMaterial M, class Mesh>
+void check_soft_body(const SoftBody<M, Mesh>& body, const std::string& who) {
   check_mesh(body.mesh, who);
   check_material(body.elasticity, who);
   DELASSUS_EXPECT(std::isfinite(body.density) && body.density > 0,
@@ -48,19 +48,22 @@ void check_soft_body(const SoftBody<M>& body, const std::string& who) {
                   who + ": contact_radius " + text(body.contact_radius) + " m must be finite and >= 0");
   DELASSUS_EXPECT(body.contact_radius == 0 || (body.group & body.collides_with) == 0,
                   who + ": its nodes would collide with each other; leave its group out of collides_with");
-  for (Index e = 0; e < Index(body.mesh.tetrahedra.size()); ++e) {
+  for (Index e = 0; e < Index(body.mesh.cells().size()); ++e) {
     const double mass = body.density * volume(body.mesh, e);
-    DELASSUS_EXPECT(has_inverse<T>(mass), who + ": the mass of tetrahedron #" + std::to_string(e) + ", " +
-                                              without_inverse<T>(text(mass), "kg"));
+    DELASSUS_EXPECT(has_inverse<T>(mass), who + ": the mass of " + Mesh::cell + " #" + std::to_string(e) +
+                                              ", " + without_inverse<T>(text(mass), "kg"));
   }
 }
 
-/// Refuses a sound mesh whose tetrahedra have no volume left where it was put.
-inline void check_placed(const TetrahedralMesh& mesh, const Vec3& position, const std::string& who) {
-  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e)
-    DELASSUS_EXPECT(volume(mesh, e) > 0, who + ": at " + text(position) + " m rounding leaves tetrahedron #" +
-                                             std::to_string(e) +
-                                             " no volume; put the body nearer to the origin");
+inline double least_volume(const TetrahedralMesh& mesh, Index e) { return volume(mesh, e); }
+
+/// Refuses a sound mesh whose elements have no volume left where it was put.
+template <class Mesh>
+void check_placed(const Mesh& mesh, const Vec3& position, const std::string& who) {
+  for (Index e = 0; e < Index(mesh.cells().size()); ++e)
+    DELASSUS_EXPECT(least_volume(mesh, e) > 0, who + ": at " + text(position) + " m rounding leaves " +
+                                                   Mesh::cell + " #" + std::to_string(e) +
+                                                   " no volume; put the body nearer to the origin");
 }
 
 }  // namespace inner

@@ -7,8 +7,8 @@
 namespace delassus {
 
 /// Σ ½ m v² of the nodes that move, J.
-template <ElasticMaterial M, class T>
-double kinetic_energy(const TetrahedralFem<M, T>& set) {
+template <class E, ElasticMaterial M, class T>
+double kinetic_energy(const BasicFem<E, M, T>& set) {
   double sum = 0;
   for (const Index b : alive(set))
     if (set.moves(b)) sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm());
@@ -16,8 +16,8 @@ double kinetic_energy(const TetrahedralFem<M, T>& set) {
 }
 
 /// ∫Ψ − Σ m g·x, J.
-template <ElasticMaterial M, class T>
-double potential_energy(const TetrahedralFem<M, T>& set) {
+template <class E, ElasticMaterial M, class T>
+double potential_energy(const BasicFem<E, M, T>& set) {
   double sum = set.elastic_energy();
   for (const Index b : alive(set))
     if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
@@ -25,8 +25,8 @@ double potential_energy(const TetrahedralFem<M, T>& set) {
 }
 
 /// Σ m v, kg·m/s.
-template <ElasticMaterial M, class T>
-Vec3 momentum(const TetrahedralFem<M, T>& set) {
+template <class E, ElasticMaterial M, class T>
+Vec3 momentum(const BasicFem<E, M, T>& set) {
   Vec3 sum = Vec3::Zero();
   for (const Index b : alive(set))
     if (set.moves(b)) sum += double(set.mass(b)) * Vec3(set.velocity()[b].template cast<double>());
@@ -34,8 +34,8 @@ Vec3 momentum(const TetrahedralFem<M, T>& set) {
 }
 
 /// Σ x × m v about the world's origin, kg·m²/s.
-template <ElasticMaterial M, class T>
-Vec3 angular_momentum(const TetrahedralFem<M, T>& set) {
+template <class E, ElasticMaterial M, class T>
+Vec3 angular_momentum(const BasicFem<E, M, T>& set) {
   Vec3 sum = Vec3::Zero();
   for (const Index b : alive(set))
     if (set.moves(b))

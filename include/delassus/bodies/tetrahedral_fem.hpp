@@ -1,7 +1,8 @@
-/// Deformable bodies of linear tetrahedra, their nodes a structure of arrays.
+/// Deformable bodies of finite elements, their nodes a structure of arrays; those of linear tetrahedra.
 #pragma once
 
 #include <delassus/bodies/inner/elastic_body.hpp>
+#include <delassus/bodies/inner/linear_tetrahedron.hpp>
 #include <delassus/bodies/inner/places.hpp>
 #include <delassus/bodies/soft_body.hpp>
 #include <delassus/geometry/shape.hpp>
@@ -15,17 +16,18 @@
 
 namespace delassus {
 
-/// q = x, v = ẋ of the nodes. f = m g + loads − ∂Ψ/∂x; A = mass M + stiffness K with M lumped, a quarter of
-/// each element's mass at each of its nodes, and K = ∂²Ψ/∂x² element by element with its negative part cut.
+/// q = x, v = ẋ of the nodes. f = m g + loads − ∂Ψ/∂x; A = mass M + stiffness K with M lumped, each
+/// element's mass shared out to its nodes, and K = ∂²Ψ/∂x² element by element with its negative part cut.
 /// One factor of A a body. Damping is the integrator's: `ImplicitEuler{.rayleigh_mass, .rayleigh_stiffness}`.
 ///
-/// Blocks are nodes. A `Handle` names a node, a `BodyHandle` a body.
-template <ElasticMaterial M, class T = double>
-class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
-  using Places = inner::Places<TetrahedralFem, T, 3>;
+/// Blocks are nodes. A `Handle` names a node, a `BodyHandle` a body. E is the element.
+template <class E, ElasticMaterial M, class T = double>
+class BasicFem : public inner::Places<BasicFem<E, M, T>, T, 3> {
+  using Places = inner::Places<BasicFem, T, 3>;
 
  public:
-  using Body = SoftBody<M>;
+  using Mesh = typename E::Mesh;
+  using Body = SoftBody<M, Mesh>;
   using BodyHandle = delassus::Handle<Body>;
   using Places::gravity, Places::v_free, Places::v_next, Places::who;
   using typename Places::Handle, typename Places::Velocity;
@@ -89,7 +91,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
     return this->handle(blocks[k]);
   }
   /// The mesh at rest, where it was put.
-  const TetrahedralMesh& mesh(BodyHandle body) const { return bodies_[checked_body(body)].mesh(); }
+  const Mesh& mesh(BodyHandle body) const { return bodies_[checked_body(body)].mesh(); }
   Vec3 position(Handle node) const { return x_[checked(node)].template cast<double>(); }
   using Places::velocity;
   Vec3 velocity(Handle node) const { return v_[checked(node)].template cast<double>(); }
@@ -101,7 +103,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
     each_body([&](const auto& body) { sum += body.energy(x_); });
     return sum;
   }
-  /// A material point of a body, by where it is now (world, m): a joint's end, held by the four nodes around
+  /// A material point of a body, by where it is now (world, m): a joint's end, held by the nodes around
   /// it. Refuses a point outside of every element by more than 1e-6 of its size.
   Anchor anchor_at(BodyHandle body, const Vec3& point) const;
 
@@ -169,7 +171,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   int anchor_blocks(const Anchor& a) const {
     if (a.element < 0) return moves(a.block) ? 1 : 0;
     int count = 0;
-    for (int k = 0; k < 4; ++k) count += weight(a, k) != 0 ? 1 : 0;
+    for (int k = 0; k < E::nodes; ++k) count += weight(a, k) != 0 ? 1 : 0;
     return count;
   }
   Index anchor_block(const Anchor& a, int k) const {
@@ -181,7 +183,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   Vec3 point(const Anchor& a) const {
     if (a.element < 0) return x_[a.block].template cast<double>();
     Vec3 x = Vec3::Zero();
-    for (int k = 0; k < 4; ++k)
+    for (int k = 0; k < E::nodes; ++k)
       x += weight(a, k) * Vec3(x_[body_at(a).block_of(a.element, k)].template cast<double>());
     return x;
   }
@@ -224,10 +226,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
     return body.index;
   }
   const auto& body_at(const Anchor& a) const { return bodies_[body_[a.block]]; }
-  static double weight(const Anchor& a, int k) {
-    if (a.element < 0) return 1;
-    return k == 0 ? 1 - a.local[0] - a.local[1] - a.local[2] : a.local[k - 1];
-  }
+  static double weight(const Anchor& a, int k) { return a.element < 0 ? 1 : E::weight(a.local, k); }
   /// The k-th corner of the element that has a share in the point.
   static int corner(const Anchor& a, int k) {
     if (a.element < 0) return 0;
@@ -263,7 +262,7 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   using Places::checked, Places::slots_, Places::held_, Places::v_, Places::load_;
   SystemScale scale_;
   Slots body_slots_;
-  std::vector<inner::ElasticBody<M, T>> bodies_;
+  std::vector<inner::ElasticBody<E, M, T>> bodies_;
   std::vector<Velocity> x_, shifted_x_;
   std::vector<T> mass_, inverse_mass_;
   std::vector<double> radius_;
@@ -273,10 +272,10 @@ class TetrahedralFem : public inner::Places<TetrahedralFem<M, T>, T, 3> {
   mutable std::vector<Index> touched_;
 };
 
-template <ElasticMaterial M, class T>
-auto TetrahedralFem<M, T>::add(const Body& body) -> BodyHandle {
+template <class E, ElasticMaterial M, class T>
+auto BasicFem<E, M, T>::add(const Body& body) -> BodyHandle {
   inner::check_soft_body<T>(body, body_name(body_slots_.size()));
-  TetrahedralMesh mesh = body.mesh;
+  Mesh mesh = body.mesh;
   for (Vec3& p : mesh.points) {
     p = body.position + body.orientation * p;
     DELASSUS_EXPECT(inner::fits<T>(p),
@@ -300,8 +299,9 @@ auto TetrahedralFem<M, T>::add(const Body& body) -> BodyHandle {
     node_[b] = Index(blocks.size());
     blocks.push_back(b);
   }
-  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e)
-    for (const Index i : mesh.tetrahedra[e]) mass_[blocks[i]] += T(body.density * volume(mesh, e) / 4);
+  for (Index e = 0; e < Index(mesh.cells().size()); ++e)
+    for (int a = 0; a < E::nodes; ++a)
+      mass_[blocks[mesh.cells()[e][a]]] += T(body.density * E::share(mesh, e, a));
   for (const auto& triangle : surface(mesh))
     for (const Index i : triangle) radius_[blocks[i]] = body.contact_radius;
   for (const Index b : blocks) hold(b, false);
@@ -309,17 +309,21 @@ auto TetrahedralFem<M, T>::add(const Body& body) -> BodyHandle {
   return {k, body_slots_.generation(k), this->owner()};
 }
 
-template <ElasticMaterial M, class T>
-Anchor TetrahedralFem<M, T>::anchor_at(BodyHandle body, const Vec3& point) const {
+template <class E, ElasticMaterial M, class T>
+Anchor BasicFem<E, M, T>::anchor_at(BodyHandle body, const Vec3& point) const {
   const auto& soft = bodies_[checked_body(body)];
   Anchor anchor{.has_frame = false, .owner = this->owner()};
   anchor.element = soft.locate(point, x_, anchor.local);
-  DELASSUS_EXPECT(anchor.element >= 0, "anchor_at: the point " + inner::text(point) +
-                                           " m is in no tetrahedron of " + body_name(body.index));
+  DELASSUS_EXPECT(anchor.element >= 0, "anchor_at: the point " + inner::text(point) + " m is in no " +
+                                           Mesh::cell + " of " + body_name(body.index));
   anchor.block = soft.block_of(anchor.element, 0);
   anchor.generation = slots_.generation(anchor.block);
   return anchor;
 }
+
+/// Of tetrahedra with one deformation gradient each: any shape is meshed, but bending is too stiff.
+template <ElasticMaterial M, class T = double>
+using TetrahedralFem = BasicFem<inner::LinearTetrahedron, M, T>;
 
 }  // namespace delassus
 

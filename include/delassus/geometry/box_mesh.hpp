@@ -1,6 +1,7 @@
-/// A box cut into cells, and the cells into tetrahedra.
+/// A box cut into cells, hexahedra or each of them cut into tetrahedra.
 #pragma once
 
+#include <delassus/geometry/hexahedral_mesh.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 
 #include <array>
@@ -22,12 +23,8 @@ inline constexpr int five_tetrahedra[5][4] = {
 inline constexpr int six_tetrahedra[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7},
                                              {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
 
-}  // namespace inner
-
-/// The box [0, size] (m) in cells[0] × cells[1] × cells[2] cells. Point (i, j, k) has number i + (cells[0] +
-/// 1)(j + (cells[1] + 1) k).
-inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& cells,
-                                CellSplit split = CellSplit::six) {
+/// The points of a box in cells: (i, j, k) has number i + (cells[0] + 1)(j + (cells[1] + 1) k).
+inline std::vector<Vec3> box_points(const Vec3& size, const std::array<Index, 3>& cells) {
   const auto sizes = inner::text(size[0]) + " × " + inner::text(size[1]) + " × " + inner::text(size[2]);
   for (int k = 0; k < 3; ++k) {
     DELASSUS_EXPECT(std::isfinite(size[k]) && size[k] > 0,
@@ -38,11 +35,21 @@ inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& ce
   const double count = (cells[0] + 1.0) * (cells[1] + 1.0) * (cells[2] + 1.0);
   DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
                   "box_mesh: " + inner::text(count) + " points are more than an index counts");
-  TetrahedralMesh mesh;
+  std::vector<Vec3> points;
   for (Index k = 0; k <= cells[2]; ++k)
     for (Index j = 0; j <= cells[1]; ++j)
       for (Index i = 0; i <= cells[0]; ++i)
-        mesh.points.push_back({size[0] * i / cells[0], size[1] * j / cells[1], size[2] * k / cells[2]});
+        points.push_back({size[0] * i / cells[0], size[1] * j / cells[1], size[2] * k / cells[2]});
+  return points;
+}
+
+}  // namespace inner
+
+/// The box [0, size] (m) in cells[0] × cells[1] × cells[2] cells. Point (i, j, k) has number i + (cells[0] +
+/// 1)(j + (cells[1] + 1) k).
+inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& cells,
+                                CellSplit split = CellSplit::six) {
+  TetrahedralMesh mesh{inner::box_points(size, cells), {}};
   const auto point = [&](Index i, Index j, Index k) { return i + (cells[0] + 1) * (j + (cells[1] + 1) * k); };
   for (Index k = 0; k < cells[2]; ++k)
     for (Index j = 0; j < cells[1]; ++j)
@@ -64,6 +71,21 @@ inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& ce
           for (const auto& t : inner::six_tetrahedra) add(t);
       }
   return oriented(std::move(mesh));
+}
+
+/// The box [0, size] (m) in cells[0] × cells[1] × cells[2] hexahedra, its points numbered as those of
+/// `box_mesh`.
+inline HexahedralMesh hexahedral_box(const Vec3& size, const std::array<Index, 3>& cells) {
+  HexahedralMesh mesh{inner::box_points(size, cells), {}};
+  const Index row = cells[0] + 1, layer = row * (cells[1] + 1);
+  for (Index k = 0; k < cells[2]; ++k)
+    for (Index j = 0; j < cells[1]; ++j)
+      for (Index i = 0; i < cells[0]; ++i) {
+        const Index p = i + row * j + layer * k;
+        mesh.hexahedra.push_back(
+            {p, p + 1, p + row + 1, p + row, p + layer, p + layer + 1, p + layer + row + 1, p + layer + row});
+      }
+  return mesh;
 }
 
 }  // namespace delassus

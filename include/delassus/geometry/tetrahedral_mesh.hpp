@@ -18,6 +18,10 @@ namespace delassus {
 struct TetrahedralMesh {
   std::vector<Vec3> points;
   std::vector<std::array<Index, 4>> tetrahedra;
+
+  static constexpr const char* cell = "tetrahedron";
+  const auto& cells() const { return tetrahedra; }
+  auto& cells() { return tetrahedra; }
 };
 
 /// Of tetrahedron e, m³; negative where its points are ordered inside out.

@@ -1,6 +1,7 @@
-/// Tetrahedral meshes from the files of Gmsh and VTK.
+/// Tetrahedral and hexahedral meshes from the files of Gmsh and VTK.
 #pragma once
 
+#include <delassus/geometry/hexahedral_mesh.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 #include <delassus/io/inner/text_reader.hpp>
 
@@ -19,30 +20,46 @@
 namespace delassus {
 namespace inner {
 
-/// The mesh without the points that no tetrahedron names: those of the surfaces and curves that such files
-/// hold too.
-inline TetrahedralMesh without_loose_points(const TetrahedralMesh& mesh) {
+/// What the cells of a mesh are to Gmsh and to VTK, and how many points they have. Both name the points of a
+/// hexahedron in our order.
+template <class Mesh>
+struct CellType;
+template <>
+struct CellType<TetrahedralMesh> {
+  static constexpr int gmsh = 4, vtk = 10, points = 4;
+  static constexpr const char* count = "four";
+};
+template <>
+struct CellType<HexahedralMesh> {
+  static constexpr int gmsh = 5, vtk = 12, points = 8;
+  static constexpr const char* count = "eight";
+};
+
+/// The mesh without the points that no cell names: those of the surfaces and curves that such files hold too.
+template <class Mesh>
+Mesh without_loose_points(const Mesh& mesh) {
   std::vector<Index> place(mesh.points.size(), -1);
-  for (const auto& t : mesh.tetrahedra)
+  for (const auto& t : mesh.cells())
     for (const Index i : t) place[i] = 0;
-  TetrahedralMesh kept{.points = {}, .tetrahedra = mesh.tetrahedra};
+  Mesh kept{{}, mesh.cells()};
   for (std::size_t i = 0; i < place.size(); ++i)
     if (place[i] == 0) {
       place[i] = Index(kept.points.size());
       kept.points.push_back(mesh.points[i]);
     }
-  for (auto& t : kept.tetrahedra)
+  for (auto& t : kept.cells())
     for (Index& i : t) i = place[i];
   return kept;
 }
 
 /// Reads the sections $Nodes and $Elements of versions 2.2 and 4.1; nodes and elements have tags, in any
 /// order.
+template <class Mesh>
 class GmshReader {
  public:
   GmshReader(std::string_view text, const std::string& path) : in_(text, path) {}
 
-  TetrahedralMesh mesh() {
+  Mesh mesh() {
     bool has_nodes = false;
     while (!in_.is_at_end()) {
       const std::string section(in_.word("a section"));
@@ -60,7 +77,9 @@ class GmshReader {
       while (in_.word(end) != end) {
       }
     }
-    if (mesh_.tetrahedra.empty()) in_.refuse_here("the file holds no tetrahedron of four nodes");
+    if (mesh_.cells().empty())
+      in_.refuse_here(std::string("the file holds no ") + Mesh::cell + " of " + CellType<Mesh>::count +
+                      " nodes");
     return without_loose_points(mesh_);
   }
 
@@ -124,17 +143,19 @@ class GmshReader {
   int nodes_of(int type) const {
     constexpr int count[] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13};
     if (type == 11) in_.refuse_here("the tetrahedra have ten nodes; save the mesh with elements of order 1");
+    if (CellType<Mesh>::points == 8 && (type == 12 || type == 17))
+      in_.refuse_here("the hexahedra have more than eight nodes; save the mesh with elements of order 1");
     if (type < 1 || type >= int(std::size(count)))
       in_.refuse_here("elements of type " + std::to_string(type) + " are not known");
     return count[type];
   }
 
   void element(int type) {
-    if (type != 4) {
+    if (type != CellType<Mesh>::gmsh) {
       for (int k = nodes_of(type); k > 0; --k) in_.word("the tag of a node");
       return;
     }
-    auto& t = mesh_.tetrahedra.emplace_back();
+    auto& t = mesh_.cells().emplace_back();
     for (Index& i : t) i = node();
   }
 
@@ -160,33 +181,25 @@ class GmshReader {
   }
 
   TextReader in_;
-  TetrahedralMesh mesh_;
+  Mesh mesh_;
   std::vector<std::pair<int, Index>> tags_;  ///< of a node, and where its point is
   bool is_in_blocks_ = false;
 };
 
-}  // namespace inner
-
-/// The tetrahedra of a Gmsh file (.msh, ASCII, version 2.2 or 4.1), other elements left out, and their
-/// points.
-inline TetrahedralMesh parse_gmsh(std::string_view text, const std::string& path) {
-  return inner::GmshReader(text, path).mesh();
-}
-
-/// The tetrahedra (cells of type 10) of an unstructured grid in VTK's legacy format, ASCII, with cells as
-/// lists (up to version 4.2) or with offsets (5.1), and their points.
-inline TetrahedralMesh parse_vtk(std::string_view text, const std::string& path) {
+/// The cells of one kind of an unstructured grid in VTK's legacy format.
+template <class Mesh>
+Mesh vtk_mesh(std::string_view text, const std::string& path) {
   // No list is longer than the text.
   const int most = int(std::min(text.size(), std::size_t(std::numeric_limits<int>::max())));
   if (!text.starts_with("# vtk DataFile Version"))
-    inner::refuse(path + ": a VTK file begins with '# vtk DataFile Version'");
+    refuse(path + ": a VTK file begins with '# vtk DataFile Version'");
   // The second line is a title of any words.
   const std::size_t first = text.find('\n'),
                     second = first < text.size() ? text.find('\n', first + 1) : first;
-  inner::TextReader in(second < text.size() ? text.substr(second) : std::string_view(),
-                       path + " (from its third line)");
+  TextReader in(second < text.size() ? text.substr(second) : std::string_view(),
+                path + " (from its third line)");
   if (in.word("'ASCII'") != "ASCII") in.refuse_here("the file is binary; save the mesh as ASCII");
-  TetrahedralMesh mesh;
+  Mesh mesh;
   std::vector<Index> start{0}, corners;
   std::vector<int> types;
   const auto point = [&] { return in.integer("the number of a point", 0, int(mesh.points.size()) - 1); };
@@ -234,22 +247,47 @@ inline TetrahedralMesh parse_vtk(std::string_view text, const std::string& path)
   if (types.size() + 1 != start.size() || start.back() > Index(corners.size()))
     in.refuse_here("CELLS and CELL_TYPES do not speak of the same cells");
   for (std::size_t c = 0; c < types.size(); ++c)
-    if (types[c] == 10) {
-      if (start[c + 1] - start[c] != 4)
-        in.refuse_here("cell " + std::to_string(c) + " is a tetrahedron without four corners");
-      auto& t = mesh.tetrahedra.emplace_back();
-      std::copy_n(corners.begin() + start[c], 4, t.begin());
+    if (types[c] == CellType<Mesh>::vtk) {
+      if (start[c + 1] - start[c] != CellType<Mesh>::points)
+        in.refuse_here("cell " + std::to_string(c) + " is a " + Mesh::cell + " without " +
+                       CellType<Mesh>::count + " corners");
+      auto& t = mesh.cells().emplace_back();
+      std::copy_n(corners.begin() + start[c], CellType<Mesh>::points, t.begin());
     }
-  if (mesh.tetrahedra.empty()) in.refuse_here("the file holds no tetrahedron");
-  return inner::without_loose_points(mesh);
+  if (mesh.cells().empty()) in.refuse_here(std::string("the file holds no ") + Mesh::cell);
+  return without_loose_points(mesh);
+}
+
+template <class Mesh>
+Mesh read_mesh(const std::string& path) {
+  const std::string text = read_text(path);
+  return text.starts_with("# vtk") ? vtk_mesh<Mesh>(text, path) : GmshReader<Mesh>(text, path).mesh();
+}
+
+}  // namespace inner
+
+/// The tetrahedra of a Gmsh file (.msh, ASCII, version 2.2 or 4.1), other elements left out, and their
+/// points.
+inline TetrahedralMesh parse_gmsh(std::string_view text, const std::string& path) {
+  return inner::GmshReader<TetrahedralMesh>(text, path).mesh();
+}
+
+/// The tetrahedra (cells of type 10) of an unstructured grid in VTK's legacy format, ASCII, with cells as
+/// lists (up to version 4.2) or with offsets (5.1), and their points.
+inline TetrahedralMesh parse_vtk(std::string_view text, const std::string& path) {
+  return inner::vtk_mesh<TetrahedralMesh>(text, path);
 }
 
 /// A mesh from a file of either kind, told apart by how it begins. Throws InvalidArgument with file, line and
 /// reason. What is flat or inside out is refused later, by who takes the mesh: `oriented(mesh)` turns round
 /// what is inside out.
 inline TetrahedralMesh read_tetrahedral_mesh(const std::string& path) {
-  const std::string text = inner::read_text(path);
-  return text.starts_with("# vtk") ? parse_vtk(text, path) : parse_gmsh(text, path);
+  return inner::read_mesh<TetrahedralMesh>(path);
+}
+
+/// The hexahedra of eight nodes of such a file (type 5 of Gmsh, 12 of VTK), other elements left out.
+inline HexahedralMesh read_hexahedral_mesh(const std::string& path) {
+  return inner::read_mesh<HexahedralMesh>(path);
 }
 
 }  // namespace delassus

@@ -19,7 +19,7 @@ struct Anchor {
   bool has_frame = true;
   std::uint32_t generation = 0;
   std::uint32_t owner = 0;
-  Index element = -1;  ///< of a body with elements: the one the point is in; `local` weighs its corners 1, 2, 3
+  Index element = -1;  ///< of a body with elements: the one the point is in; `local` is its place there
 
   bool is_world() const { return set < 0; }
 };

@@ -3,7 +3,6 @@
 
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/bodies/inner/node_matrix.hpp>
-#include <delassus/geometry/tetrahedral_mesh.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
@@ -16,58 +15,38 @@
 
 namespace delassus::inner {
 
-/// A tetrahedron with linear shape functions N_a: gradients ∇N_a at rest (1/m), volume at rest (m³).
-///
-///   F = Σ_a x_a ∇N_aᵀ,   f_a = −V P ∇N_a,   K_ab = V ∇N_a · ∂P/∂F · ∇N_b.
-struct LinearTetrahedron {
-  std::array<Vec3, 4> gradient;
-  double volume;
-
-  LinearTetrahedron() = default;
-  LinearTetrahedron(const TetrahedralMesh& mesh, Index e) : volume(delassus::volume(mesh, e)) {
-    const auto& t = mesh.tetrahedra[e];
-    const Vec3& o = mesh.points[t[0]];
-    const Mat3 edges =
-        columns(Vec3(mesh.points[t[1]] - o), Vec3(mesh.points[t[2]] - o), Vec3(mesh.points[t[3]] - o));
-    const Mat3 rows = inverse(edges);
-    for (int a = 1; a < 4; ++a) gradient[a] = Vec3(rows(a - 1, 0), rows(a - 1, 1), rows(a - 1, 2));
-    gradient[0] = -(gradient[1] + gradient[2] + gradient[3]);
-  }
-};
-
-/// Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double, whatever T is.
-template <class M, class T>
+/// Of elements E. Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double,
+/// whatever T is.
+template <class E, class M, class T>
 class ElasticBody {
  public:
+  using Mesh = typename E::Mesh;
   using Velocity = Vec<3, T>;
   static constexpr bool has_constant_stiffness = requires { requires M::has_constant_stiffness; };
 
   ElasticBody() = default;
   /// Node k of the mesh is block blocks[k]; `mesh` is at rest.
-  ElasticBody(TetrahedralMesh mesh, const M& material, std::vector<Index> blocks)
+  ElasticBody(Mesh mesh, const M& material, std::vector<Index> blocks)
       : mesh_(std::move(mesh)), material_(material), blocks_(std::move(blocks)) {
     prepare();
   }
 
   std::span<const Index> blocks() const { return blocks_; }
-  const TetrahedralMesh& mesh() const { return mesh_; }
-  /// The block of corner `corner` of tetrahedron e.
-  Index block_of(Index e, int corner) const { return blocks_[mesh_.tetrahedra[e][corner]]; }
+  const Mesh& mesh() const { return mesh_; }
+  /// The block of corner `corner` of element e.
+  Index block_of(Index e, int corner) const { return blocks_[mesh_.cells()[e][corner]]; }
 
-  /// The tetrahedron a point of the world is in, and how much of its corners 1, 2, 3 the point is; −1 where
-  /// it is outside of all of them by more than 1e-6 of one.
-  Index locate(const Vec3& point, const std::vector<Velocity>& x, Vec3& weights) const {
+  /// The element a point of the world is in, and its place there, by which E weighs the corners; −1 where it
+  /// is outside of all of them by more than 1e-6 of one.
+  Index locate(const Vec3& point, const std::vector<Velocity>& x, Vec3& local) const {
     Index found = -1;
     double best = -1e-6;
     for (Index e = 0; e < Index(elements_.size()); ++e) {
-      const auto corner = [&](int k) { return Vec3(x[block_of(e, k)].template cast<double>()); };
-      const Vec3 o = corner(0);
-      const Mat3 edges = columns(Vec3(corner(1) - o), Vec3(corner(2) - o), Vec3(corner(3) - o));
-      const Vec3 w = inverse(edges) * (point - o);
-      const double least = std::min({1 - w[0] - w[1] - w[2], w[0], w[1], w[2]});
-      if (!(least > best)) continue;
-      best = least;
-      weights = w;
+      Vec3 at;
+      const double inside = E::locate(corners(e, x), point, at);
+      if (!(inside > best)) continue;
+      best = inside;
+      local = at;
       found = e;
     }
     return found;
@@ -91,8 +70,7 @@ class ElasticBody {
   /// ∫Ψ at the positions x, J.
   double energy(const std::vector<Velocity>& x) const {
     double sum = 0;
-    for (Index e = 0; e < Index(elements_.size()); ++e)
-      sum += elements_[e].volume * material_.at(deformation(e, x)).energy();
+    for (Index e = 0; e < Index(elements_.size()); ++e) sum += elements_[e].energy(material_, corners(e, x));
     return sum;
   }
   /// N by node, at the positions of the last `factor`.
@@ -138,7 +116,7 @@ class ElasticBody {
   }
 
   void memory(auto& archive) {
-    archive(mesh_.points, mesh_.tetrahedra, material_, blocks_);
+    archive(mesh_.points, mesh_.cells(), material_, blocks_);
     if constexpr (std::remove_reference_t<decltype(archive)>::reads) prepare();
   }
 
@@ -146,53 +124,36 @@ class ElasticBody {
   void prepare() {
     const std::size_t n = blocks_.size();
     elements_.clear();
-    for (Index e = 0; e < Index(mesh_.tetrahedra.size()); ++e) elements_.emplace_back(mesh_, e);
+    const Lame lame(material_.young, material_.poisson);
+    for (Index e = 0; e < Index(mesh_.cells().size()); ++e) elements_.emplace_back(mesh_, e, lame);
     force_.assign(n, Velocity::Zero());
     work_ = product_ = force_;
     mass_.assign(n, T(0));
     is_held_.assign(n, 0);
-    if (n > 0) matrix_.analyse(Index(n), mesh_.tetrahedra, mesh_.points);
+    if (n > 0) matrix_.analyse(Index(n), mesh_.cells(), mesh_.points);
     has_stiffness_ = is_factored_ = false;
   }
 
-  Mat3 deformation(Index e, const std::vector<Velocity>& x) const {
-    const auto position = [&](int a) { return Vec3(x[block_of(e, a)].template cast<double>()); };
-    Mat3 F = Mat3::Zero();
-    for (int a = 1; a < 4; ++a) {
-      const Vec3 edge = position(a) - position(0), &b = elements_[e].gradient[a];
-      for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
-    }
-    return F;
+  typename E::Corners corners(Index e, const std::vector<Velocity>& x) const {
+    typename E::Corners at;
+    for (int a = 0; a < E::nodes; ++a) at[a] = x[block_of(e, a)].template cast<double>();
+    return at;
   }
 
   void add_element(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
-    const LinearTetrahedron& element = elements_[e];
-    const auto& t = mesh_.tetrahedra[e];
-    const auto point = material_.at(deformation(e, x));
-    const Mat3 pull = -element.volume * Mat3(point.stress());
-    Vec3 rest = Vec3::Zero();
-    for (int a = 1; a < 4; ++a) {
-      const Vec3 f = pull * element.gradient[a];
-      force_[t[a]] += f.template cast<T>();
-      rest += f;
-    }
-    force_[t[0]] -= rest.template cast<T>();
-    if (with_stiffness) add_stiffness(e, point);
+    const auto& t = mesh_.cells()[e];
+    const auto state = elements_[e].at(material_, corners(e, x));
+    for (int a = 0; a < E::nodes; ++a) force_[t[a]] += state.force[a].template cast<T>();
+    if (with_stiffness) add_stiffness(e, state.stiffness());
   }
 
-  void add_stiffness(Index e, const auto& point) {
-    const double V = elements_[e].volume;
-    const auto& t = mesh_.tetrahedra[e];
-    std::array<Vec3, 4> b;
-    for (int a = 0; a < 4; ++a) {
-      b[a] = point.pull(elements_[e].gradient[a]);
-      matrix_.add_diagonal(t[a], (V * point.block(b[a], b[a])).template cast<T>());
-    }
-    for (int k = 0; k < 6; ++k) {
-      const auto& [i, j] = pair_of_four[k];
+  void add_stiffness(Index e, const auto& K) {
+    const auto& t = mesh_.cells()[e];
+    for (int a = 0; a < E::nodes; ++a) matrix_.add_diagonal(t[a], K.block(a, a).template cast<T>());
+    for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
+      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
       const bool is_upper = t[i] < t[j];
-      matrix_.add_pair(e, k, (V * point.block(b[is_upper ? i : j], b[is_upper ? j : i])).template cast<T>());
+      matrix_.add_pair(e, k, K.block(is_upper ? i : j, is_upper ? j : i).template cast<T>());
     }
   }
 
@@ -209,14 +170,14 @@ class ElasticBody {
     return is_same;
   }
 
-  TetrahedralMesh mesh_;
+  Mesh mesh_;
   M material_{};
   std::vector<Index> blocks_;
-  std::vector<LinearTetrahedron> elements_;
+  std::vector<E> elements_;
   std::vector<Velocity> force_;
   std::vector<T> mass_;
   std::vector<char> is_held_;
-  NodeMatrix<T> matrix_;
+  NodeMatrix<T, E::nodes> matrix_;
   SystemScale factored_;
   bool has_stiffness_ = false, is_factored_ = false;
   mutable std::vector<Velocity> work_, product_;

@@ -13,26 +13,36 @@
 
 namespace delassus::inner {
 
-/// The six pairs of an element's four nodes.
-inline constexpr int pair_of_four[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+/// The pairs of an element's n nodes: (0, 1), (0, 2), … (n − 2, n − 1).
+template <int n>
+inline constexpr auto pairs_of_nodes = [] {
+  std::array<std::array<int, 2>, n*(n - 1) / 2> pairs{};
+  for (int a = 0, k = 0; a < n; ++a)
+    for (int b = a + 1; b < n; ++b, ++k) pairs[k] = {a, b};
+  return pairs;
+}();
 
-/// Symmetric: the diagonal, and K_ij of the pairs i < j. `slots(e)[k]` is where pair k of element e goes.
-template <class T>
+/// Symmetric: the diagonal, and K_ij of the pairs i < j of elements of `corners` nodes. `slots(e)[k]` is
+/// where pair k of element e goes.
+template <class T, int corners>
 class NodeMatrix {
  public:
   using Block = Mat<3, 3, T>;
   using Velocity = Vec<3, T>;
+  static constexpr int pairs_each = corners * (corners - 1) / 2;
 
-  void analyse(Index nodes, std::span<const std::array<Index, 4>> elements, std::span<const Vec3> positions) {
+  void analyse(Index nodes, std::span<const std::array<Index, corners>> elements,
+               std::span<const Vec3> positions) {
     pairs_.clear();
     for (const auto& t : elements)
-      for (const auto& [a, b] : pair_of_four) pairs_.emplace_back(std::minmax(t[a], t[b]));
+      for (const auto& [a, b] : pairs_of_nodes<corners>) pairs_.emplace_back(std::minmax(t[a], t[b]));
     const auto all = pairs_;
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     slots_.resize(elements.size());
     for (std::size_t k = 0; k < all.size(); ++k)
-      slots_[k / 6][k % 6] = Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[k]) - pairs_.begin());
+      slots_[k / pairs_each][k % pairs_each] =
+          Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[k]) - pairs_.begin());
     diagonal_.resize(nodes);
     upper_.resize(pairs_.size());
     factor_.analyse(nodes, pairs_, positions);
@@ -80,7 +90,7 @@ class NodeMatrix {
 
  private:
   std::vector<std::pair<Index, Index>> pairs_;
-  std::vector<std::array<Index, 6>> slots_;
+  std::vector<std::array<Index, pairs_each>> slots_;
   std::vector<Block> diagonal_, upper_;
   MultifrontalCholesky<3, T> factor_;
 };

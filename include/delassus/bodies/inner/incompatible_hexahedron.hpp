@@ -1,0 +1,337 @@
+/// The element of eight nodes that bends without locking: a mean deformation, and modes about it.
+#pragma once
+
+#include <delassus/bodies/elasticity/material.hpp>
+#include <delassus/geometry/hexahedral_mesh.hpp>
+#include <delassus/math/pivoted_lu.hpp>
+#include <delassus/math/singular_values.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace delassus::inner {
+
+/// The four shapes of a hexahedron that no affine map makes: ηζ, ζξ, ξη, ξηζ at the corners.
+inline double hourglass(int k, int corner) {
+  const auto& s = hexahedron_corner[corner];
+  return k == 3 ? s[0] * s[1] * s[2] : s[(k + 1) % 3] * s[(k + 2) % 3];
+}
+
+/// A hexahedron of trilinear shape functions N_a with three incompatible modes 1 − ξ_i², held by the mean
+/// gradients g_a = ∫∇N_a/V. The nodes' places are an affine map and four vectors q_k, the parts of the shapes
+/// above:
+///
+///   Ψ_e = V Ψ(F) + ½ Σ_kl (Rᵀq_k) · S_kl (Rᵀq_l),   F = Σ_a x_a g_aᵀ,  q_k = Σ_a γ_ka x_a,
+///
+/// R the rotation next to F (1 for a material without rotations). γ vanishes on affine maps, which the first
+/// term has whole. S is that of Hooke's law at rest, the modes' own coordinates eliminated. With S the
+/// element is for small strains that of Wilson and Taylor, but for the dilatation: its part that is not
+/// linear in ξ, which a solid that keeps its volume cannot have, presses on nothing. So no ν < ½ makes it
+/// lock. Sources: [TaylorBeresfordWilson1976] for the modes, [BelytschkoBindeman1993] for γ and S in the
+/// turning axes.
+class IncompatibleHexahedron {
+ public:
+  using Mesh = HexahedralMesh;
+  static constexpr int nodes = 8;
+  using Corners = EightPoints;
+
+  IncompatibleHexahedron() = default;
+  IncompatibleHexahedron(const HexahedralMesh& mesh, Index e, const Lame& lame) {
+    const Corners X = corners(mesh, e);
+    const Samples samples = sample(X);
+    make_gamma(X);
+    make_modes(samples, lame);
+  }
+
+  /// N_k; `local` is ξ.
+  static double weight(const Vec3& local, int k) { return trilinear(k, local); }
+  static double share(const HexahedralMesh& mesh, Index e, int k) { return corner_share(mesh, e, k); }
+  /// ξ of a point by Newton's method, and how far inside it is as a share of the element.
+  static double locate(const Corners& x, const Vec3& point, Vec3& local) {
+    Vec3 low = x[0], high = x[0];
+    for (const Vec3& p : x) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const double slack = 1e-3 * (high - low).norm();
+    for (int i = 0; i < 3; ++i)
+      if (!(point[i] >= low[i] - slack && point[i] <= high[i] + slack)) return -1;
+    Vec3 xi = Vec3::Zero();
+    double step = 1;
+    for (int n = 0; n < 30 && step > 1e-15; ++n) {
+      Vec3 rest = point;
+      for (int a = 0; a < nodes; ++a) rest -= trilinear(a, xi) * x[a];
+      const Vec3 by = inverse(jacobian(x, xi)) * rest;
+      xi += by;
+      step = by.norm();
+    }
+    local = xi;
+    if (!(step < 1e-9)) return -1;
+    return std::min({1 - std::abs(xi[0]), 1 - std::abs(xi[1]), 1 - std::abs(xi[2])}) / 2;
+  }
+
+  Mat3 deformation(const Corners& x) const {
+    Mat3 F = Mat3::Zero();
+    for (int a = 1; a < nodes; ++a) {
+      const Vec3 edge = x[a] - x[0], &b = gradient_[a];
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
+    }
+    return F;
+  }
+
+  /// J.
+  template <ElasticMaterial M>
+  double energy(const M& material, const Corners& x) const {
+    const Mat3 F = deformation(x);
+    const Turning turning = turn<M>(F, x);
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) sum += turning.q[k].dot(turning.s[k]);
+    return volume_ * material.at(F).energy() + 0.5 * sum;
+  }
+
+  template <class Point>
+  struct State;
+  template <ElasticMaterial M>
+  auto at(const M& material, const Corners& x) const {
+    const Mat3 F = deformation(x);
+    State<decltype(material.at(F))> state{*this, material.at(F), turn<M>(F, x), {}};
+    add_forces(state.point.stress(), state.turning, state.force);
+    return state;
+  }
+
+ private:
+  static constexpr int modes = 12;  ///< three a shape
+
+  /// What the modes are in the axes of R: q_k and s_k = Σ_l S_kl q_l (N). With the turn of R,
+  ///
+  ///   RᵀdR = [ω]×,   (tr Y − Y) ω = Σ_a g_a × Rᵀdx_a,   Y = RᵀF,
+  ///
+  /// `softened` is the inverse of tr Y − Y, its eigenvalues no greater than 1000 where F is nearly so flat
+  /// that R is not defined.
+  struct Turning {
+    Mat3 R, softened;
+    std::array<Vec3, 4> q, s;
+  };
+
+  /// The Jacobians of Gauss's points.
+  struct Samples {
+    std::array<Mat3, 8> inverse;  ///< ∂ξ/∂X
+    std::array<double, 8> volume;
+    Mat3 middle;  ///< det J ∂ξ/∂X at ξ = 0
+  };
+
+  Samples sample(const Corners& X) {
+    Samples at;
+    volume_ = 0;
+    for (Vec3& g : gradient_) g.setZero();
+    for (int g = 0; g < 8; ++g) {
+      const Vec3 xi = gauss_point(g);
+      const Mat3 J = jacobian(X, xi);
+      at.inverse[g] = inverse(J);
+      at.volume[g] = determinant(J);
+      volume_ += at.volume[g];
+      for (int a = 0; a < nodes; ++a)
+        gradient_[a] += at.volume[g] * (at.inverse[g].transpose() * trilinear_slope(a, xi));
+    }
+    for (Vec3& g : gradient_) g /= volume_;
+    const Mat3 J = jacobian(X, Vec3::Zero());
+    at.middle = determinant(J) * inverse(J);
+    return at;
+  }
+
+  /// γ_k · (1, X, Y, Z) = 0 and γ_k · h_l = δ_kl, h the shapes: G⁻¹ of the vectors h_k − Σ_i (h_k · X_i) g_i,
+  /// G their products with h.
+  void make_gamma(const Corners& X) {
+    Mat<4, 8> gamma;
+    Mat<4, 4> G = Mat<4, 4>::Zero();
+    for (int k = 0; k < 4; ++k) {
+      Vec3 moment = Vec3::Zero();
+      for (int a = 0; a < nodes; ++a) moment += hourglass(k, a) * X[a];
+      for (int a = 0; a < nodes; ++a) gamma(k, a) = hourglass(k, a) - moment.dot(gradient_[a]);
+    }
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < 4; ++l)
+        for (int a = 0; a < nodes; ++a) G(k, l) += gamma(k, a) * hourglass(l, a);
+    PivotedLu<4, double> lu;
+    lu.factor(G);
+    lu.template solve<8>(gamma);
+    for (int k = 0; k < 4; ++k)
+      for (int a = 0; a < nodes; ++a) gamma_[k][a] = gamma(k, a);
+  }
+
+  /// S: of Hooke's law on the gradients b of the four shapes less their mean and of the three incompatible
+  /// modes,
+  ///
+  ///   K_ij = ∫ μ ((b_i·b_j) 1 + b_j b_iᵀ) + λ Σ_m t_im t_jmᵀ,   t_im = ∫ φ_m b_i,
+  ///
+  /// φ an orthonormal base of the functions linear in ξ, the last nine rows eliminated.
+  void make_modes(const Samples& at, const Lame& lame) {
+    constexpr int shapes = 7, n = 3 * shapes;
+    Vec3 b[shapes][8];
+    make_gradients(at, b);
+    double phi[4][8];
+    make_linear_functions(at, phi);
+    double K[n][n];
+    for (int i = 0; i < shapes; ++i)
+      for (int j = 0; j < shapes; ++j) {
+        Mat3 block = Mat3::Zero();
+        for (int g = 0; g < 8; ++g) {
+          const double mu = lame.mu * at.volume[g], along = mu * b[i][g].dot(b[j][g]);
+          for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) block(r, c) += mu * b[j][g][r] * b[i][g][c] + (r == c ? along : 0);
+        }
+        for (int m = 0; m < 4; ++m) {
+          Vec3 ti = Vec3::Zero(), tj = Vec3::Zero();
+          for (int g = 0; g < 8; ++g) {
+            ti += at.volume[g] * phi[m][g] * b[i][g];
+            tj += at.volume[g] * phi[m][g] * b[j][g];
+          }
+          for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) block(r, c) += lame.lambda * ti[r] * tj[c];
+        }
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) K[3 * i + r][3 * j + c] = block(r, c);
+      }
+    for (int k = n; k-- > modes;)
+      for (int r = 0; r < k; ++r)
+        for (int c = 0; c < k; ++c) K[r][c] -= K[r][k] * K[k][c] / K[k][k];
+    for (int r = 0; r < modes; ++r)
+      for (int c = 0; c < modes; ++c) S_[r][c] = 0.5 * (K[r][c] + K[c][r]);
+  }
+
+  /// At Gauss's points. An incompatible mode has the gradient −2ξ_i ∂ξ_i/∂X of the middle, scaled by
+  /// det J(0)/det J so that its mean vanishes.
+  void make_gradients(const Samples& at, Vec3 (&b)[7][8]) const {
+    for (int g = 0; g < 8; ++g) {
+      const Vec3 xi = gauss_point(g);
+      for (int k = 0; k < 4; ++k) {
+        b[k][g].setZero();
+        for (int a = 0; a < nodes; ++a)
+          b[k][g] +=
+              hourglass(k, a) * (Vec3(at.inverse[g].transpose() * trilinear_slope(a, xi)) - gradient_[a]);
+      }
+      for (int i = 0; i < 3; ++i)
+        b[4 + i][g] = (-2 * xi[i] / at.volume[g]) * Vec3(at.middle(i, 0), at.middle(i, 1), at.middle(i, 2));
+    }
+  }
+
+  /// 1, ξ, η, ζ made orthonormal over the element, at Gauss's points.
+  static void make_linear_functions(const Samples& at, double (&phi)[4][8]) {
+    for (int m = 0; m < 4; ++m) {
+      for (int g = 0; g < 8; ++g) phi[m][g] = m == 0 ? 1 : gauss_point(g)[m - 1];
+      for (int l = 0; l < m; ++l) {
+        double part = 0;
+        for (int g = 0; g < 8; ++g) part += at.volume[g] * phi[l][g] * phi[m][g];
+        for (int g = 0; g < 8; ++g) phi[m][g] -= part * phi[l][g];
+      }
+      double square = 0;
+      for (int g = 0; g < 8; ++g) square += at.volume[g] * phi[m][g] * phi[m][g];
+      for (int g = 0; g < 8; ++g) phi[m][g] /= std::sqrt(square);
+    }
+  }
+
+  template <ElasticMaterial M>
+  Turning turn(const Mat3& F, const Corners& x) const {
+    Turning t{Mat3::Identity(), Mat3::Zero(), {}, {}};
+    if constexpr (!requires { requires M::has_constant_stiffness; }) {
+      const SingularValues f = singular_values(F);
+      t.R = f.U * f.V.transpose();
+      Mat3 scaled = f.V;
+      for (int k = 0; k < 3; ++k) {
+        const double sum = f.sigma[(k + 1) % 3] + f.sigma[(k + 2) % 3];
+        for (int i = 0; i < 3; ++i) scaled(i, k) /= std::max(sum, 1e-3);
+      }
+      t.softened = scaled * f.V.transpose();
+    }
+    for (int k = 0; k < 4; ++k) {
+      Vec3 q = Vec3::Zero();
+      for (int a = 1; a < nodes; ++a) q += gamma_[k][a] * (x[a] - x[0]);
+      t.q[k] = t.R.transpose() * q;
+    }
+    for (int k = 0; k < 4; ++k)
+      for (int i = 0; i < 3; ++i) {
+        double sum = 0;
+        for (int l = 0; l < modes; ++l) sum += S_[3 * k + i][l] * t.q[l / 3][l % 3];
+        t.s[k][i] = sum;
+      }
+    return t;
+  }
+
+  /// f_a = −(V P + R [τ]×) g_a − R Σ_k γ_ka s_k,  (tr Y − Y) τ = Σ_k s_k × q_k: the moment that turning R
+  /// meets.
+  void add_forces(const Mat3& stress, const Turning& t, Corners& force) const {
+    Vec3 moment = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) moment += t.s[k].cross(t.q[k]);
+    const Mat3 pull = volume_ * stress + t.R * skew(Vec3(t.softened * moment));
+    Vec3 rest = Vec3::Zero();
+    for (int a = 1; a < nodes; ++a) {
+      Vec3 s = Vec3::Zero();
+      for (int k = 0; k < 4; ++k) s += gamma_[k][a] * t.s[k];
+      force[a] = -(pull * gradient_[a] + t.R * s);
+      rest += force[a];
+    }
+    force[0] = -rest;
+  }
+
+  /// K of the modes, 24 × 24: Dᵀ S D,  dq_k = Σ_a D_ka dx_a,  D_ka = (γ_ka 1 + [q_k]× (tr Y − Y)⁻¹ [g_a]×)
+  /// Rᵀ. A body that turns as a whole does not meet it. What s d²q adds is left out: of the order of s.
+  void make_mode_stiffness(const Turning& t, double (&K)[3 * nodes][3 * nodes]) const {
+    double D[modes][3 * nodes], SD[modes][3 * nodes];
+    for (int k = 0; k < 4; ++k) {
+      const Mat3 lever = skew(t.q[k]) * t.softened;
+      for (int a = 0; a < nodes; ++a) {
+        Mat3 block = lever * skew(gradient_[a]);
+        for (int i = 0; i < 3; ++i) block(i, i) += gamma_[k][a];
+        const Mat3 turned = block * t.R.transpose();
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) D[3 * k + i][3 * a + j] = turned(i, j);
+      }
+    }
+    for (int r = 0; r < modes; ++r) {
+      for (double& y : SD[r]) y = 0;
+      for (int l = 0; l < modes; ++l)
+        for (int c = 0; c < 3 * nodes; ++c) SD[r][c] += S_[r][l] * D[l][c];
+    }
+    for (int r = 0; r < 3 * nodes; ++r) {
+      for (double& y : K[r]) y = 0;
+      for (int l = 0; l < modes; ++l)
+        for (int c = 0; c < 3 * nodes; ++c) K[r][c] += D[l][r] * SD[l][c];
+    }
+  }
+
+  std::array<Vec3, nodes> gradient_;
+  std::array<std::array<double, nodes>, 4> gamma_;
+  std::array<std::array<double, modes>, modes> S_;  ///< N/m
+  double volume_ = 0;
+
+ public:
+  /// K by pairs of corners.
+  template <class Point>
+  struct Stiffness {
+    const Point& point;
+    double volume;
+    Corners b;
+    double K[3 * nodes][3 * nodes];
+    Mat3 block(int i, int j) const {
+      Mat3 B = volume * point.block(b[i], b[j]);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) B(r, c) += K[3 * i + r][3 * j + c];
+      return B;
+    }
+  };
+  /// The element where its corners are at x: forces (N) on them.
+  template <class Point>
+  struct State {
+    const IncompatibleHexahedron& element;
+    Point point;
+    Turning turning;
+    Corners force;
+    Stiffness<Point> stiffness() const {
+      Stiffness<Point> K{point, element.volume_, {}, {}};
+      for (int a = 0; a < nodes; ++a) K.b[a] = point.pull(element.gradient_[a]);
+      element.make_mode_stiffness(turning, K.K);
+      return K;
+    }
+  };
+};
+
+}  // namespace delassus::inner

@@ -1,0 +1,195 @@
+#include <delassus/bodies/hexahedral_fem.hpp>
+
+#include <limits>
+#include <string>
+
+#include "catch.hpp"
+#include "hexahedral_scenes.hpp"
+
+using namespace delassus;
+using namespace soft_scenes;
+
+namespace {
+
+const Mat3 stretch = columns<double>({1.1, 0.02, -0.03}, {0.05, 0.93, 0.04}, {-0.02, 0.01, 1.06});
+
+/// Moves every node by up to `size` in each direction.
+void scatter(auto& set, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> draw(-size, size);
+  for (Index b = 0; b < set.blocks(); ++b) {
+    Vec3 by;
+    for (int k = 0; k < 3; ++k) by[k] = draw(random);
+    set.displace(b, by);
+  }
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("patch test: inside distorted hexahedra the nodes follow what their surface does", "",
+                   Linear, Corotational, StableNeoHookean) {
+  HexahedralFem<TestType> set;
+  set.gravity.setZero();
+  const auto body = set.add({.mesh = bricks(3, 0.25), .elasticity = {.young = 1000, .poisson = 0.4}});
+  const auto rest = set.mesh(body).points;
+  set.fix(body, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
+  for (Index k = 0; k < set.node_count(body); ++k)
+    if (!set.moves(k)) set.place(set.node(body, k), stretch * rest[k]);
+  settle(set, 12);
+  double worst = 0;
+  int inner = 0;
+  for (Index k = 0; k < set.node_count(body); ++k)
+    if (set.moves(k))
+      worst = std::max(worst, (set.position(set.node(body, k)) - stretch * rest[k]).norm()), ++inner;
+  CHECK(inner == 8);
+  CHECK(worst < 1e-12);
+  // Constant stress: no force inside, and the energy of the material times the volume.
+  const auto f = elastic_forces(set);
+  for (Index k = 0; k < set.blocks(); ++k)
+    if (set.moves(k))
+      CHECK(f[k].norm() < 1e-11);  // E times the area of a face, times ε and some tens of terms
+  CHECK(std::abs(set.elastic_energy() - TestType{.young = 1000, .poisson = 0.4}.at(stretch).energy()) <
+        1e-11);
+}
+
+TEMPLATE_TEST_CASE("hexahedra turned and moved as a whole have no elastic force and no energy", "",
+                   Corotational, StableNeoHookean) {
+  for (const double angle : {0.3, 179 * M_PI / 180}) {
+    HexahedralFem<TestType> set;
+    const auto body = set.add({.mesh = bricks(2, 0.25), .elasticity = {.young = 1}});
+    const Quat turn = exponential(Vec3(angle * Vec3(1, 2, -2) / 3));
+    for (Index k = 0; k < set.node_count(body); ++k) {
+      const auto node = set.node(body, k);
+      set.place(node, Vec3(3, -1, 2) + turn * set.position(node));
+    }
+    for (const Vec3& f : elastic_forces(set)) CHECK(f.norm() < 1e-14);
+    CHECK(std::abs(set.elastic_energy()) < 1e-15);
+  }
+}
+
+TEST_CASE("forces of hexahedra are the derivative of their energy, their sum and their moment vanish") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    HexahedralFem<Corotational> set;
+    set.add({.mesh = crooked_brick(seed), .elasticity = {.young = 1, .poisson = 0.4}});
+    const Quat turn = exponential(Vec3(2 * Vec3(1, 2, -2) / 3));
+    for (Index b = 0; b < set.blocks(); ++b) set.place(set.handle(b), turn * set.position(set.handle(b)));
+    scatter(set, 0.2, seed);  // bends and twists as much as it strains
+    const auto f = elastic_forces(set);
+    const double step = 1e-5;
+    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+    double size = 0;
+    for (Index b = 0; b < set.blocks(); ++b) {
+      for (int k = 0; k < 3; ++k) {
+        set.displace(b, step * unit_axis(k));
+        const double up = set.elastic_energy();
+        set.displace(b, -2 * step * unit_axis(k));
+        const double down = set.elastic_energy();
+        set.displace(b, step * unit_axis(k));
+        CHECK(std::abs(f[b][k] + (up - down) / (2 * step)) <
+              1e-9);  // step² of the third derivative, ε Ψ/step
+      }
+      sum += f[b];
+      moment += set.position(set.handle(b)).cross(f[b]);
+      size += f[b].norm();
+    }
+    CHECK(size > 0.1);
+    CHECK(sum.norm() < 1e-14 * size);
+    CHECK(moment.norm() < 1e-14 * size);
+  }
+}
+
+TEST_CASE("the stiffness of a hexahedron is symmetric and positive but for the six motions of a rigid body") {
+  for (const unsigned seed : {0u, 3u, 4u})
+    for (const double poisson : {0.3, 0.4999}) {
+      HexahedralFem<Corotational> set;
+      set.add({.mesh = seed == 0 ? hexahedral_box({2, 1, 1}, {1, 1, 1}) : crooked_brick(seed),
+               .elasticity = {.young = 1, .poisson = poisson}});
+      set.factor({.mass = 1, .stiffness = 1});
+      double K[24][24], largest = 0, skewed = 0;
+      for (int j = 0; j < 24; ++j) {
+        for (Vec3& v : set.velocity()) v.setZero();
+        set.velocity()[j / 3][j % 3] = 1;
+        std::vector<Vec3> p(8, Vec3::Zero());
+        set.add_stiffness_times_velocity(p, -1);
+        for (int i = 0; i < 24; ++i) K[i][j] = p[i / 3][i % 3];
+        largest = std::max(largest, K[j][j]);
+      }
+      for (int i = 0; i < 24; ++i)
+        for (int j = 0; j < i; ++j) skewed = std::max(skewed, std::abs(K[i][j] - K[j][i]));
+      CHECK(skewed < 1e-15 * largest);
+      // Cholesky with the largest pivot first: as many pivots as K has rank, and what is left is zero.
+      std::array<double, 24> pivots;
+      std::array<bool, 24> is_done{};
+      for (double& pivot : pivots) {
+        int k = -1;
+        for (int i = 0; i < 24; ++i)
+          if (!is_done[i] && (k < 0 || K[i][i] > K[k][k])) k = i;
+        pivot = K[k][k];
+        is_done[k] = true;
+        if (pivot > 1e-12 * largest)
+          for (int i = 0; i < 24; ++i)
+            for (int j = 0; j < 24; ++j)
+              if (!is_done[i] && !is_done[j]) K[i][j] -= K[i][k] * K[k][j] / pivot;
+      }
+      CHECK(pivots[17] > 1e-6 * largest);  // 1/λ of the softest, and a margin
+      CHECK(std::abs(pivots[18]) < 1e-13 * largest);
+      CHECK(std::abs(pivots[23]) < 1e-13 * largest);
+    }
+}
+
+TEMPLATE_TEST_CASE("A = M + h^2 K of hexahedra is the derivative of their forces where nothing is bent", "",
+                   Linear, Corotational) {
+  HexahedralFem<TestType> set;
+  set.gravity.setZero();
+  const auto body = set.add({.mesh = bricks(2, 0.25), .elasticity = {.young = 1e4}, .density = 800});
+  const auto rest = set.mesh(body).points;
+  for (Index k = 0; k < set.node_count(body); ++k) set.place(set.node(body, k), 1.15 * (stretch * rest[k]));
+  const double h2 = 1e-3, step = 1e-5;
+  std::vector<Vec3> direction(set.blocks());
+  for (Index k = 0; k < set.blocks(); ++k)
+    direction[k] = Vec3(std::cos(3 * k), std::sin(5 * k), std::cos(7 * k));
+  const auto moved = [&](double s) {
+    for (Index k = 0; k < set.blocks(); ++k) set.displace(k, s * direction[k]);
+    return elastic_forces(set);
+  };
+  const auto up = moved(step), down = moved(-2 * step);
+  moved(step);
+  std::vector<Vec3> y(set.blocks());
+  for (Index k = 0; k < set.blocks(); ++k)
+    y[k] = double(set.mass(k)) * direction[k] - h2 / (2 * step) * (up[k] - down[k]);
+  set.factor({.mass = 1, .stiffness = h2});
+  set.solve(y);
+  double worst = 0;
+  for (Index k = 0; k < set.blocks(); ++k) worst = std::max(worst, (y[k] - direction[k]).norm());
+  CHECK(worst > 0);
+  CHECK(worst < 1e-7);  // step² of the third derivative
+}
+
+TEST_CASE("a body of hexahedra that cannot be one is refused, and says why") {
+  HexahedralFem<Corotational> set;
+  HexahedralMesh folded = hexahedral_box({1, 1, 1}, {2, 1, 1});
+  folded.points[2] = {0.4, 0.5, 0.5};
+  CHECK_THROWS_WITH(set.add({.mesh = folded}), Catch::Contains("soft body #0: hexahedron #1 is"));
+  CHECK_THROWS_WITH(set.add({.mesh = bricks(1), .position = {1e17, 0, 0}}), Catch::Contains("no volume"));
+  CHECK_THROWS_WITH(set.add({.mesh = bricks(1), .density = 1e-320}),
+                    Catch::Contains("the mass of hexahedron #0"));
+  CHECK(set.blocks() == 0);
+  const auto body = set.add({.mesh = bricks(1)});
+  CHECK_THROWS_WITH(set.anchor_at(body, {2, 0, 0}), Catch::Contains("is in no hexahedron of soft body #0"));
+}
+
+TEST_CASE("an anchor in a hexahedron moves with the point of the body it was put on") {
+  HexahedralFem<Corotational> set;
+  const auto body = set.add({.mesh = bricks(2, 0.25), .position = {1, 0, 0}});
+  const auto rest = set.mesh(body).points;
+  const Vec3 place(1.3, 0.6, 0.2);
+  const Anchor a = set.anchor_at(body, place);
+  CHECK((set.point(a) - place).norm() < 1e-15);
+  for (Index k = 0; k < set.blocks(); ++k) set.place(set.node(body, k), stretch * rest[k]);
+  CHECK((set.point(a) - stretch * place).norm() < 1e-15);
+  // The same point found again in the deformed body; and the shares of its nodes are one in all.
+  CHECK((set.anchor_at(body, stretch * place).local - a.local).norm() < 1e-14);
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
+  CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-14);
+}
