@@ -38,7 +38,7 @@ TEST_CASE(
   const auto step = [&](int count) {
     for (int n = 0; n < count; ++n) loop.step(0.01);
   };
-  step(100);
+  step(250);
   const long before = allocations;
   Eigen::internal::set_is_malloc_allowed(false);
   step(100);
