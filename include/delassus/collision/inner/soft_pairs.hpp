@@ -71,9 +71,7 @@ class SoftPairs {
 
   /// Makes the names of the contacts differ, in their order.
   void name_apart() {
-    std::stable_sort(found.begin(), found.end(), [](const FeatureContact& x, const FeatureContact& y) {
-      return x.point.name < y.point.name;
-    });
+    std::sort(found.begin(), found.end(), goes_before);
     for (std::size_t i = 1; i < found.size(); ++i)
       if (found[i].point.name <= found[i - 1].point.name) found[i].point.name = found[i - 1].point.name + 1;
   }
@@ -116,9 +114,7 @@ class SoftPairs {
   /// Both triangles of an edge find what touches it: of points nearer than 1e-3 L with normals within 5° the
   /// first stays.
   void drop_twins_of_edges(double scale) {
-    std::stable_sort(found.begin(), found.end(), [](const FeatureContact& x, const FeatureContact& y) {
-      return x.point.name < y.point.name;
-    });
+    std::sort(found.begin(), found.end(), goes_before);
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (found[i].edge_a < 0) continue;
       for (std::size_t j = i; j-- > 0 && found[j].point.name == found[i].point.name;)

@@ -33,6 +33,14 @@ inline std::uint32_t edges_name(Index t, int k, Index s, int l) {
   return 3u << 30 | ((e * 0x9e3779b9u + f * 0x85ebca6bu) & 0x3fffffffu);
 }
 
+/// By name, and what shares one by where it is.
+inline bool goes_before(const FeatureContact& x, const FeatureContact& y) {
+  if (x.point.name != y.point.name) return x.point.name < y.point.name;
+  if (x.triangle_a != y.triangle_a) return x.triangle_a < y.triangle_a;
+  if (x.triangle_b != y.triangle_b) return x.triangle_b < y.triangle_b;
+  return x.edge_a != y.edge_a ? x.edge_a < y.edge_a : x.point.gap < y.point.gap;
+}
+
 /// Each vertex and each edge is compared by the triangle that owns it alone, and only where its own surface
 /// allows the normal. A vertex behind a triangle must have its shortest way out there. Edges that crossed
 /// must cross still when the bodies part as far as a shallower contact says: else that one parts them.
@@ -76,11 +84,7 @@ class SurfaceCrossing {
 
   /// A vertex beside a triangle, or over an edge of flat ones, is found by all that share what it touches.
   void drop_twins() {
-    const auto key = [](const FeatureContact& c) {
-      return std::array{std::int64_t(c.point.name), std::int64_t(c.triangle_a), std::int64_t(c.triangle_b)};
-    };
-    std::sort(out_.begin(), out_.end(),
-              [&](const FeatureContact& x, const FeatureContact& y) { return key(x) < key(y); });
+    std::sort(out_.begin(), out_.end(), goes_before);
     for (std::size_t i = 1; i < out_.size(); ++i)
       for (std::size_t j = i; j-- > 0 && out_[j].point.name == out_[i].point.name;)
         if ((out_[j].normal - out_[i].normal).squaredNorm() < 1e-12 &&
