@@ -109,6 +109,17 @@ TEST_CASE("a diagram without a budget, an uncertainty, or any sound run is drawn
                     "delassus: diagram of 'A <scene>': there is no measure 2");
 }
 
+// Of the first integrator one run failed, and one point is no curve.
+TEST_CASE("a diagram joins the steps of each choice where it is asked to, in place of the best") {
+  const Study study = example();
+  const std::string svg = diagram_svg(study, {.joins_steps = true});
+  CHECK(count(svg, "class=\"curve c1\"") == 1);
+  CHECK(count(svg, "class=\"curve ") == 1);
+  CHECK(count(svg, "class=\"front\"") == 0);
+  CHECK(count(diagram_svg(study), "class=\"curve ") == 0);
+  CHECK(count(diagram_svg(study), "class=\"front\"") == 1);
+}
+
 TEST_CASE("the tables hold the front, what did not work, and every run with every digit") {
   const Study study = example();
   const Table front = front_table(study);

@@ -19,6 +19,7 @@ struct DiagramOptions {
   double budget = 0;     ///< drawn, with the cheapest run that holds it, where > 0
   int colour_axis = -1;  ///< axis of the combinations that colours tell apart; -1: the first with a choice
   int marker_axis = -1;  ///< and the one that marks tell apart; -1: the next
+  bool joins_steps = false;  ///< a curve through the steps of each combination and tolerance, in place of the best
 };
 
 namespace inner {
@@ -33,7 +34,7 @@ text{fill:#1f2328}.small{font-size:12px;fill:#59636e}.title{font-size:18px;font-
 .c0{fill:#0072b2;stroke:#0072b2}.c1{fill:#d55e00;stroke:#d55e00}.c2{fill:#009e73;stroke:#009e73}
 .c3{fill:#cc79a7;stroke:#cc79a7}.c4{fill:#b8860b;stroke:#b8860b}.c5{fill:#56b4e9;stroke:#56b4e9}.ink{fill:#59636e;stroke:#59636e}
 .front{fill:none;stroke:#1f2328;stroke-width:1.5}.budget{stroke:#1f2328;stroke-width:1.5;stroke-dasharray:7 5}
-.chosen{fill:none;stroke:#1f2328;stroke-width:2.5}.cross{fill:none;stroke-width:1.8}
+polyline.curve{fill:none;stroke-width:1.5}.chosen{fill:none;stroke:#1f2328;stroke-width:2.5}.cross{fill:none;stroke-width:1.8}
 @media(prefers-color-scheme:dark){svg{background:#0d1117}text{fill:#e6edf3}.small{fill:#9198a1}.halo{stroke:#0d1117}.page{fill:#0d1117}.grid{stroke:#262c36}
 .c0{fill:#58a6ff;stroke:#58a6ff}.c1{fill:#ff8f45;stroke:#ff8f45}.c2{fill:#2fd0a0;stroke:#2fd0a0}.c3{fill:#eba3cb;stroke:#eba3cb}
 .c4{fill:#e3b341;stroke:#e3b341}.c5{fill:#9ad8ff;stroke:#9ad8ff}.ink{fill:#9198a1;stroke:#9198a1}
@@ -65,13 +66,15 @@ class Diagram {
     svg_.text(left, 30, study_.plan.name + ": what accuracy costs", "title");
     svg_.text(left, 50,
               "Each mark is one run of " + shortest_text(study_.plan.duration) +
-                  " s. Lower is more accurate, further left is cheaper. The line joins the best.",
+                  " s. Lower is more accurate, further left is cheaper. " +
+                  (options_.joins_steps ? "Lines join the steps of one choice." : "The line joins the best."),
               "small");
     draw_axes(measure);
     if (measure.uncertainty > 0) draw_uncertainty(measure.uncertainty);
     if (options_.budget > 0) draw_budget(measure);
+    if (options_.joins_steps) draw_curves();
     draw_runs();
-    draw_front();
+    if (!options_.joins_steps) draw_front();
     if (measure.uncertainty > 0)
       svg_.text(right - 8, bottom - 7, "errors in here are not believed: the reference is not this sure",
                 "small halo", "end");
@@ -172,6 +175,20 @@ class Diagram {
     if (lost > 0)
       svg_.text(right + 8, top - 10,
                 "× " + std::to_string(lost) + (lost == 1 ? " run" : " runs") + " failed or too slow");
+  }
+
+  /// Runs are numbered so that the steps of one choice follow each other.
+  void draw_curves() {
+    std::vector<std::pair<double, double>> points;
+    const auto& runs = study_.runs;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      if (runs[k].is_usable()) points.push_back({x_.at(seconds(runs[k])), y_.at(error(runs[k]))});
+      const bool is_last = k + 1 == runs.size() || runs[k + 1].combination != runs[k].combination ||
+                           runs[k + 1].tolerance != runs[k].tolerance;
+      if (!is_last) continue;
+      if (points.size() > 1) svg_.polyline(points, "curve " + colour(choice(runs[k], options_.colour_axis)));
+      points.clear();
+    }
   }
 
   /// Down and to the right from one best run to the next: nothing lies below or left of it.

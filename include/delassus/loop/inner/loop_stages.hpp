@@ -185,7 +185,8 @@ void AnimationLoop<Policies...>::solve_whole_step() {
       inner::note_broken(laws(), h_);
     } else {
       typename Work::Rows none;
-      work_.whole_step.solve(world(), laws(), none, part<role::Integrator>(), h_);
+      const SolveReport report = work_.whole_step.solve(world(), laws(), none, part<role::Integrator>(), h_);
+      report_.status = worse(report_.status, report.status);
     }
     tell<stage::Solve>();
     tell<stage::Correct>();

@@ -1,0 +1,59 @@
+/// The generalised-α method: second order, with the damping of what the step cannot resolve chosen by one
+/// number.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/stages/generalized_alpha_step.hpp>
+
+namespace delassus {
+
+/// For structures: particles on springs and soft bodies, without joints and contacts. Implicit, solved by
+/// Newton's method; stable for every h ω. A motion with h ω → ∞ shrinks by ρ∞ a step, one with h ω ≪ 1 keeps
+/// its amplitude to third order.
+struct GeneralizedAlpha {
+  using plays = role::Integrator;
+  static constexpr bool solves_whole_step = true;
+  template <class World, class Laws, class Rows>
+  using WholeStep = GeneralizedAlphaStep<World, Laws, Rows>;
+  template <class Set>
+  static constexpr bool can_move = Set::width == 3;
+  double spectral_radius = 0.8;  ///< ρ∞ in [0, 1]
+  double tolerance = 1e-10;      ///< of the accelerations
+  int max_iterations = 20;       ///< factorizations; reaching it is a status
+
+  struct Coefficients {
+    double alpha_m, alpha_f, beta, gamma;
+  };
+  Coefficients coefficients() const {
+    const double rho = spectral_radius, alpha_m = (2 * rho - 1) / (rho + 1), alpha_f = rho / (rho + 1);
+    const double step = 1 - alpha_m + alpha_f;
+    return {alpha_m, alpha_f, step * step / 4, step - 0.5};
+  }
+  void check() const {
+    DELASSUS_EXPECT(
+        spectral_radius >= 0 && spectral_radius <= 1,
+        "GeneralizedAlpha: spectral_radius " + inner::text(spectral_radius) + " must be in [0, 1]");
+    DELASSUS_EXPECT(tolerance >= 0,
+                    "GeneralizedAlpha: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations > 0,
+                    "GeneralizedAlpha: max_iterations " + inner::text(max_iterations) + " must be > 0");
+  }
+  SystemScale scale(double) const { return {.mass = 1}; }
+  void impulse(const auto& set, auto& p, double h) const {
+    set.add_forces(p);
+    times(p, h);
+  }
+  /// The set goes to x₊, and takes v₊.
+  void advance(auto& set, double h) const {
+    if constexpr (requires { set.active(); }) {
+      set.advance(h);
+      auto& v = set.velocity();
+      for (const Index b : set.active())
+        if (set.moves(b) && is_finite(set.v_next[b]) && is_finite(set.v_free[b])) v[b] = set.v_free[b];
+    }
+  }
+};
+static_assert(Integrator<GeneralizedAlpha>);
+
+}  // namespace delassus
