@@ -21,46 +21,48 @@ from programs import has_valgrind, instructions, run  # noqa: E402
 
 SETTLED, COUNTED = 300, 100
 
-# Row of the table · name in effects.cpp · the row it is compared with · whether it can be stacked
+# Row of the table · name in effects.cpp · which variant of it · the row it is compared with · whether it can be stacked
 EFFECTS = [
-    ("bodies that fall, nothing else", "bodies_alone", None, False),
-    ("contact without friction", "frictionless", "bodies_alone", True),
-    ("Coulomb friction", "friction", "frictionless", True),
-    ("restitution", "restitution", "friction", True),
-    ("no warm start", "cold_start", "friction", True),
-    ("`SoftContact` for `Baumgarte`", "soft_contact", "friction", True),
-    ("`PositionProjection` for `Baumgarte`", "position_projection", "friction", True),
-    ("`ProximalNewton` for sweeps", "newton", "friction", True),
-    ("`Sleeping`, all awake", "sleeping_awake", "friction", True),
-    ("`Sleeping`, all asleep", "sleeping_asleep", "friction", True),
-    ("a joint law without a joint", "law_without_item", "friction", True),
-    ("listener `Stopwatch`", "stopwatch", "friction", True),
-    ("listener `DoubleBuffer`", "double_buffer", "friction", True),
-    ("a ball joint each, no contact", "ball_joint", "bodies_alone", False),
-    ("a hinge each", "hinge", "bodies_alone", False),
-    ("a limit on each hinge, out of reach", "hinge_far_limit", "hinge", False),
-    ("a limit on each hinge, at its stop", "hinge_at_limit", "hinge", False),
+    ("bodies that fall, nothing else", "bodies_alone", "one", None, False),
+    ("contact without friction", "frictionless", "one", "bodies that fall, nothing else", True),
+    ("Coulomb friction", "friction", "one", "contact without friction", True),
+    ("restitution", "restitution", "one", "Coulomb friction", True),
+    ("no warm start", "cold_start", "one", "Coulomb friction", True),
+    ("`SoftContact` for `Baumgarte`", "soft_contact", "one", "Coulomb friction", True),
+    ("`Sleeping`, all awake", "sleeping", "one", "Coulomb friction", True),
+    ("`Sleeping`, all asleep", "sleeping", "other", "Coulomb friction", True),
+    ("listener `Stopwatch`", "stopwatch", "one", "Coulomb friction", True),
+    ("a ball joint each, no contact", "ball_joint", "one", "bodies that fall, nothing else", False),
+    ("a hinge each, no contact", "hinge", "one", "bodies that fall, nothing else", False),
+    ("a limit on each hinge, out of reach", "hinge_limit", "one", "a hinge each, no contact", False),
+    ("a limit on each hinge, at its stop", "hinge_limit", "other", "a hinge each, no contact", False),
+    ("`PositionProjection` for `Baumgarte`", "position_projection", "one", "Coulomb friction", True),
+    ("`ProximalNewton` for sweeps", "newton", "one", "Coulomb friction", True),
+    ("listener `DoubleBuffer`", "double_buffer", "one", "Coulomb friction", True),
+    ("a joint law without a joint", "law_without_item", "one", "Coulomb friction", True),
 ]
 
 
-def count(program, place):
+def count(program, place, variant):
     """Instructions of one step."""
-    less, more = (instructions(program, place, steps)[0] for steps in (SETTLED, SETTLED + COUNTED))
+    less, more = (instructions(program, place, variant, steps)[0] for steps in (SETTLED, SETTLED + COUNTED))
     return (more - less) / COUNTED
 
 
 def measure(names, compiler, system):
-    """{effect: [apart, stacked or None]}"""
+    """{row: [apart, stacked or None]}"""
     figures = {}
     with tempfile.TemporaryDirectory() as folder:
-        for title, effect, _, can_stack in EFFECTS:
+        for title, effect, variant, _, can_stack in EFFECTS:
             if names and not any(name in title or name == effect for name in names):
                 continue
             program = Path(folder) / effect
-            run(compiler, "-std=c++20", "-O3", "-DNDEBUG", f"-DDELASSUS_EFFECT={effect}", "-I",
-                ROOT / "include", "-isystem", system, ROOT / "scripts" / "effect_cost" / "effects.cpp", "-o", program)
-            figures[effect] = [count(program, place) if place == "apart" or can_stack else None for place in ("apart", "stacked")]
-            print(title, figures[effect], flush=True)
+            if not program.exists():
+                run(compiler, "-std=c++20", "-O3", "-DNDEBUG", f"-DDELASSUS_EFFECT={effect}", "-I", ROOT / "include", "-isystem",
+                    system, ROOT / "scripts" / "effect_cost" / "effects.cpp", "-o", program)
+            figures[title] = [count(program, place, variant) if place == "apart" or can_stack else None
+                              for place in ("apart", "stacked")]
+            print(title, figures[title], flush=True)
     return figures
 
 
@@ -79,13 +81,12 @@ def beside(value, base):
 
 
 def table(figures):
-    titles = {effect: title for title, effect, _, _ in EFFECTS}
     lines = ["| effect | compared with | apart | beside it | stacked | beside it |", "| --- | --- | --: | --: | --: | --: |"]
-    for title, effect, base, _ in EFFECTS:
-        if effect not in figures:
+    for title, _, _, base, _ in EFFECTS:
+        if title not in figures:
             continue
-        own, other = figures[effect], figures.get(base, [None, None])
-        cells = [title, titles.get(base, ""), number(own[0]), beside(own[0], other[0]), number(own[1]), beside(own[1], other[1])]
+        own, other = figures[title], figures.get(base, [None, None])
+        cells = [title, base or "", number(own[0]), beside(own[0], other[0]), number(own[1]), beside(own[1], other[1])]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -25,6 +25,7 @@ struct Contact;
 template <class Law>
 struct Restitution;
 struct Coulomb;
+struct Pyramid;
 struct Frictionless;
 struct BallJoint;
 struct Cylindrical;

@@ -1,8 +1,10 @@
 // Ten boxes of 1 kg for a number of steps, with one effect more or less: DELASSUS_EFFECT is its name in the
 // list below. The difference of two runs under callgrind is the instructions of a step;
 // scripts/effect_cost.py makes the table.
-//   effects <apart|stacked> <steps>
+//   effects <apart|stacked> <one|other> <steps>       the other: asleep for awake, at the limit for far from
+//   it
 #include <delassus/delassus.hpp>
+#include <delassus/solvers/proximal_newton.hpp>
 
 #include <cstdio>
 #include <cstdlib>
@@ -27,7 +29,11 @@ struct ColdStart : AcceleratedGaussSeidel {
 constexpr double h = 0.01;
 const Contact coulomb{Coulomb{.friction = 0.6}};
 
-auto with(auto... policies) { return AnimationLoop{World{RigidBodies{}}, policies...}; }
+/// The effect only makes a loop that is not asked for uninstantiated.
+template <int effect>
+auto with(auto... policies) {
+  return AnimationLoop{World{RigidBodies{}}, policies...};
+}
 
 enum Effect {
   bodies_alone,
@@ -40,57 +46,53 @@ enum Effect {
   law_without_item,
   stopwatch,
   double_buffer,
-  sleeping_awake,
-  sleeping_asleep,
+  sleeping,
   newton,
   ball_joint,
   hinge,
-  hinge_far_limit,
-  hinge_at_limit
+  hinge_limit
 };
 
 template <Effect effect>
-auto make() {
+auto make([[maybe_unused]] bool is_other) {
   const auto sweeps = AcceleratedGaussSeidel{.tolerance = 1e-6};
   if constexpr (effect == bodies_alone)
-    return with();
+    return with<effect>();
   else if constexpr (effect == frictionless)
-    return with(Constraints{Contact{Frictionless{}}}, sweeps);
+    return with<effect>(Constraints{Contact{Frictionless{}}}, sweeps);
   else if constexpr (effect == friction)
-    return with(Constraints{coulomb}, sweeps);
+    return with<effect>(Constraints{coulomb}, sweeps);
   else if constexpr (effect == restitution)
-    return with(Constraints{Contact{Restitution{Coulomb{.friction = 0.6}, 0.5}}}, sweeps);
+    return with<effect>(Constraints{Contact{Restitution{Coulomb{.friction = 0.6}, 0.5}}}, sweeps);
   else if constexpr (effect == cold_start)
-    return with(Constraints{coulomb}, ColdStart{{.tolerance = 1e-6}});
+    return with<effect>(Constraints{coulomb}, ColdStart{{.tolerance = 1e-6}});
   else if constexpr (effect == soft_contact)
-    return with(Constraints{coulomb}, sweeps, SoftContact{});
+    return with<effect>(Constraints{coulomb}, sweeps, SoftContact{});
   else if constexpr (effect == position_projection)
-    return with(Constraints{coulomb}, sweeps, PositionProjection{});
+    return with<effect>(Constraints{coulomb}, sweeps, PositionProjection{});
   else if constexpr (effect == law_without_item)
-    return with(Constraints{coulomb, BallJoint{}}, sweeps);
+    return with<effect>(Constraints{coulomb, BallJoint{}}, sweeps);
   else if constexpr (effect == stopwatch)
-    return with(Constraints{coulomb}, sweeps, Stopwatch{});
+    return with<effect>(Constraints{coulomb}, sweeps, Stopwatch{});
   else if constexpr (effect == double_buffer)
-    return with(Constraints{coulomb}, sweeps, DoubleBuffer{});
-  else if constexpr (effect == sleeping_awake)
-    return with(Constraints{coulomb}, sweeps, Sleeping{.after = 1e9});
-  else if constexpr (effect == sleeping_asleep)
-    return with(Constraints{coulomb}, sweeps, Sleeping{});
+    return with<effect>(Constraints{coulomb}, sweeps, DoubleBuffer{});
+  else if constexpr (effect == sleeping)
+    return with<effect>(Constraints{coulomb}, sweeps, Sleeping{.after = is_other ? 0.5 : 1e9});
   else if constexpr (effect == newton)
-    return with(Constraints{coulomb}, ProximalNewton{.tolerance = 1e-6});
+    return with<effect>(Constraints{coulomb}, ProximalNewton{.tolerance = 1e-6});
   else if constexpr (effect == ball_joint)
-    return with(Constraints{BallJoint{}}, sweeps);
+    return with<effect>(Constraints{BallJoint{}}, sweeps);
   else if constexpr (effect == hinge)
-    return with(Constraints{Hinge{}}, sweeps);
+    return with<effect>(Constraints{Hinge{}}, sweeps);
   else
-    return with(Constraints{Hinge{}, Limit<Turn>{}}, sweeps);
+    return with<effect>(Constraints{Hinge{}, Limit<Turn>{}}, sweeps);
 }
 
 /// Boxes on the ground, three metres apart or on each other; or each hanging from the world at the middle of
 /// its upper face.
 template <Effect effect>
-void run(bool is_stacked, int steps) {
-  auto loop = make<effect>();
+void run(bool is_stacked, bool is_other, int steps) {
+  auto loop = make<effect>(is_other);
   auto& set = bodies<RigidBodies>(loop.world());
   constexpr bool hangs = effect >= ball_joint;
   if (!hangs) set.add_fixed(HalfSpace{});
@@ -107,10 +109,8 @@ void run(bool is_stacked, int steps) {
         loop.add(BallJoint::Item{hook, box});
       else
         loop.add(Hinge::Item{hook, box});
-      if constexpr (effect == hinge_far_limit)
-        loop.add(Limit<Turn>::Item{.a = hook, .b = box, .lower = -1, .upper = 1});
-      if constexpr (effect == hinge_at_limit)
-        loop.add(Limit<Turn>::Item{.a = hook, .b = box, .lower = 0, .upper = 1});
+      if constexpr (effect == hinge_limit)
+        loop.add(Limit<Turn>::Item{.a = hook, .b = box, .lower = is_other ? 0.0 : -1.0, .upper = 1});
     }
   }
   for (int n = 0; n < steps; ++n) loop.step(h);
@@ -120,6 +120,7 @@ void run(bool is_stacked, int steps) {
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 3) return 2;
-  run<Effect(DELASSUS_EFFECT)>(std::string(words[1]) == "stacked", std::atoi(words[2]));
+  if (count != 4) return 2;
+  run<Effect(DELASSUS_EFFECT)>(std::string(words[1]) == "stacked", std::string(words[2]) == "other",
+                               std::atoi(words[3]));
 }

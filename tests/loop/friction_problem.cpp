@@ -184,3 +184,21 @@ TEST_CASE("parts that do not fit together are refused") {
                       Catch::Contains("block (0, 1) lies outside of 1 contacts"));
   REQUIRE_THROWS_WITH(make_friction_problem({0.5}, {Vec3::Zero()}, {}), Catch::Contains("contact 0 is missing"));
 }
+
+// Two contacts on a W that no bodies have: its blocks are indefinite, and every sweep multiplies λ by 10¹⁴.
+TEST_CASE("sweeps that run away to where there are no numbers say so, and their residual is not hidden") {
+  Mat3 block;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) block(i, j) = i == j ? 1 + 1e-6 : -1;
+  const Vec3 q(-1, -1, -1);
+  FrictionProblem p =
+      make_friction_problem({0.75, 0.75}, {q, q}, {{0, 0, block}, {0, 1, block}, {1, 0, block}, {1, 1, block}});
+  const SolveReport report = solve(p, GaussSeidel{.max_iterations = 60});
+  CHECK(report.status == Status::quarantined);
+  CHECK(std::isnan(report.measure.residual));
+  FrictionProblem again = make_friction_problem({0.75, 0.75}, {q, q},
+                                                {{0, 0, block}, {0, 1, block}, {1, 0, block}, {1, 1, block}});
+  const SolveReport kept = solve(again, AcceleratedGaussSeidel{.max_iterations = 60});
+  CHECK(std::isfinite(kept.measure.residual));  // the best it measured
+  for (const Vec3& lambda : again.rows.pool<0>().lambda) CHECK(is_finite(lambda));
+}
