@@ -202,8 +202,10 @@ class BasicFem : public inner::Places<BasicFem<E, M, T>, T, 3> {
   }
   void restore() { x_ = shifted_x_; }
 
-  /// f(k, generation, body) for every body, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
-  void each_mesh(auto&& f) const {
+  /// f(k, generation, body) for every body of tetrahedra, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
+  void each_mesh(auto&& f) const
+    requires(E::nodes == 4)
+  {
     for (const Index k : body_slots_.active()) f(k, body_slots_.generation(k), bodies_[k]);
   }
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
