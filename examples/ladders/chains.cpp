@@ -39,7 +39,7 @@ void climb_chain(Ladder& ladder, double h, const Solver& solver, const Stabilisa
                                    {100, 1},
                                    {100, 100},
                                    {100, 1e4}})
-    ladder.rung(format("%d links, end %g ×", links, end), [&]() -> Marks {
+    ladder.rung(format("%d links, end %g ×", links, end), [&, links = links, end = end]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, solver, stabilisation};
       auto& set = bodies<RigidBodies>(loop.world());
       const auto chain = add_chain(loop, links);

@@ -67,7 +67,7 @@ void elastic_balls(Ladder& ladder) {
     double h, seconds;
   };
   for (const auto& [edge, h, seconds] : {Case{2, 1e-2, 60}, {3, 1e-2, 60}, {6, 1e-2, 60}, {6, 1e-3, 10}})
-    ladder.rung(format("%d balls, h = %g s", edge * edge * edge, h), [&]() -> Marks {
+    ladder.rung(format("%d balls, h = %g s", edge * edge * edge, h), [&, edge = edge, h = h, seconds = seconds]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 1}}}};
       auto& set = bodies<RigidBodies>(loop.world());
       const double size = 0.4 * edge;

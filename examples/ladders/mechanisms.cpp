@@ -36,7 +36,7 @@ void four_bars(Ladder& ladder) {
     double h;
   };
   for (const auto& [n, h] : {Case{1, 1e-2}, {1, 1e-3}, {2, 1e-3}, {5, 1e-3}, {10, 1e-3}, {40, 1e-3}})
-    ladder.rung(format("%d four-bars, h = %g s", n, h), [&]() -> Marks {
+    ladder.rung(format("%d four-bars, h = %g s", n, h), [&, n = n, h = h]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Planar{}},
                          ProximalNewton{.tolerance = 1e-10}, WholeViolation{}};
       auto& set = bodies<RigidBodies>(loop.world());
@@ -82,7 +82,7 @@ void gear_train(Ladder& ladder) {
     double ratio;
   };
   for (const auto& [wheels, ratio] : {Case{2, 1.}, {2, 10.}, {10, 1.}, {10, 2.}, {2, 1e3}, {2, 1e-3}})
-    ladder.rung(format("%d wheels, ratio %g", wheels, ratio), [&]() -> Marks {
+    ladder.rung(format("%d wheels, ratio %g", wheels, ratio), [&, wheels = wheels, ratio = ratio]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Gear{}, Motor<Turn>{}},
                          AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000}};
       auto& set = bodies<RigidBodies>(loop.world());

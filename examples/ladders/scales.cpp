@@ -61,7 +61,7 @@ void scale(Ladder& ladder) {
   };
   for (const auto& [a, b] :
        {Units{1, 1}, {1, 1e-6}, {1, 1e6}, {1e-1, 1}, {1e1, 1}, {1e-2, 1}, {1e2, 1}, {1e-4, 1e-6}, {1e4, 1e6}})
-    ladder.rung(format("length × %g, mass × %g", a, b), [&]() -> Marks {
+    ladder.rung(format("length × %g, mass × %g", a, b), [&, a = a, b = b]() -> Marks {
       const Outcome scaled = standard(ladder, a, b, Vec3::Zero(), seconds);
       if (a == 1 && b == 1) unit = scaled;
       return {{"change / size", difference(unit, scaled), 1e-3, 1e-9},
