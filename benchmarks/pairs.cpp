@@ -90,7 +90,24 @@ void whole(benchmark::State& state) {
   state.counters["contacts"] = double(contacts.size()) / pair_count;
 }
 
-/// `answer(below, above, b_in_a)` for every pair.
+/// Lets no pair: what is left of the whole is boxes, broad phase and the list of pairs.
+struct LetNone {
+  bool lets(std::uint64_t) const { return false; }
+};
+
+void boxes_alone(benchmark::State& state) {
+  Resting scene{Kinds(state.range(0))};
+  NativeCollision backend;
+  std::vector<ContactPoint> contacts;
+  int step = 0;
+  for (auto _ : state) {
+    backend.detect(scene.steps[step++ % step_count], 1e-3, contacts, LetNone{});
+    benchmark::DoNotOptimize(contacts.data());
+  }
+  per_pair(state);
+}
+
+/// `answer(below, above)` for every pair.
 template <class Answer>
 void bare(benchmark::State& state, const Answer& answer) {
   Resting scene{Kinds(state.range(0))};
@@ -174,6 +191,7 @@ void kinds(benchmark::internal::Benchmark* b) {
 }
 
 BENCHMARK_TEMPLATE(whole, NativeCollision)->Apply(kinds);
+BENCHMARK(boxes_alone)->Apply(kinds);
 BENCHMARK_TEMPLATE(whole, FclCollision)->Apply(kinds);
 BENCHMARK_TEMPLATE(whole, CcdCollision)->Apply(kinds);
 BENCHMARK(fcl_collide)->Apply(kinds);

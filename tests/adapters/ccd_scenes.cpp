@@ -4,7 +4,8 @@
 
 using namespace scenes;
 
-TEST_CASE("stacks of five and ten boxes, cubes, cylinders and all of them stand on libccd's contacts", "[table]") {
+TEST_CASE("stacks of five and ten boxes, cubes, cylinders and all of them stand on libccd's contacts",
+          "[table]") {
   check_stacks<CcdCollision>("libccd");
 }
 TEST_CASE("a pyramid stands on libccd's contacts", "[table]") { check_pyramid<CcdCollision>(); }

@@ -10,7 +10,8 @@ using namespace samples;
 
 // EPA's bounds meet to 3e-10 of the smaller body's box, whose diagonal is below 3 L, GJK's to 1e-10.
 // 1e-8 L leaves room for the few whose points are spent before that; what is asked is 1e-4 L.
-TEST_CASE("no overlap is missed, and every depth is the least one, for all convex pairs in all classes", "[table]") {
+TEST_CASE("no overlap is missed, and every depth is the least one, for all convex pairs in all classes",
+          "[table]") {
   for (const double size : {1.0, 1e-3, 1e3}) {
     const Zoo zoo(size);
     for (const Depth depth : depths) {
@@ -24,7 +25,8 @@ TEST_CASE("no overlap is missed, and every depth is the least one, for all conve
   }
 }
 
-TEST_CASE("needles, plates and giants are bodies like any other, apart, touching and overlapping", "[table]") {
+TEST_CASE("needles, plates and giants are bodies like any other, apart, touching and overlapping",
+          "[table]") {
   const std::vector<Shape> shapes{
       Sphere{1e-4},          Box{1, 1, 1e-3},         Box{1000, 1000, 1}, Capsule{1e-3, 1},
       Cylinder{1e-3, 1},     Cylinder{1, 1e-3},       Cone{1e-3, 1},      Cone{1, 1e-3},

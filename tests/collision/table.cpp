@@ -19,4 +19,6 @@ TEST_CASE("native: a run again, bodies in another order and four threads give th
 TEST_CASE("native: the pairs of ten thousand boxes are those of brute force, run after run", "[table]") {
   check_pairs<BoxTree>();
 }
-TEST_CASE("native: no bullet passes a plate at any phase of the step", "[table]") { check_bullets<NativeCollision>(); }
+TEST_CASE("native: no bullet passes a plate at any phase of the step", "[table]") {
+  check_bullets<NativeCollision>();
+}
