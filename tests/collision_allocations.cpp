@@ -42,14 +42,14 @@ TEST_CASE("a warm detect() of meshes on a mesh allocates nothing") {
   MeshScene scene;
   scene.add(scene.collision.add(flat_grid(4, 31, 0.3)), {0, 0, 0}, Mat3::Identity(), false);
   const Shape box = scene.collision.add(fine_box(0.8, 0.8, 0.8, 3));
-  for (int i = 0; i < 4; ++i) scene.add(box, {0.7 * i - 1, 0.2 * i, 0.399});
+  for (int i = 0; i < 4; ++i) scene.add(box, {0.9 * i - 1.4, 0.2 * i, 0.399});
   const auto step = [&](int k) {
     for (std::size_t i = 1; i < scene.colliders.size(); ++i)
       scene.colliders[i].pose.position[0] += k % 2 ? 1e-3 : -1e-3;
     scene.detect();
   };
   for (int k = 0; k < 20; ++k) step(k);
-  REQUIRE(scene.contacts.size() > 16);
+  REQUIRE(scene.contacts.size() == 16);
   const long before = allocations;
   for (int k = 0; k < 20; ++k) step(k);
   CHECK(allocations == before);

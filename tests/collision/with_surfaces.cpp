@@ -202,6 +202,22 @@ TEST_CASE("a point of a triangle is the same point of the element behind it") {
   }
 }
 
+TEST_CASE("neighbours on one surface do not meet, though they face each other") {
+  // An L of three cubes of 1 m: its hollow faces are 1 m long, and all their corners are joined by an edge.
+  TetrahedralMesh mesh = delassus::box_mesh({2, 1, 2}, {2, 1, 2});
+  std::erase_if(mesh.tetrahedra, [&](const auto& t) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index i : t) middle += 0.25 * mesh.points[i];
+    return middle[0] > 1 && middle[2] > 1;
+  });
+  const SoftSurface one = Nodes{mesh}.surface(), other = Nodes{mesh}.surface();
+  SoftPairs pairs;
+  pairs.cross(one, one, {1.2, 1.2, 1});
+  CHECK(pairs.found.empty());
+  pairs.cross(one, other, {1.2, 1.2, 1});  // of two surfaces they do
+  CHECK(!pairs.found.empty());
+}
+
 TEST_CASE("surfaces that lose their shape give finite unit normals or nothing") {
   // Points, lines, flat and inside-out bodies against a mesh and a box.
   std::mt19937 random(11);

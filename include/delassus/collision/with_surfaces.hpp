@@ -241,8 +241,10 @@ struct WithSurfaces<Backend>::Pairing {
                  y = o ? o->shares(c.triangle_b, c.point.b) : Vec3(Vec3::Zero());
       double of_a = s.radius(), of_b = o ? o->radius() : 0;
       if (o == &s) {
-        // No thicker than what was apart at rest.
+        // No thicker than what was apart at rest; and what seems passed by as much is the body between its
+        // sides.
         const double rest = (s.rest_point(c.triangle_a, x) - s.rest_point(c.triangle_b, y)).norm();
+        if (c.point.gap < -0.1 * rest) continue;
         of_a = of_b = std::min(of_a, 0.5 * rest);
       }
       const Vec3 va = s.velocity(c.triangle_a, x),

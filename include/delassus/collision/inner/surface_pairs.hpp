@@ -46,7 +46,7 @@ class SurfacePairs {
   }
 
   /// The same for two surfaces; returns how many pairs of triangles were looked at. What is deeper than the
-  /// margin, or than 2e-2 L, is found only where triangles reach as far.
+  /// margin and than 2e-2 L may not be found.
   template <class SurfaceA, class SurfaceB>
   Index cross(const SurfaceA& surface_a, const SurfaceB& surface_b, std::span<const Collider> colliders,
               Index place_a, Index place_b, double h, const CollisionSettings& settings,
