@@ -4,6 +4,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/workspace.hpp>
+#include <delassus/math/twist.hpp>
 #include <delassus/rows/local.hpp>
 
 #include <algorithm>
@@ -80,9 +81,14 @@ template <class World, class Laws, class Rows>
 void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec3>& impulses,
                      std::size_t contacts, double h) {
   impulses.assign(contacts, Vec3::Zero());
-  world.each([](auto& set, auto) { set.factor({.mass = 1}); });
-  double fastest = 0;
-  const auto round = [&](bool is_first) {
+  double fastest = 0;  // what closes below its rounding does not: a stack at rest has no impacts
+  world.each([&](auto& set, auto) {
+    set.factor({.mass = 1});
+    if constexpr (requires { set.gravity; }) fastest = std::max(fastest, h * set.gravity.norm());
+    for (const Index b : set.active())
+      fastest = std::max(fastest, double(linear_part(set.velocity()[b]).norm()));
+  });
+  const auto round = [&] {
     bool any = false;
     for_each_index<Laws::pool_count>([&](auto p) {
       const auto& pool = laws.template pool<p>();
@@ -93,8 +99,6 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
           inner::Impact<p, World, Laws, Rows> impact(world, laws, rows, i);
           const auto u = impact.velocity();
           const double closing = -double(u[0]), gap = double(rows.template pool<p>().phi[i][0]);
-          if (is_first) fastest = std::max(fastest, closing);
-          // Below the rounding of the others it is none.
           if (!(closing > 1e-12 * fastest) || !(gap < h * closing)) continue;
           const auto lambda = impact.hit(u);
           constexpr int R = Rows::template rows_of<p>;
@@ -110,7 +114,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
     if constexpr (inner::passes_impacts_on<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>)
       most = std::max(most, laws.template pool<p>().law.law.most_rounds);
   });
-  for (int k = 0; k < most && round(k == 0); ++k) {
+  for (int k = 0; k < most && round(); ++k) {
   }
 }
 

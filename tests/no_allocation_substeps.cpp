@@ -1,0 +1,18 @@
+// A program of its own: it counts every call of operator new, and has Eigen stop at an allocation in a warm
+// step.
+#define EIGEN_RUNTIME_NO_MALLOC
+#include "allocation_scenes.hpp"
+
+#include <delassus/loop/substeps.hpp>
+
+TEST_CASE("a warm step in parts allocates nothing, with impacts that are passed on") {
+  AnimationLoop loop{World{RigidBodies{}},
+                     Constraints{Contact{SequentialRestitution{Coulomb{.friction = 0.5}, 0.3}}, BallJoint{}},
+                     Substeps{3}};
+  auto& set = rigid_bodies(loop);
+  add_stack(set, 5, Box{1, 1, 1});
+  const auto rod =
+      set.add({.position = {3, 0, 5}, .velocity = {1, 0, 0}, .mass = 0.2, .shape = Box{0.1, 0.1, 2}});
+  loop.add(BallJoint::Item{anchor(set, rod, {0, 0, 1}), world_anchor({3, 0, 6})});
+  REQUIRE(allocations_of(loop, 100, 200) == 0);
+}
