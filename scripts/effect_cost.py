@@ -75,9 +75,10 @@ def beside(value, base):
     if value is None or base is None:
         return ""
     ratio = value / base
-    if 0.1 <= ratio < 2:
-        return "±0" if round(value) == round(base) else f"{100 * (ratio - 1):+.2g} %" if abs(ratio - 1) < 0.1 else f"{100 * (ratio - 1):+.0f} %"
-    return f"{ratio:.2g} ×" if ratio >= 2 else f"{100 * ratio:.2g} %"
+    if ratio >= 2:
+        return f"{ratio:.2g} ×"
+    more = 100 * (ratio - 1)
+    return (f"{more:+.2g} %" if abs(more) < 10 else f"{more:+.0f} %").replace("-", "−")
 
 
 def table(figures):
