@@ -167,19 +167,24 @@ class BasicFem : public inner::Places<BasicFem<E, M, T>, T, 3> {
     return solve_mass<C>(b, x);
   }
 
-  /// Of an element all its nodes, the fixed ones of them with A⁻¹ = 0.
-  int anchor_blocks(const Anchor& a) const { return a.element >= 0 ? E::nodes : moves(a.block) ? 1 : 0; }
+  /// Of an element those of its corners that have a share in the point, the fixed ones with A⁻¹ = 0.
+  int anchor_blocks(const Anchor& a) const {
+    if (a.element < 0) return moves(a.block) ? 1 : 0;
+    int count = 0;
+    for (int k = 0; k < E::nodes; ++k) count += weight(a, k) != 0 ? 1 : 0;
+    return count;
+  }
   Index anchor_block(const Anchor& a, int k) const {
-    return a.element >= 0 ? body_at(a).block_of(a.element, k) : a.block;
+    return a.element >= 0 ? body_at(a).block_of(a.element, corner(a, k)) : a.block;
   }
   Velocity along(const Anchor& a, int k, const Vec3&, const Vec3& direction) const {
-    return (weight(a, k) * direction).template cast<T>();
+    return (weight(a, corner(a, k)) * direction).template cast<T>();
   }
   Vec3 point(const Anchor& a) const {
     if (a.element < 0) return x_[a.block].template cast<double>();
     Vec3 x = Vec3::Zero();
     for (int k = 0; k < E::nodes; ++k)
-      x += weight(a, k) * Vec3(x_[anchor_block(a, k)].template cast<double>());
+      x += weight(a, k) * Vec3(x_[body_at(a).block_of(a.element, k)].template cast<double>());
     return x;
   }
 
@@ -218,6 +223,13 @@ class BasicFem : public inner::Places<BasicFem<E, M, T>, T, 3> {
   }
   const auto& body_at(const Anchor& a) const { return bodies_[body_[a.block]]; }
   static double weight(const Anchor& a, int k) { return a.element < 0 ? 1 : E::weight(a.local, k); }
+  /// The k-th corner of the element that has a share in the point.
+  static int corner(const Anchor& a, int k) {
+    if (a.element < 0) return 0;
+    int at = 0;
+    for (;; ++at)
+      if (weight(a, at) != 0 && k-- == 0) return at;
+  }
   void each_body(auto&& f) const {
     for (const Index k : body_slots_.active()) f(bodies_[k]);
   }
