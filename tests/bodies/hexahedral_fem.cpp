@@ -165,6 +165,31 @@ TEMPLATE_TEST_CASE("A = M + h^2 K of hexahedra is the derivative of their forces
   CHECK(worst < 1e-7);  // step² of the third derivative
 }
 
+TEST_CASE("a hexahedron that is bent resists no turn as a whole") {
+  // The shapes of a box have a mean gradient of zero: bent by them the material is at rest, and all of K is
+  // that of the modes.
+  HexahedralFem<Corotational> set;
+  set.add({.mesh = hexahedral_box({2, 1, 1}, {1, 1, 1}), .elasticity = {.young = 1}});
+  const Quat turn = exponential(Vec3(1, 2, -1));
+  for (Index b = 0; b < 8; ++b) {
+    const Vec3 x = set.position(set.handle(b)),
+               s(x[0] < 1 ? -1 : 1, x[1] < 0.5 ? -1 : 1, x[2] < 0.5 ? -1 : 1);
+    set.place(set.handle(b), turn * (x + 0.1 * Vec3(s[0] * s[1], s[1] * s[2], s[0] * s[1] * s[2])));
+  }
+  set.factor({.mass = 1, .stiffness = 1});
+  const auto resistance = [&](const Vec3& rate, const Vec3& bending) {
+    for (Index b = 0; b < 8; ++b)
+      set.velocity()[b] = rate.cross(set.position(set.handle(b))) + (b == 0 ? 1.0 : 0.0) * bending;
+    std::vector<Vec3> p(8, Vec3::Zero());
+    set.add_stiffness_times_velocity(p, 1);
+    double size = 0;
+    for (const Vec3& x : p) size += x.norm();
+    return size;
+  };
+  CHECK(resistance(Vec3::Zero(), {1, 0, 0}) > 0.1);
+  for (int k = 0; k < 3; ++k) CHECK(resistance(unit_axis(k), Vec3::Zero()) < 1e-14);
+}
+
 TEST_CASE("a body of hexahedra that cannot be one is refused, and says why") {
   HexahedralFem<Corotational> set;
   HexahedralMesh folded = hexahedral_box({1, 1, 1}, {2, 1, 1});

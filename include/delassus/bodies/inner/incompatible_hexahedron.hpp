@@ -28,8 +28,8 @@ inline double hourglass(int k, int corner) {
 /// term has whole. S is that of Hooke's law at rest, the modes' own coordinates eliminated. With S the
 /// element is for small strains that of Wilson and Taylor, but for the dilatation: its part that is not
 /// linear in ξ, which a solid that keeps its volume cannot have, presses on nothing. So no ν < ½ makes it
-/// lock. Sources: [TaylorBeresfordWilson1976] for the modes, [BelytschkoBindeman1993] for γ and S in the
-/// turning axes.
+/// lock. Sources: [TaylorBeresfordWilson1976] for the modes, [FlanaganBelytschko1981] for g and γ,
+/// [BelytschkoBindeman1993] for S in the turning axes.
 class IncompatibleHexahedron {
  public:
   using Mesh = HexahedralMesh;

@@ -18,12 +18,12 @@ namespace inner {
 
 /// One contact, hit by itself: its own W from the masses, u⁺ = −e u⁻ by the law it has.
 template <int p, class World, class Laws, class Rows>
-class Impact {
+class ImpactRows {
  public:
   using T = typename Rows::Scalar;
   static constexpr int R = Rows::template rows_of<p>;
 
-  Impact(World& world, const Laws& laws, Rows& rows, Index i)
+  ImpactRows(World& world, const Laws& laws, Rows& rows, Index i)
       : world_(world), laws_(laws), rows_(rows), i_(i) {}
 
   Vec<R, T> velocity() const {
@@ -96,7 +96,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
       if constexpr (inner::passes_impacts_on<Law>)
         for (Index i = 0; i < pool.count(); ++i) {
           if (!(inner::restitution_of(pool.law, pool.item(i)) > 0)) continue;
-          inner::Impact<p, World, Laws, Rows> impact(world, laws, rows, i);
+          inner::ImpactRows<p, World, Laws, Rows> impact(world, laws, rows, i);
           const auto u = impact.velocity();
           const double closing = -double(u[0]), gap = double(rows.template pool<p>().phi[i][0]);
           if (!(closing > 1e-12 * fastest) || !(gap < h * closing)) continue;
