@@ -228,7 +228,10 @@ class BasicFem : public inner::Places<BasicFem<E, M, T>, T, 3> {
     return body.index;
   }
   const auto& body_at(const Anchor& a) const { return bodies_[body_[a.block]]; }
-  static double weight(const Anchor& a, int k) { return a.element < 0 ? 1 : E::weight(a.local, k); }
+  static double weight(const Anchor& a, int k) {
+    if (a.element < 0) return 1;
+    return E::weight(a.local, k);
+  }
   /// The k-th corner of the element that has a share in the point.
   static int corner(const Anchor& a, int k) {
     if (a.element < 0) return 0;
