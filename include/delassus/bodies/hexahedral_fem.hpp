@@ -1,8 +1,8 @@
 /// Deformable bodies of hexahedra that bend and keep their volume without locking.
 #pragma once
 
+#include <delassus/bodies/basic_fem.hpp>
 #include <delassus/bodies/inner/incompatible_hexahedron.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>  // the set, of whatever elements
 
 namespace delassus {
 

@@ -1,7 +1,7 @@
 /// Energy and momentum of deformable bodies.
 #pragma once
 
-#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/bodies/basic_fem.hpp>
 #include <delassus/rows/alive.hpp>
 
 namespace delassus {
