@@ -3,7 +3,7 @@
 // tests. From the root of the tree:
 //
 //   g++ -std=c++20 -O2 -DNDEBUG -Iinclude -Itests -isystem /usr/include/eigen3 docs/figures/integrators.cpp
-//   -o /tmp/integrators /tmp/integrators docs/figures
+//   -o integrators && ./integrators docs/figures
 #include "loop/chains.hpp"
 #include "loop/smooth_scenes.hpp"
 #include "loop/squeezer.hpp"
