@@ -65,7 +65,7 @@ class Diagram {
     svg_.rectangle(0, 0, width, height, "page");
     svg_.text(left, 30, study_.plan.name + ": what accuracy costs", "title");
     svg_.text(left, 50,
-              "Each mark is one run of " + shortest_text(study_.plan.duration) +
+              "Each mark is one run of " + inner::text(study_.plan.duration) +
                   " s. Lower is more accurate, further left is cheaper. " +
                   (options_.joins_steps ? "Lines join the steps of one choice." : "The line joins the best."),
               "small");
