@@ -95,7 +95,7 @@ inline State run(const Scene& scene, int steps) {
   AnimationLoop loop{World{RigidBodies{}},
                      Constraints{Contact{Coulomb{.friction = scene.friction}}, BallJoint{}},
                      AcceleratedGaussSeidel{.tolerance = 1e-13, .max_iterations = 20000},
-                     Baumgarte{.max_speed = scene.push_out, .max_joint_speed = 10 * scene.push_out}};
+                     Baumgarte{.max_speed = scene.push_out}};
   auto& set = rigid_bodies(loop);
   set.gravity = scene.gravity;
   std::vector<RigidBodies::Handle> handles;

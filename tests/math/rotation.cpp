@@ -158,3 +158,15 @@ TEST_CASE("a quaternion of any size gives a rotation") {
     REQUIRE((R - unit_size.toRotationMatrix()).cwiseAbs().maxCoeff() < 3e-15);
   }
 }
+
+// Ω̄ = Ω/2 whatever the axes: a rounding of the momentum before is the least that the equation can lack, that after being none.
+TEST_CASE("a body that is braked to rest within a step turns by half of what it would have") {
+  const Mat3 inertia = exponential(Vec3(0.4, 0.2, 1)).toRotationMatrix() * tumbler() * exponential(Vec3(0.4, 0.2, 1)).toRotationMatrix().transpose();
+  for (const double left : {0.0, 1e-9, 1e-3}) {
+    const Vec3 axis = Vec3(1, -2, 0.5).normalized(), rate = 2 * axis, before = inertia * rate, after = left * before;
+    const Quat turn = midpoint_turn<double>(inertia, rate, before, after, 0.01);
+    CAPTURE(left);
+    // The momentum after has turned with the body by 0.01 rad: c is met to the second order of the turn.
+    REQUIRE((logarithm(turn) - 0.01 * (1 + left) * axis).norm() < 2e-4 * 0.01 + 0.01 * left);
+  }
+}

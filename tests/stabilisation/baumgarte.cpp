@@ -22,7 +22,7 @@ TEST_CASE("Baumgarte takes its rate of a joint's violation back, each step") {
 
 TEST_CASE("Baumgarte does not depend on the step: the rate is per step") {
   for (const double h : {1e-4, 1e-2, 1.0}) {
-    violated::Joint scene(Baumgarte{.rate = 0.2, .max_joint_speed = 1e4});
+    violated::Joint scene(Baumgarte{.rate = 0.2});
     scene.loop.step(h);
     CHECK(scene.set().position(scene.bob).x() == Approx(0.08).epsilon(1e-14));
   }
@@ -37,7 +37,7 @@ TEST_CASE("a joint is closed no faster than the cap, whatever the step") {
   };
   for (const double gap : {-0.1, 0.1}) {
     const double back = gap > 0 ? -1 : 1;
-    CHECK(approaches_at(Baumgarte{}, gap) == Approx(back * 10).epsilon(1e-12));
+    CHECK(approaches_at(Baumgarte{}, gap) == Approx(back * 200).epsilon(1e-12));
     CHECK(approaches_at(Baumgarte{.max_joint_speed = 3}, gap) == Approx(back * 3).epsilon(1e-12));
     CHECK(approaches_at(SoftContact{.max_joint_speed = 3}, gap) == Approx(back * 3).epsilon(1e-12));
   }
@@ -46,7 +46,7 @@ TEST_CASE("a joint is closed no faster than the cap, whatever the step") {
 // A pendulum of 1 m whose steps alternate between 1e-4 s and 0.05 s: the long step opens the joint, the short one must not
 // shoot the bob. It may fall by 1 m: √(2 g) = 4.43 m/s, and the cap is the most a step adds.
 TEST_CASE("steps that jump by a factor of 500 do not shoot a pendulum away") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, Baumgarte{.max_joint_speed = 10}};
   auto& set = bodies<RigidBodies>(loop.world());
   const auto bob = set.add({.position = {1, 0, 0}, .mass = 1.0, .shape = Sphere{0.1}});
   loop.add(BallJoint::Item{anchor(set, bob, {-1, 0, 0}), world_anchor({0, 0, 0})});

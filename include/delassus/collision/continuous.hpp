@@ -54,8 +54,9 @@ template <class Backend>
 struct Continuous {
   using plays = role::Collision;
   static_assert(
-      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; },
-      "delassus: WithFilter and WithCompounds go around Continuous; write WithCompounds{Continuous{...}}");
+      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; } &&
+          !requires { Backend::has_surfaces; },
+      "delassus: WithFilter, WithCompounds and WithSurfaces go around Continuous; write WithCompounds{Continuous{...}}");
 
   Backend backend{};
 

@@ -117,7 +117,7 @@ class CollisionEngine {
     const double reach = settings.contact_distance + inner::widest_margin(a, b, scale, h, settings);
     RestingPair& now = next_memory_.emplace_back();
     now.pair = job.pair;
-    const std::uint64_t shapes = inner::fingerprint(a.shape) * 3 + inner::fingerprint(b.shape);
+    const std::uint64_t shapes = (inner::fingerprint(a.shape) * 3 + inner::fingerprint(b.shape)) * 11 + std::uint64_t(settings.max_points);
     if (Vec3 n; now.repeat(last, shapes, b_in_a, reach, scale, repeated_, n)) {
       now.normal = a.pose.rotation * n;
       for (int k = 0; k < now.count; ++k)

@@ -15,10 +15,12 @@
 namespace delassus {
 
 /// `Seamless{NativeCollision{}}` in the place of the backend: a body that slides over tiles does not hit the edges of the next
-/// one. WithMeshes, Continuous, WithCompounds and WithFilter go around it. Its rule, for a body A that touches B by the normal n:
+/// one. WithMeshes, Continuous, WithCompounds and WithFilter go around it. Its rule, for a body A that touches B by the normal n
+/// (from A) at the point p of B:
 ///
-///   another body C that the plane of that contact parts from A, |min n·C − max n·A| ≤ `level`, and to which A is nearest in
-///   another direction than n, is no obstacle, as long as A lies on B: their contacts are left out.
+///   another body C that begins at the plane of that contact, |min n·C − n·p| ≤ `level`, is no obstacle to A in another direction
+///   than n, as long as A lies on B: their contacts are left out, but where they bear, which is where they overlap and
+///   their normal is within 30° of n.
 ///
 /// A lip lower than `level` is passed, and closed as an overlap where it is stood on. Source: none; the idea of
 /// leaving out features that lie in the plane of another contact is common in games' engines.
@@ -26,8 +28,9 @@ template <class Backend>
 struct Seamless {
   using plays = role::Collision;
   static_assert(
-      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; },
-      "delassus: WithFilter and WithCompounds go around Seamless; write WithCompounds{Seamless{...}}");
+      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; } &&
+          !requires { Backend::has_surfaces; },
+      "delassus: WithFilter, WithCompounds and WithSurfaces go around Seamless; write WithCompounds{Seamless{...}}");
 
   Backend backend{};
   double level = 1e-3;  ///< m
@@ -54,22 +57,24 @@ struct Seamless {
   CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
-  /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`.
+  /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`, of the nearest of them the
+  /// gap and the point on `other`.
   struct Side {
     Index body, other, first, last;
-    Vec3 normal;
-    bool touches;
+    Vec3 normal, point;
+    double gap;
   };
 
   void leave_out_seams(std::span<const Collider> colliders, std::vector<ContactPoint>& contacts) {
     sides_.clear();
     for (Index first = 0, last; first < Index(contacts.size()); first = last) {
       const ContactPoint& c = contacts[first];
-      bool touches = false;
+      Index nearest = first;
       for (last = first; last < Index(contacts.size()) && contacts[last].pair == c.pair; ++last)
-        touches = touches || contacts[last].gap <= level;
-      if (colliders[c.a].is_movable) sides_.push_back({c.a, c.b, first, last, c.normal, touches});
-      if (colliders[c.b].is_movable) sides_.push_back({c.b, c.a, first, last, -c.normal, touches});
+        if (contacts[last].gap < contacts[nearest].gap) nearest = last;
+      const ContactPoint& p = contacts[nearest];
+      if (colliders[c.a].is_movable) sides_.push_back({c.a, c.b, first, last, p.normal, p.point_b, p.gap});
+      if (colliders[c.b].is_movable) sides_.push_back({c.b, c.a, first, last, -p.normal, p.point_a, p.gap});
     }
     std::sort(sides_.begin(), sides_.end(), [](const Side& x, const Side& y) {
       return x.body != y.body ? x.body < y.body : x.first < y.first;
@@ -94,15 +99,18 @@ struct Seamless {
 
   /// Whether `next` is a body beyond a seam of the one lain on. Never both of each other: one of two must bear.
   bool is_seam(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
-    constexpr double parallel = 1 - 1e-8;
-    if (lain_on.first == next.first || !lain_on.touches || lain_on.normal.dot(next.normal) > parallel) return false;
-    return is_level(colliders, next, lain_on.normal) && !is_level(colliders, lain_on, next.normal);
+    constexpr double parallel = 1 - 1e-8, near = 0.866;
+    const double along = lain_on.normal.dot(next.normal);
+    const bool touches = lain_on.gap <= 0.1 * level, bears = next.gap <= 0 && along > near;
+    if (lain_on.first == next.first || !touches || bears || along > parallel) return false;
+    return is_level(colliders, lain_on, next) && !is_level(colliders, next, lain_on);
   }
 
-  /// |min n·other − max n·body| ≤ level; false where a shape reaches to no point.
-  bool is_level(std::span<const Collider> colliders, const Side& side, const Vec3& n) const {
-    const Collider &a = colliders[side.body], &c = colliders[side.other];
-    return reaches(a) && reaches(c) && std::abs(reach(a, n) + reach(c, -n)) <= level;
+  /// |min n·C − n·p| ≤ level, C beyond the plane of `lain_on`; false where it reaches to no point.
+  bool is_level(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
+    const Collider& c = colliders[next.other];
+    const Vec3& n = lain_on.normal;
+    return reaches(c) && std::abs(-reach(c, -n) - n.dot(lain_on.point)) <= level;
   }
   static bool reaches(const Collider& c) {
     return c.shape.kind != ShapeKind::half_space && c.shape.kind != ShapeKind::mesh && c.shape.kind != ShapeKind::compound &&

@@ -8,6 +8,8 @@
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +36,7 @@ class ConvexHull {
     face_loop_ = merged.loop;
     find_neighbours();
     find_moments();
+    find_fingerprint();
   }
 
   std::span<const Vec3> vertices() const { return vertices_; }
@@ -52,17 +55,21 @@ class ConvexHull {
   double inner_radius() const { return inner_radius_; }
   double outer_radius() const { return outer_radius_; }
 
+  /// A number for all its vertices: another for every other hull, but for one chance in 2⁶⁴.
+  std::uint64_t fingerprint() const { return fingerprint_; }
+
   /// The same hull with its centre of volume at the origin.
   ConvexHull centred() const {
     ConvexHull moved = *this;
     for (Vec3& v : moved.vertices_) v -= centroid_;
     moved.centroid_.setZero();
+    moved.find_fingerprint();
     return moved;
   }
 
   void memory(auto& archive) {
     archive(vertices_, normals_, face_start_, face_loop_, around_start_, around_, volume_, inner_radius_, outer_radius_, centroid_,
-            second_moment_);
+            second_moment_, fingerprint_);
   }
 
  private:
@@ -73,12 +80,19 @@ class ConvexHull {
   static double check_points(std::span<const Vec3> points);
   void find_neighbours();
   void find_moments();
+  void find_fingerprint() {
+    fingerprint_ = vertices_.size();
+    for (const Vec3& v : vertices_)
+      for (int k = 0; k < 3; ++k)
+        fingerprint_ = ((fingerprint_ ^ std::bit_cast<std::uint64_t>(v[k])) * 0x9e3779b97f4a7c15ull) ^ fingerprint_ >> 29;
+  }
 
   std::vector<Vec3> vertices_, normals_;
   std::vector<Index> face_start_, face_loop_, around_start_, around_;
   double volume_ = 0, inner_radius_ = 0, outer_radius_ = 0;
   Vec3 centroid_ = Vec3::Zero();
   Mat3 second_moment_ = Mat3::Zero();
+  std::uint64_t fingerprint_ = 0;
 };
 
 /// The longest edge of the cloud's box, m.

@@ -77,7 +77,7 @@ MidpointRate<T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate
   Vec<3, T> mid = rate, sum = T(2) * (inertia * mid) - a + c;
   Vec<3, T> residual = sum - T(2) * c + (h / 2) * mid.cross(sum);
   T size = residual.norm();
-  const T floor = std::numeric_limits<T>::epsilon() * c.norm();
+  const T floor = std::numeric_limits<T>::epsilon() * std::sqrt(std::max(a.squaredNorm(), c.squaredNorm()));
   for (int iteration = 0; iteration < 20 && size > floor; ++iteration) {
     const Mat<3, 3, T> slope = T(2) * inertia + (h / 2) * (T(2) * skew(mid) * inertia - skew(sum));
     // Scaled by tr I, so that the determinant of a small body's moments does not underflow in single precision.

@@ -5,16 +5,18 @@
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace delassus {
 
-/// bias = rate · φ/h; a contact is pushed out at most at `max_speed`, a joint closed at most at `max_joint_speed`: what was put
-/// together far apart, or meets a step much shorter than the last, comes home and is not shot there.
+/// bias = rate · φ/h; a contact is pushed out at most at `max_speed`, a joint closed at most at `max_joint_speed`, where one
+/// is given: what was put together far apart, or meets a step much shorter than the last, then comes home and is not
+/// shot there.
 struct Baumgarte {
   using plays = role::Stabilisation;
   double rate = 0.2;            ///< share of φ per step, in (0, 1]
   double max_speed = 1;         ///< m/s
-  double max_joint_speed = 10;  ///< m/s, rad/s
+  double max_joint_speed = std::numeric_limits<double>::infinity();  ///< m/s, rad/s
 
   void check() const {
     DELASSUS_EXPECT(rate > 0 && rate <= 1, "Baumgarte: rate " + inner::text(rate) + " must be in (0, 1]");

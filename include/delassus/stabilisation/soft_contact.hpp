@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace delassus {
 
@@ -21,7 +22,7 @@ struct SoftContact {
   double damping_ratio = 1;  ///< ζ
   double max_speed = 1;      ///< m/s
   double joint_rate = 0.2;
-  double max_joint_speed = 10;  ///< m/s, rad/s
+  double max_joint_speed = std::numeric_limits<double>::infinity();  ///< m/s, rad/s
 
   void check() const {
     DELASSUS_EXPECT(frequency > 0 && std::isfinite(frequency),

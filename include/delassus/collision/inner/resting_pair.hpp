@@ -13,9 +13,7 @@ inline std::uint64_t fingerprint(const Shape& s) {
   std::uint64_t sum = std::uint64_t(s.kind) + 1;
   const auto mix = [&](double x) { sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull; };
   if (s.kind == ShapeKind::convex_hull) {
-    mix(double(s.hull->vertices().size()));
-    for (const double x : {s.hull->inner_radius(), s.hull->outer_radius()}) mix(x);
-    for (int k = 0; k < 3; ++k) mix(s.hull->centroid()[k] + s.hull->vertices()[1][k]);
+    sum = (sum ^ s.hull->fingerprint()) * 0x9e3779b97f4a7c15ull;
   } else {
     for (const double x : s.size) mix(x);
   }
@@ -35,7 +33,7 @@ struct RestingPair : PairMemory {
   static constexpr double stillness = 1e-6;
 
   double margin = -1;        ///< up to this gap there are no other points; negative: not to be repeated
-  std::uint64_t shapes = 0;  ///< fingerprint of both
+  std::uint64_t shapes = 0;  ///< fingerprint of both, and of the most points asked for
   Vec3 normal_a = Vec3::Zero(), normal_b = Vec3::Zero();  ///< as A sees it, as B does
   std::array<double, capacity> gap{};                     ///< when the points were made, m
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace delassus {
 ///   x₊ = x + h v + h² ((½ − β) a + β a₊),   v₊ = v + h ((1 − γ) a + γ a₊),
 ///
 /// by Newton's method in v̇₊ with A = M + h γ′ D + h² β′ K at x₊. v̇ and a of the last step are kept; a body
-/// that was not there then begins with f/M. Source: docs/references.md, [ChungHulbert1993], [ArnoldBruls2007]
+/// that was not there then, or was placed or given another velocity since, begins with f/M. A force that begins or
+/// ends with a step acts half in its neighbour, since a lags: the method is for what changes smoothly. Source: docs/references.md, [ChungHulbert1993], [ArnoldBruls2007]
 /// eq. (6).
 template <class World, class Laws, class Rows>
 class GeneralizedAlphaStep;
@@ -55,14 +57,15 @@ class GeneralizedAlphaStep<World<Sets...>, Laws, Rows> {
     using Velocity = typename Set::Velocity;
     using T = typename Set::Scalar;
     std::vector<Velocity> a, rate, next, moved, v, p;  ///< a, v̇, v̇₊, x₊ − x, v at the start, impulses
+    std::vector<Velocity> left_x, left_v;              ///< x and v as the last step left them
     std::vector<std::uint32_t> generation;             ///< of the body whose a and v̇ these are
 
-    void memory(auto& archive) { archive(a, rate, generation); }
+    void memory(auto& archive) { archive(a, rate, left_x, left_v, generation); }
 
     /// a = v̇ = f/M for bodies that are new.
     void begin(Set& set) {
       const std::size_t n = std::size_t(set.blocks()), before = generation.size();
-      for (auto* array : {&a, &rate, &next, &moved, &p}) array->resize(n);
+      for (auto* array : {&a, &rate, &next, &moved, &p, &left_x, &left_v}) array->resize(n);
       generation.resize(n, 0);
       v = set.velocity();
       bool any = false;
@@ -78,7 +81,12 @@ class GeneralizedAlphaStep<World<Sets...>, Laws, Rows> {
       }
     }
     bool is_new(const Set& set, Index b, std::size_t before) const {
-      return std::size_t(b) >= before || generation[b] != set.handle(b).generation;
+      if (!set.moves(b)) return false;
+      if (std::size_t(b) >= before || generation[b] != set.handle(b).generation) return true;
+      const Velocity x = set.pose(b).position.template cast<T>();
+      constexpr T rounding = 64 * std::numeric_limits<T>::epsilon();
+      return (x - left_x[b]).norm() > rounding * (x.norm() + moved[b].norm()) ||
+             (v[b] - left_v[b]).norm() > rounding * left_v[b].norm();
     }
     void pull(const Set& set) {
       for (auto& x : p) x.setZero();
@@ -136,6 +144,8 @@ class GeneralizedAlphaStep<World<Sets...>, Laws, Rows> {
         const Velocity now = acceleration(c, b);
         a[b] = now;
         rate[b] = next[b];
+        left_x[b] = set.pose(b).position.template cast<T>() + moved[b];
+        left_v[b] = set.v_free[b];
       }
       return status;
     }

@@ -20,12 +20,15 @@ namespace delassus::inner {
 ///
 ///   |y| ≥ −dᵀz/√(Σ |(W z)_i|²/w_i),
 ///
-/// which must be `margin` times √(Σ |d_i|²/w_i). A mass ratio r needs y of r times that, so that the margin
-/// is beyond any ratio that sweeps get through. Source: [Gale1960], the theorem of the alternative.
+/// which must be `margin` times √(Σ |d_i|²/w_i), with W z known to no more than the rounding of d, since z is
+/// scaled to be as large as d. A mass ratio r needs y of r times that, so that the margin is beyond any ratio
+/// that sweeps get through. In single precision there is no such margin: nothing is proved there. Source:
+/// [Gale1960], the theorem of the alternative.
 template <class Problem>
 class Contradiction {
   using T = typename Problem::T;
-  static constexpr double margin_power = 0.65;  ///< of 1/rounding: 1.5e10 in double, 3e4 in float
+  static constexpr double rounding = std::numeric_limits<double>::epsilon();
+  static constexpr double margin = 1.5e10;
   struct Sums {
     double work = 0, moved = 0, free = 0, size = 0;
   };
@@ -36,17 +39,19 @@ class Contradiction {
   /// From the direction in which λ has gone since `before` was saved; λ is something else afterwards.
   template <class Impulses>
   bool is_proved(const Impulses& before) {
+    if constexpr (sizeof(T) < sizeof(double)) return false;
     problem_.each([&](auto p, Index i) {
       auto z = problem_.rows().template pool<p>().lambda[i];
       z -= std::get<p>(before.pools)[i];
       clear_bounded<p>(z);
       problem_.template assign<p>(i, z);
     });
-    const double margin = std::pow(double(std::numeric_limits<T>::epsilon()), -margin_power);
+    if (!scale_to_free()) return false;
     double last = std::numeric_limits<double>::infinity();
     for (int round = 0; round < 40; ++round) {
       const Sums s = measure();
-      const double moved = std::sqrt(s.moved), free = std::sqrt(s.free), size = std::sqrt(s.size);
+      const double free = std::sqrt(s.free), size = std::sqrt(s.size);
+      const double moved = std::sqrt(s.moved) + 8 * rounding * free;
       if (s.work > 1e-6 * free * size && s.work >= margin * moved * free) return true;
       if (!(s.work > 1e-6 * free * size) || !(moved < 0.7 * last) || problem_.is_out_of_time()) return false;
       last = moved;
@@ -73,6 +78,19 @@ class Contradiction {
         break;
     }
     return 0;
+  }
+
+  /// z ← z |d|/|z|, both in energy: (d + W z) − d loses what is smaller than the rounding of d. False for z = 0.
+  bool scale_to_free() {
+    const Sums s = measure();
+    const double factor = std::sqrt(s.free / s.size);
+    if (!(factor > 0) || !std::isfinite(factor)) return false;
+    problem_.each([&](auto p, Index i) {
+      auto z = problem_.rows().template pool<p>().lambda[i];
+      z *= T(factor);
+      problem_.template assign<p>(i, z);
+    });
+    return true;
   }
 
   /// (W z)_i.
