@@ -138,3 +138,30 @@ TEST_CASE("a thickness of contact is kept through rest") {
     CHECK((c.point_b - c.point_a - c.gap * c.normal).norm() < 1e-14);
   }
 }
+
+TEST_CASE("another hull in the place of one that was rested on is noticed, and so is another number of points") {
+  const auto plate = [](double narrow) {
+    std::vector<Vec3> corners;
+    for (const double z : {-0.0625, 0.0625}) {
+      for (const double x : {-2., 2.}) corners.push_back({x, 0, z});
+      for (const double x : {-1., 1.})
+        for (const double y : {-narrow, narrow}) corners.push_back({x, y, z});
+    }
+    return ConvexHull(corners).centred();
+  };
+  const ConvexHull wide = plate(0.75), thin = plate(0.375);
+  Scene scene;
+  scene.add(wide, {0, 0, -0.0625}, Mat3::Identity(), false);
+  scene.add(Box{0.06, 0.06, 0.06}, {1.6, 0.23, 0.03 - 1e-6});
+  for (int step = 0; step < 3; ++step) scene.detect();
+  REQUIRE(scene.contacts.size() == 4);
+  scene.colliders[0].shape = thin;
+  scene.detect();
+  CHECK(scene.contacts.empty());
+
+  Scene fewer = resting(HalfSpace{}, Box{1, 1, 1});
+  REQUIRE(fewer.contacts.size() == 4);
+  fewer.collision.max_points = 1;
+  fewer.detect();
+  CHECK(fewer.contacts.size() == 1);
+}

@@ -143,3 +143,26 @@ TEST_CASE("margins, thicknesses and counts of points that cannot be are refused"
   REQUIRE_THROWS_WITH(with({.contact_distance = std::nan("")}), Catch::Contains("contact_distance"));
   REQUIRE_THROWS_WITH(with({.max_points = 9}), Catch::Contains("max_points 9 must be in [1, 8]"));
 }
+
+// All normals point up: a velocity upwards meets every row, so there is no contradiction to prove, however long it has rested.
+TEST_CASE("a box at rest on two tiles of different heights is no contradiction") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(Box{0.2, 1, 1}, {-0.1, 0, -0.5});
+  set.add_fixed(Box{0.2, 1, 1}, {0.1, 0, -0.5012});
+  set.add({.position = {0, 0, 0.151}, .mass = 1.0, .shape = Box{0.3, 0.3, 0.3}});
+  for (int n = 0; n < 400; ++n) {
+    CAPTURE(n);
+    REQUIRE(loop.step(h).status != Status::infeasible);
+  }
+}
+
+// In single precision there is no room between a contradiction and a mass ratio: none is claimed.
+TEST_CASE("nothing is called a contradiction in single precision") {
+  AnimationLoop loop{World{RigidBodiesF{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+  auto& set = bodies<RigidBodiesF>(loop.world());
+  set.add_fixed(HalfSpace{});
+  set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}});
+  set.add({.position = {0, 0, 1.5}, .mass = 1e6, .shape = Box{1, 1, 1}});
+  for (int n = 0; n < 20; ++n) REQUIRE(loop.step(h).status != Status::infeasible);
+}

@@ -117,3 +117,21 @@ TEST_CASE("a checkpoint of the generalised-alpha method goes on to the bit, and 
   CHECK(set.pose(0).position == there);
   CHECK(loop.step(0.01).status == Status::converged);
 }
+
+TEST_CASE("a body that is placed anew and stopped begins without its old acceleration") {
+  for (const double radius : {0.0, 0.8, 1.0}) {
+    AnimationLoop loop{World{Particles{}}, GeneralizedAlpha{.spectral_radius = radius}};
+    auto& set = bodies<Particles>(loop.world());
+    set.gravity.setZero();
+    const auto mass = set.add({.position = {1.1, 0, 0}, .mass = 1.0});
+    set.add_spring(mass, Vec3::Zero(), 1e6, 0, 1.0);
+    loop.step(0.01);
+    loop.step(0.01);
+    set.place(mass, {1, 0, 0});
+    set.set_velocity(mass, {0, 0, 0});
+    for (int n = 0; n < 50; ++n) {
+      loop.step(0.01);
+      REQUIRE((set.position(mass) - Vec3(1, 0, 0)).norm() < 1e-12);
+    }
+  }
+}

@@ -26,9 +26,9 @@ inline std::uint64_t fingerprint(const Shape& s) {
 ///
 ///   owner A:  b = x_B + R y,  gap = n · (b − a),  a ← b − gap n;      owner B:  n = R m,  b ← a + gap n,
 ///
-/// and only where along the faces a point lies is older than the step, by ε L at most. h(n) changes by no
-/// more than the pose, so n stays within 2 ε L of the least depth. Jolt keeps manifolds in this way up to 1
-/// mm and 2°.
+/// and only where along the faces a point lies is older than the step, by ε L at most. Where both faces serve
+/// equally, a detection in full may take n from the other one: 4e-5 and, in the least gap, 7e-6 L were seen
+/// between the two. Jolt keeps manifolds in this way up to 1 mm and 2°.
 struct RestingPair : PairMemory {
   static constexpr double stillness = 1e-6;
 
