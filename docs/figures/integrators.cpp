@@ -1,4 +1,4 @@
-// Draws docs/figures/{euler_top,pendulum,double_pendulum,squeezer}.svg and writes their .csv: error against
+// Takes a folder. Draws docs/figures/{euler_top,pendulum,double_pendulum,squeezer}.svg and writes their .csv: error against
 // processor time, one colour an integrator, the step halved from mark to mark. The scenes are those of the
 // tests. From the root of the tree:
 //
