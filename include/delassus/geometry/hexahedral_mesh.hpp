@@ -73,7 +73,7 @@ inline EightPoints corners(const HexahedralMesh& mesh, Index e) {
 }
 
 /// The least of 8 det J at corners and Gauss's points, m³: of a box its volume.
-inline double least_volume(const HexahedralMesh& mesh, Index e) {
+inline double least_determinant(const HexahedralMesh& mesh, Index e) {
   const EightPoints x = corners(mesh, e);
   double least = std::numeric_limits<double>::infinity();
   for (int a = 0; a < 8; ++a) {
@@ -179,7 +179,7 @@ inline void check_mesh(const HexahedralMesh& mesh, const std::string& who) {
   for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e) {
     const std::string name = who + ": hexahedron #" + std::to_string(e);
     for (const Index i : mesh.hexahedra[e]) is_used[i] = 1;
-    const double V = volume(mesh, e), least = inner::least_volume(mesh, e),
+    const double V = volume(mesh, e), least = inner::least_determinant(mesh, e),
                  longest = inner::longest_edge(mesh, e), rounding = 1e-9 * longest * longest * longest;
     DELASSUS_EXPECT(std::abs(V) > rounding, name + " is flat: its volume is " + inner::text(V) +
                                                 " m³, its longest diagonal " + inner::text(longest) + " m");
@@ -221,5 +221,8 @@ inline std::vector<std::array<Index, 3>> surface(const HexahedralMesh& mesh) {
   }
   return triangles;
 }
+
+/// What must stay above zero wherever the body is put, m³.
+inline double least_volume(const HexahedralMesh& mesh, Index e) { return inner::least_determinant(mesh, e); }
 
 }  // namespace delassus
