@@ -109,12 +109,19 @@ TEST_CASE("two pins that contradict each other are reported, and the body recove
     const Anchor top = anchor(set, body, {0, 0, 0.5});
     loop.add(BallJoint::Item{top, world_anchor({-gap / 2, 0, 0.5})});
     const auto other = loop.add(BallJoint::Item{top, world_anchor({gap / 2, 0, 0.5})});
+    int told = 0;
     for (int n = 0; n < 500; ++n) {
       CAPTURE(gap, n);
-      REQUIRE(loop.step(0.01).status == Status::infeasible);
+      const Status status = loop.step(0.01).status;
+      REQUIRE((status == Status::infeasible || status == Status::max_iterations));
+      told += status == Status::infeasible;
       REQUIRE(is_finite(set.position(body)));
       REQUIRE(set.position(body).norm() <= 2);
     }
+    CAPTURE(gap, told);
+    // Each pin acts in the middle of its own gap: from 1 cm on impulses of some 1e9 times what they ask would turn the body and
+    // hold both, which is less than a proof excludes. Then the sweeps run out, and say so.
+    if (gap == 1e-3) CHECK(told == 500);
     loop.remove(other);
     StepReport report;
     for (int n = 0; n < 300; ++n) report = loop.step(0.01);
