@@ -1,31 +1,29 @@
 // A wall of a hundred boxes, hit by a heavy ball.
 #include "measure.hpp"
+#include "wall_of_boxes.hpp"
 
 namespace demonstration {
 
 Scene wall(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 240, seconds = is_quick ? 0.15 : 5;
-  // The margin is as long as the way of the ball in a step: boxes that it throws meet their neighbours in that step.
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, NativeCollision{.margin = 0.03},
-                     AcceleratedGaussSeidel{.tolerance = 1e-4}, StepTime{}, Stopwatch{},
+  // The margin is as long as the way of the ball in a step: boxes that it throws meet their neighbours in
+  // that step.
+  AnimationLoop loop{World{RigidBodies{}},
+                     Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     NativeCollision{.margin = 0.03},
+                     AcceleratedGaussSeidel{.tolerance = 1e-4},
+                     StepTime{},
+                     Stopwatch{},
                      Recorder{"Wall", "A hundred boxes in running bond, hit by a ball of 1.4 t at 8 m/s."}};
   auto& rigid = bodies<RigidBodies>(loop.world());
-  rigid.add_fixed(HalfSpace{});
-  const double length = 0.4, height = 0.2, depth = 0.2;
-  std::vector<RigidBodies::Handle> bricks;
-  for (int row = 0; row < 10; ++row)
-    for (int k = 0; k < 10; ++k)
-      bricks.push_back(rigid.add({.position = {0, length * (k - 4.75 + 0.5 * (row % 2)), height * (row + 0.5)},
-                                  .density = 2000,
-                                  .shape = Box{depth, length, height}}));
-  rigid.add({.position = {-2.5, 0, 1.0}, .velocity = {8, 0, 0.5}, .density = 7800, .shape = Sphere{0.35}});
+  const auto boxes = add_wall_of_boxes(rigid);
   Scene scene = measure(loop, "native", h, seconds, watch);
 
-  for (std::size_t b = 1; b <= bricks.size(); ++b) scene.recording.bodies[b].colour = (b - 1) / 10 % 2 ? 1 : 7;
+  for (std::size_t b = 1; b <= boxes.size(); ++b) scene.recording.bodies[b].colour = (b - 1) / 10 % 2 ? 1 : 7;
   scene.recording.bodies.back().colour = 0;
 
   int fallen = 0;
-  for (const auto brick : bricks) fallen += rigid.position(brick).x() > depth;
+  for (const auto box : boxes) fallen += rigid.position(box).x() > wall_depth;
   if (!is_quick) scene.expect_below(100 - fallen, 80, "the number of boxes left in place", "");
   scene.expect_below(1e3 * scene.max_penetration, 8, "the largest penetration", "mm");
   scene.expect_below(scene.energy_rise(), 1, "the largest rise of the energy", "J");

@@ -81,23 +81,3 @@ TEST_CASE("restored, examples/heavy_chain goes on bit for bit") {
     }
   });
 }
-
-TEST_CASE("restored, the demonstration's chain goes on bit for bit") {
-  require_same_bits(1.0 / 2400, [] {
-    return AnimationLoop{World{RigidBodies{}}, Constraints{BallJoint{}}, ImplicitMidpoint{}, PositionProjection{.rate = 1},
-                         AcceleratedGaussSeidel{.tolerance = 1e-8}};
-  }, [](auto& loop) {
-    auto& rigid = rigid_bodies(loop);
-    const double length = 0.25, radius = 0.06;
-    const Quat lying(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitY()));
-    Anchor end = world_anchor({0, 0, 5.5});
-    for (int k = 0; k < 20; ++k) {
-      const auto link = rigid.add({.position = {length * (k + 0.5), 0, 5.5},
-                                   .orientation = lying,
-                                   .mass = 0.5,
-                                   .shape = Capsule{radius, length - 2 * radius}});
-      loop.add(BallJoint::Item{end, anchor(rigid, link, {0, 0, -length / 2})});
-      end = anchor(rigid, link, {0, 0, length / 2});
-    }
-  });
-}

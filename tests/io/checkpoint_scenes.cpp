@@ -1,4 +1,4 @@
-/// Heaps, surfaces and soft bodies of examples/, stopped and taken up again. The scenes are those of the programs.
+/// Ragdolls, surfaces and soft bodies of examples/, stopped and taken up again. The scenes are those of the programs.
 #include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/collision/with_filter.hpp>
@@ -6,21 +6,9 @@
 #include <delassus/geometry/box_mesh.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 
-#include <cstdlib>
-
 #include "same_bits.hpp"
 
 using namespace scenes;
-
-namespace {
-
-/// A thousand steps of a hundred bodies, six times over, are a matter of minutes: here one moment and fewer steps, unless asked.
-SameBits of_many_bodies() {
-  if (std::getenv("DELASSUS_CHECKPOINTS")) return {};
-  return {.moments = 1, .steps = 50};
-}
-
-}  // namespace
 
 TEST_CASE("restored, examples/ragdoll goes on bit for bit") {
   require_same_bits(5e-3, [] {
@@ -78,45 +66,5 @@ TEST_CASE("restored, examples/soft_beam goes on bit for bit") {
     const Vec3 tip(1, 0.05, 0.05);
     const auto ball = rigid.add({.position = {1, 0.05, -0.25}, .mass = 0.1, .shape = Sphere{0.1}});
     loop.add(BallJoint::Item{anchor_at(rigid, ball, tip), soft.anchor_at(beam, tip)});
-  }, of_many_bodies());
-}
-
-TEST_CASE("restored, the demonstration's wall goes on bit for bit") {
-  require_same_bits(1.0 / 240, [] {
-    return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, NativeCollision{.margin = 0.03},
-                         AcceleratedGaussSeidel{.tolerance = 1e-4}};
-  }, [](auto& loop) {
-    auto& rigid = rigid_bodies(loop);
-    rigid.add_fixed(HalfSpace{});
-    const double length = 0.4, height = 0.2, depth = 0.2;
-    for (int row = 0; row < 10; ++row)
-      for (int k = 0; k < 10; ++k)
-        rigid.add({.position = {0, length * (k - 4.75 + 0.5 * (row % 2)), height * (row + 0.5)},
-                   .density = 2000,
-                   .shape = Box{depth, length, height}});
-    rigid.add({.position = {-2.5, 0, 1.0}, .velocity = {8, 0, 0.5}, .density = 7800, .shape = Sphere{0.35}});
-  }, of_many_bodies());
-}
-
-TEST_CASE("restored, a heap of five shapes like the demonstration's goes on bit for bit") {
-  require_same_bits(1.0 / 240, [] {
-    return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-4}};
-  }, [](auto& loop) {
-    auto& rigid = rigid_bodies(loop);
-    rigid.add_fixed(HalfSpace{});
-    for (const Vec3& inwards : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
-      rigid.add_fixed(HalfSpace{inwards, -1.25});
-    const ConvexHull stone = cube_of_points();
-    std::minstd_rand random(11);
-    std::uniform_real_distribution<double> any(-1, 1);
-    for (int i = 0; i < 200; ++i) {
-      const Shape shapes[] = {Sphere{0.16}, Box{0.34, 0.26, 0.22}, Capsule{0.1, 0.24}, Cylinder{0.15, 0.24}, Cone{0.15, 0.24}};
-      const double x = any(random), y = any(random), z = any(random);
-      rigid.add({.position = {0.46 * (i % 5 - 2) + 0.02 * x, 0.46 * (i / 5 % 5 - 2) + 0.02 * y, 0.4 + 0.5 * (i / 25)},
-                 .orientation = Quat(x, y, z, 1).normalized(),
-                 .density = 1000,
-                 .shape = shapes[(i + i / 5 + i / 25) % 5]});
-    }
-  }, of_many_bodies());
+  }, SameBits::of_many_bodies());
 }

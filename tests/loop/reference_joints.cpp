@@ -1,23 +1,14 @@
 // The reference check on joints, springs, bouncing and frictionless contacts.
 #include "reference_tests.hpp"
 
+#include "../examples/demonstration/hanging_chain.hpp"
+
 using namespace reference_tests;
 
 TEST_CASE("a hanging chain agrees with the reference, and a wrong joint impulse in it is found and named") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, ImplicitMidpoint{},
                      PositionProjection{.rate = 1}, AcceleratedGaussSeidel{.tolerance = 1e-8}};
-  auto& rigid = bodies<RigidBodies>(loop.world());
-  const double length = 0.25, radius = 0.06;
-  const Quat lying(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitY()));
-  Anchor end = world_anchor({0, 0, 5.5});
-  for (int k = 0; k < 20; ++k) {
-    const auto link = rigid.add({.position = {length * (k + 0.5), 0, 5.5},
-                                 .orientation = lying,
-                                 .mass = 0.5,
-                                 .shape = Capsule{radius, length - 2 * radius}});
-    loop.add(BallJoint::Item{end, anchor(rigid, link, {0, 0, -length / 2})});
-    end = anchor(rigid, link, {0, 0, length / 2});
-  }
+  demonstration::add_hanging_chain(loop);
   for (int k = 0; k < 3; ++k) compare(loop, 1.0 / 2400, 1 + 200 * k);
 
   auto problem = loop.problem();
