@@ -1,0 +1,81 @@
+/// What a host calls of the loop, where it is more than a line: included by animation_loop.hpp.
+#pragma once
+
+#include <delassus/loop/animation_loop.hpp>
+
+namespace delassus {
+
+template <class... Policies>
+AnimationLoop<Policies...>::AnimationLoop(Policies... policies)
+    : policies_{std::move(policies)...}, work_{laws()}, channels_{policies_} {
+  if constexpr (sound) check_policies();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::memory(auto& archive) {
+  archive(world(), h_, last_h_, start_, steps_);
+  if constexpr (requires { work_.whole_step.memory(archive); }) work_.whole_step.memory(archive);
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws().template pool<p>();
+    if constexpr (requires { pool.slots; }) {
+      archive(pool);
+      if constexpr (std::remove_reference_t<decltype(archive)>::reads) inner::adopt(world(), pool);
+    }
+  });
+  if constexpr (has_constraints) {
+    archive(work_.contacts, work_.materials);
+    if constexpr (Work::has_dormant) archive(work_.activity);
+    if constexpr (Laws::has_contacts) {
+      auto& collision = part<role::Collision>();
+      if constexpr (requires { collision.memory(archive); }) collision.memory(archive);
+      else if constexpr (requires { collision.engine.memory(archive); }) collision.engine.memory(archive);
+    }
+    forget_rows();
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::check_policies() const {
+  const auto check = [](const auto& part) {
+    if constexpr (requires { part.check(); }) part.check();
+  };
+  std::apply([&](const auto&... part) { (check(part), ...); }, policies_);
+  std::apply([&](const auto&... part) { (check(part), ...); }, defaults_);
+  for_each_index<Laws::pool_count>([&](auto p) { check(laws().template pool<p>().law); });
+}
+
+template <class... Policies>
+StepReport AnimationLoop<Policies...>::step(double h) {
+  if constexpr (sound)
+    if constexpr (inner::scheme_runs<typename Parts::Scheme, AnimationLoop>()) {
+      check_policies();  // their numbers may have been edited since
+      begin(h);
+      part<role::Scheme>().run(*this);
+      tell<stage::Step>();
+    }
+  return report_;
+}
+
+template <class... Policies>
+template <class Item>
+auto AnimationLoop<Policies...>::add(Item item) {
+  using Law = typename Laws::template law_of<Item>::type;
+  static_assert(!std::is_void_v<Law>,
+                "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
+  if constexpr (!std::is_void_v<Law>) {
+    if constexpr (requires { Law::check(item); }) Law::check(item);
+    if constexpr (HasEnds<Item>) {
+      constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
+                                    "constraint, second end's carrier"};
+      int k = 0;
+      each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
+      DELASSUS_EXPECT(item.a.set != item.b.set || item.a.block != item.b.block || item.a.is_world(),
+                      "constraint: both ends are on body " + inner::text(item.a.block) + "; it would hold nothing");
+      DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),
+                      "constraint: both ends are in the world; one must be on a body");
+    }
+    return laws().template of<Law>().add(item);
+  }
+}
+
+}  // namespace delassus
