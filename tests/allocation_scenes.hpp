@@ -35,3 +35,17 @@ long allocations_of_jointed_stack(Backend backend) {
   set.set_velocity(lower, {2, 0, 0});
   return allocations_of(loop, 500, 1000);
 }
+
+/// Six links on ball joints, released horizontally.
+template <class Integrator>
+long allocations_of_swinging_chain(Integrator integrator) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, std::move(integrator)};
+  auto& set = rigid_bodies(loop);
+  Anchor end = world_anchor({0, 0, 0});
+  for (int k = 0; k < 6; ++k) {
+    const auto link = set.add({.position = {0.5 * k + 0.25, 0, 0}, .mass = 1.0, .shape = Box{0.5, 0.2, 0.2}});
+    loop.add(BallJoint::Item{end, anchor(set, link, {-0.25, 0, 0})});
+    end = anchor(set, link, {0.25, 0, 0});
+  }
+  return allocations_of(loop, 100, 1000);
+}
