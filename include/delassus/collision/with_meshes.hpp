@@ -18,8 +18,8 @@ namespace delassus {
 
 /// `WithMeshes{NativeCollision{}}` in the place of the backend: convex pairs are the backend's, and bodies
 /// with a shape that `add` returned meet convex ones and half-spaces by their triangles, and each other by
-/// their vertices, edges and triangles. The solid is behind the triangles, so a body whose middle is behind
-/// one does not meet it. Two height fields do not meet. `WithFilter` goes around it.
+/// their vertices, edges and triangles. The solid is behind the triangles, so a convex body whose middle is behind
+/// one does not meet it; a mesh wholly inside a closed one is pushed out. `WithFilter` goes around it.
 template <class Backend>
 struct WithMeshes {
   using plays = role::Collision;
@@ -141,21 +141,24 @@ struct WithMeshes {
     return kinds_[number];
   }
 
-  /// Of two surfaces a mesh goes before a height field, else the lower key; two fields do not meet.
+  /// Of two surfaces a mesh goes before a height field, else the lower key.
   bool goes_first(std::span<const Collider> colliders, Index i, Index j) const {
     const Collider &a = colliders[i], &b = colliders[j];
-    if (i == j || kind_of(a.shape).is_field) return false;
-    return kind_of(b.shape).is_field || a.key < b.key;
+    if (i == j) return false;
+    const bool a_is_field = kind_of(a.shape).is_field, b_is_field = kind_of(b.shape).is_field;
+    return a_is_field != b_is_field ? b_is_field : a.key < b.key;
   }
 
   template <class Surface>
   Index cross(const Surface& surface, std::span<const Collider> colliders, const Job& job, double h,
               std::vector<ContactPoint>& contacts) {
     Index queries = 0;
-    if constexpr (std::is_same_v<Surface, TriangleMesh>)
-      with_surface(colliders[job.other].shape, [&](const auto& other) {
+    with_surface(colliders[job.other].shape, [&](const auto& other) {
+      constexpr bool is_field_on_mesh = std::is_same_v<Surface, HeightField> &&
+                                        std::is_same_v<std::remove_cvref_t<decltype(other)>, TriangleMesh>;
+      if constexpr (!is_field_on_mesh)  // the mesh goes first
         queries = pairs_.cross(surface, other, colliders, job.mesh, job.other, h, settings(), contacts);
-      });
+    });
     return queries;
   }
 

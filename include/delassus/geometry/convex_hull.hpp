@@ -5,6 +5,7 @@
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
+#include <delassus/math/lanes.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -37,9 +39,13 @@ class ConvexHull {
     find_neighbours();
     find_moments();
     find_fingerprint();
+    put_in_blocks();
   }
 
   std::span<const Vec3> vertices() const { return vertices_; }
+  /// The vertices once more, as many at a time as there are lanes: their x, their y, their z; the last vertex
+  /// fills its block.
+  std::span<const double> blocks() const { return blocks_; }
   Index face_count() const { return Index(normals_.size()); }
   /// Vertex indices of a face, counter-clockwise from outside, and its outward unit normal.
   std::span<const Index> face(Index f) const { return slice(face_loop_, face_start_, f); }
@@ -64,12 +70,14 @@ class ConvexHull {
     for (Vec3& v : moved.vertices_) v -= centroid_;
     moved.centroid_.setZero();
     moved.find_fingerprint();
+    moved.put_in_blocks();
     return moved;
   }
 
   void memory(auto& archive) {
     archive(vertices_, normals_, face_start_, face_loop_, around_start_, around_, volume_, inner_radius_, outer_radius_, centroid_,
             second_moment_, fingerprint_);
+    if constexpr (std::remove_reference_t<decltype(archive)>::reads) put_in_blocks();
   }
 
  private:
@@ -86,8 +94,17 @@ class ConvexHull {
       for (int k = 0; k < 3; ++k)
         fingerprint_ = ((fingerprint_ ^ std::bit_cast<std::uint64_t>(v[k])) * 0x9e3779b97f4a7c15ull) ^ fingerprint_ >> 29;
   }
+  void put_in_blocks() {
+    constexpr std::size_t lanes = inner::lane_count;
+    const std::size_t count = vertices_.size(), room = (count + lanes - 1) / lanes * lanes;
+    blocks_.resize(3 * room);
+    for (std::size_t i = 0; i < room; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        blocks_[(3 * (i / lanes) + k) * lanes + i % lanes] = vertices_[std::min(i, count - 1)][Index(k)];
+  }
 
   std::vector<Vec3> vertices_, normals_;
+  std::vector<double> blocks_;
   std::vector<Index> face_start_, face_loop_, around_start_, around_;
   double volume_ = 0, inner_radius_ = 0, outer_radius_ = 0;
   Vec3 centroid_ = Vec3::Zero();

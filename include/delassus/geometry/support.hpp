@@ -3,12 +3,14 @@
 
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
+#include <delassus/math/lanes.hpp>
 #include <delassus/math/pose.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <span>
 
 namespace delassus {
 
@@ -158,6 +160,10 @@ inline Vec3 middle(const Shape& s) {
 
 namespace inner {
 
+/// How far a disc of radius 1 about the axis z reaches along the k-th axis of the world: no entry of a rotation
+/// is large enough to need std::hypot.
+inline double across(const Mat3& R, int k) { return std::sqrt(R(k, 0) * R(k, 0) + R(k, 1) * R(k, 1)); }
+
 /// How far a shape that is symmetric about its origin reaches along the k-th axis of the world, m.
 inline double half_width(const Shape& s, const Mat3& R, int k) {
   const double along = std::abs(R(k, 2));
@@ -171,7 +177,7 @@ inline double half_width(const Shape& s, const Mat3& R, int k) {
     case ShapeKind::capsule:
       return along * s.size[1] + s.size[0];
     case ShapeKind::cylinder:
-      return along * s.size[1] + std::hypot(R(k, 0), R(k, 1)) * s.size[0];
+      return along * s.size[1] + across(R, k) * s.size[0];
     case ShapeKind::ellipsoid:
       return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm();
     default:
@@ -184,21 +190,33 @@ inline Aabb cone_box(const Shape& s, const Pose& pose) {
   Vec3 low, high;
   for (int k = 0; k < 3; ++k) {
     const double axis = pose.rotation(k, 2) * s.size[1], tip = 1.5 * axis, base = -0.5 * axis;
-    const double rim = std::hypot(pose.rotation(k, 0), pose.rotation(k, 1)) * s.size[0];
+    const double rim = across(pose.rotation, k) * s.size[0];
     low[k] = pose.position[k] + std::min(tip, base - rim);
     high[k] = pose.position[k] + std::max(tip, base + rim);
   }
   return Aabb(low, high);
 }
 
+/// As many vertices at a time as there are lanes, each lane with its own extremes.
 inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
-  Vec3 low = pose.to_world(hull.vertices()[0]), high = low;
-  for (const Vec3& v : hull.vertices()) {
-    const Vec3 p = pose.to_world(v);
+  const Mat3& R = pose.rotation;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Lanes least[3], most[3];
+  for (int k = 0; k < 3; ++k) least[k] = Lanes{infinity, infinity}, most[k] = -least[k];
+  const std::span<const double> blocks = hull.blocks();
+  for (std::size_t i = 0; i < blocks.size(); i += 3 * lane_count) {
+    const Lanes x = lanes_at(&blocks[i]), y = lanes_at(&blocks[i + lane_count]),
+                z = lanes_at(&blocks[i + 2 * lane_count]);
     for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
+      const Lanes along = R(k, 0) * x + R(k, 1) * y + R(k, 2) * z;
+      least[k] = along < least[k] ? along : least[k];
+      most[k] = along > most[k] ? along : most[k];
     }
+  }
+  Vec3 low = pose.position, high = pose.position;
+  for (int k = 0; k < 3; ++k) {
+    low[k] += std::min(least[k][0], least[k][1]);
+    high[k] += std::max(most[k][0], most[k][1]);
   }
   return Aabb(low, high);
 }

@@ -66,6 +66,8 @@ class TriangleMesh {
   const Vec3& normal(Index t) const { return normals_[t]; }
   /// The triangle across edge k, −1 at the border.
   Index neighbour(Index t, int k) const { return topology_.neighbour(t, k); }
+  /// Whether it has no border; asks all its edges.
+  bool is_closed() const { return topology_.is_closed(); }
   bool owns_corner(Index t, int k) const { return topology_.owns_corner(t, k); }
   bool owns_edge(Index t, int k) const { return topology_.owns_edge(t, k); }
   template <class F>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/deep_surfaces.hpp>
 #include <delassus/collision/inner/hull_of_patch.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/reduce.hpp>
@@ -46,7 +47,7 @@ class SurfacePairs {
   }
 
   /// The same for two surfaces; returns how many pairs of triangles were looked at. What is deeper than the
-  /// margin and than 2e-2 L may not be found.
+  /// margin and than 2e-2 L is looked for where nothing else overlaps.
   template <class SurfaceA, class SurfaceB>
   Index cross(const SurfaceA& surface_a, const SurfaceB& surface_b, std::span<const Collider> colliders,
               Index place_a, Index place_b, double h, const CollisionSettings& settings,
@@ -61,6 +62,9 @@ class SurfacePairs {
     const PosedSurface<SurfaceA> posed_a{surface_a};
     const PosedSurface<SurfaceB> posed_b{surface_b, b_in_a};
     const Index queries = SurfaceCrossing(posed_a, posed_b, range, features_).collect();
+    const auto overlaps = [](const FeatureContact& f) { return f.point.gap < 0; };
+    if (std::none_of(features_.begin(), features_.end(), overlaps))
+      collect_deep(posed_a, posed_b, scale, cuts_, features_);
     points_.clear();
     for (const FeatureContact& f : features_)
       add_within_margin(a, b, f.point, f.normal, PatchTrust::sure, scale, h, settings);
@@ -240,6 +244,7 @@ class SurfacePairs {
 
   std::vector<SurfaceContact> points_, group_;
   std::vector<FeatureContact> features_;
+  std::vector<Cut> cuts_;
   Patch patch_;
   std::array<Index, Patch::capacity> source_{};
   HullOfPatch hull_;

@@ -33,6 +33,10 @@ class SurfaceTopology {
 
   /// The triangle across edge k, −1 at the border.
   Index neighbour(Index t, int k) const { return neighbours_[t][k]; }
+  bool is_closed() const {
+    const auto has_border = [](const std::array<Index, 3>& n) { return n[0] < 0 || n[1] < 0 || n[2] < 0; };
+    return std::none_of(neighbours_.begin(), neighbours_.end(), has_border);
+  }
   bool owns_corner(Index t, int k) const { return owned_[t] >> k & 1; }
   bool owns_edge(Index t, int k) const { return owned_[t] >> (3 + k) & 1; }
 

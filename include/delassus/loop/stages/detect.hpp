@@ -6,11 +6,12 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
+#include <delassus/loop/stages/contact_memory.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -83,50 +84,25 @@ class ContactBook {
   }
 
   /// The impulse that the contact of this id had last step, or the nearest unclaimed one of its pair within `reach` (m).
-  /// Call in ascending order of pair. Zero when there is none.
+  /// Zero when there is none.
   Vec3 remembered(const ContactRecord& record, double reach) {
-    const auto pair_less = [](const Memory& m, std::uint64_t pair) { return m.pair < pair; };
-    const auto first = std::lower_bound(memory_.begin(), memory_.end(), record.pair, pair_less);
-    Memory* found = nullptr;
-    double nearest = reach * reach;
-    for (auto it = first; it != memory_.end() && it->pair == record.pair; ++it) {
-      if (it->is_taken) continue;
-      if (it->feature == record.feature) {
-        found = &*it;
-        break;
-      }
-    }
-    for (auto it = first; !found && it != memory_.end() && it->pair == record.pair; ++it) {
-      const double distance = (it->point - record.point()).squaredNorm();
-      if (!it->is_taken && distance <= nearest) {
-        nearest = distance;
-        found = &*it;
-      }
-    }
-    if (!found) return Vec3::Zero();
-    found->is_taken = true;
-    return found->impulse;
+    return memory_.take(record.pair, record.feature, record.point(), reach);
   }
 
   /// Keeps this step's impulses for the next one.
   void remember() {
-    memory_.resize(results.size());
+    const std::span<ContactMemory::Entry> entries = memory_.renew(results.size());
     for (std::size_t i = 0; i < results.size(); ++i)
-      memory_[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
+      entries[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
                     results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
+    memory_.sort();
   }
   void memory(auto& archive) { archive(memory_); }
 
  private:
-  struct Memory {
-    std::uint64_t pair;
-    std::uint32_t feature;
-    bool is_taken;
-    Vec3 point, impulse;
-  };
   std::vector<Anchor> anchors_;
   std::vector<Index> materials_;
-  std::vector<Memory> memory_;
+  ContactMemory memory_;
 };
 
 /// Detection while some sleep: the sleepers near are obstacles, and whom an awake body reaches wakes before the step goes on.

@@ -1,0 +1,201 @@
+/// Surfaces of triangles that are deeper in each other than their features are looked for: whether they are,
+/// and the way out.
+#pragma once
+
+#include <delassus/collision/inner/surface_crossing.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace delassus::inner {
+
+/// Where the stretch from p to q passes through the triangle.
+inline bool passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t, Vec3& x) {
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double from = n.dot(p - t[0]), to = n.dot(q - t[0]);
+  if ((from > 0) == (to > 0) || !(from != to)) return false;
+  x = p + (from / (from - to)) * (q - p);
+  for (int k = 0; k < 3; ++k)
+    if (n.dot((t[(k + 1) % 3] - t[k]).cross(x - t[k])) < 0) return false;
+  return true;
+}
+
+/// The curve in which two surfaces cut each other: stretches along n_A × n_B, one of every two triangles that
+/// cross.
+struct Cut {
+  Vec3 from, to;
+  Index triangle_a, triangle_b;
+};
+template <class A, class B>
+void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, std::vector<Cut>& cuts) {
+  cuts.clear();
+  const auto compare = [&](Index t, Index s) {
+    const std::array<Vec3, 3> T = a.points_of(t), S = b.points_of(s);
+    Vec3 end[2], x;
+    int count = 0;
+    const auto add = [&](const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& through) {
+      if (count < 2 && passes(p, q, through, x)) end[count++] = x;
+    };
+    for (int k = 0; k < 3; ++k) {
+      add(T[k], T[(k + 1) % 3], S);
+      add(S[k], S[(k + 1) % 3], T);
+    }
+    if (count < 2) return;
+    const Vec3 along = (T[1] - T[0]).cross(T[2] - T[0]).cross((S[1] - S[0]).cross(S[2] - S[0]));
+    const bool is_forward = along.dot(end[1] - end[0]) > 0;
+    cuts.push_back({end[is_forward ? 0 : 1], end[is_forward ? 1 : 0], t, s});
+  };
+  const auto meets = [&](const Bounds& x, const Bounds& y) { return a.bounds(x).meets(b.bounds(y)); };
+  FlatTree::cross(a.surface.tree(), b.surface.tree(), meets, [&](Index i, Index j) {
+    for (Index t = i * A::triangles_per_item; t < (i + 1) * A::triangles_per_item; ++t)
+      for (Index s = j * B::triangles_per_item; s < (j + 1) * B::triangles_per_item; ++s) compare(t, s);
+  });
+}
+
+/// The point of a surface next to x, m, and the normal there: of the triangles that have it, the one that
+/// looks most towards x or away, which tells the two sides apart also beside edges and corners.
+struct NearestPoint {
+  Vec3 foot = Vec3::Zero(), normal = Vec3::Zero();
+  double distance = std::numeric_limits<double>::infinity(), height = 0;
+};
+template <class Surface>
+NearestPoint nearest_point(const PosedSurface<Surface>& of, const Vec3& x) {
+  const Vec3 local = of.pose.to_local(x);
+  NearestPoint best;
+  const auto meets = [&](const Bounds& box) {
+    double apart2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double out = std::max({box.low[k] - local[k], 0.0, local[k] - box.high[k]});
+      apart2 += out * out;
+    }
+    return !(apart2 > best.distance * best.distance);
+  };
+  of.surface.visit(meets, [&](Index t) {
+    Triangle triangle;
+    triangle.point = of.surface.points_of(t);
+    triangle.normal = of.surface.normal(t);
+    const Vec3 foot = nearest_on(triangle, local);
+    const double distance = (local - foot).norm(), height = triangle.height(local);
+    const double same = 1e-12 * distance;
+    if (distance > best.distance + same ||
+        (distance >= best.distance - same && std::abs(height) <= std::abs(best.height)))
+      return;
+    best = {foot, triangle.normal, distance, height};
+  });
+  best.foot = of.pose.to_world(best.foot);
+  best.normal = of.pose.rotation * best.normal;
+  return best;
+}
+
+/// f(x, t, k) for every vertex, corner k of the triangle t that owns it.
+template <class Surface, class F>
+void each_vertex(const PosedSurface<Surface>& of, const F& f) {
+  for (Index t = 0; t < of.surface.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k)
+      if (of.surface.owns_corner(t, k)) f(of.points_of(t)[k], t, k);
+}
+
+/// One surface wholly inside another that is closed: it leaves by the point next to its middle. Adds the
+/// vertices that have the longest way to the plane there, to 2e-2 L. False, and nothing added, where it is
+/// not inside.
+template <class Inside, class Around>
+bool add_enclosed(const PosedSurface<Inside>& inside, const PosedSurface<Around>& around, bool is_inside_a,
+                  double scale, std::vector<FeatureContact>& out) {
+  if constexpr (!requires { around.surface.is_closed(); }) {
+    return false;
+  } else {
+    const Bounds box = inside.bounds(inside.surface.bounds()), hall = around.bounds(around.surface.bounds());
+    for (int k = 0; k < 3; ++k)
+      if (!(box.low[k] >= hall.low[k] && box.high[k] <= hall.high[k])) return false;
+    const Vec3 corner = inside.points_of(0)[0], middle = 0.5 * (box.low + box.high);
+    const NearestPoint first = nearest_point(around, corner);
+    if (!(first.height < 0) || !around.surface.is_closed()) return false;
+    const NearestPoint central = nearest_point(around, middle);
+    const bool is_middle_in = central.height < 0;
+    const NearestPoint& gate = is_middle_in ? central : first;
+    const Vec3 way = gate.foot - (is_middle_in ? middle : corner);
+    const Vec3 n = gate.distance > 1e-9 * scale ? Vec3(way / gate.distance) : gate.normal;
+
+    const std::size_t begin = out.size();
+    double deepest = 0;
+    each_vertex(inside, [&](const Vec3& x, Index t, int k) {
+      const double gap = n.dot(x - gate.foot);
+      deepest = std::min(deepest, gap);
+      const std::uint32_t name = vertex_name(is_inside_a, inside.surface.triangle(t).corner[k]);
+      const Vec3 foot = x - gap * n;
+      if (is_inside_a)
+        out.push_back({{x, foot, gap, name}, -n, t, 0});
+      else
+        out.push_back({{foot, x, gap, name}, n, 0, t});
+    });
+    const auto is_high = [&](const FeatureContact& c) { return c.point.gap > deepest + 2e-2 * scale; };
+    out.erase(std::remove_if(out.begin() + std::ptrdiff_t(begin), out.end(), is_high), out.end());
+    return true;
+  }
+}
+
+/// How far the vertices of one surface that are inside the other reach along n.
+template <class Inside, class Around>
+void stretch(const PosedSurface<Inside>& inside, const PosedSurface<Around>& around, const Vec3& n,
+             double& low, double& high) {
+  const Bounds hall = around.bounds(around.surface.bounds());
+  each_vertex(inside, [&](const Vec3& x, Index, int) {
+    const double along = n.dot(x);
+    if ((along >= low && along <= high) || !hall.meets({x, x}) || !(nearest_point(around, x).height < 0))
+      return;
+    low = std::min(low, along);
+    high = std::max(high, along);
+  });
+}
+
+/// Two surfaces that have cut each other are parted across the curve C in which they do, whose area
+///
+///   n ∝ ½ ∮ x × dx
+///
+/// is how the volume they share, w long along n, shrinks as A moves back. Contacts −w deep along the curve; a
+/// curve that ends at a border says nothing.
+template <class A, class B>
+void add_cut(const PosedSurface<A>& a, const PosedSurface<B>& b, const std::vector<Cut>& cuts, double scale,
+             std::vector<FeatureContact>& out) {
+  Vec3 area = Vec3::Zero(), open = Vec3::Zero();
+  for (const Cut& c : cuts) {
+    area += 0.5 * (c.from - cuts[0].from).cross(c.to - cuts[0].from);
+    open += c.to - c.from;
+  }
+  if (!(area.norm() > 0) || open.norm() > 1e-6 * scale) return;
+  const Vec3 n = area / area.norm();
+  double low = n.dot(cuts[0].from), high = low;
+  for (const Cut& c : cuts) {
+    low = std::min({low, n.dot(c.from), n.dot(c.to)});
+    high = std::max({high, n.dot(c.from), n.dot(c.to)});
+  }
+  stretch(a, b, n, low, high);
+  stretch(b, a, n, low, high);
+  if (!(high > low)) return;
+  for (const Cut& c : cuts) {
+    const Vec3 x = c.from - n.dot(c.from) * n;
+    out.push_back({{x + high * n, x + low * n, low - high, edges_name(c.triangle_a, 0, c.triangle_b, 0)},
+                   n,
+                   c.triangle_a,
+                   c.triangle_b});
+  }
+}
+
+/// What two surfaces say whose features are farther apart than these are looked for: where one has cut the
+/// other, or is inside it, the way out.
+template <class A, class B>
+void collect_deep(const PosedSurface<A>& a, const PosedSurface<B>& b, double scale, std::vector<Cut>& cuts,
+                  std::vector<FeatureContact>& out) {
+  find_cuts(a, b, cuts);
+  if (!cuts.empty())
+    add_cut(a, b, cuts, scale, out);
+  else if (!add_enclosed(a, b, true, scale, out))
+    add_enclosed(b, a, false, scale, out);
+}
+
+}  // namespace delassus::inner

@@ -1,0 +1,111 @@
+/// Impulses of contacts from one step to the next, found by name or by place.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+/// What is remembered of the contacts of the last step, sorted by pair and feature. A name is found by
+/// bisection; who has lost his is looked for along the longest axis of his pair, whose order is made when the
+/// first one asks: n contacts of one pair, as two soft surfaces have, cost n log n.
+class ContactMemory {
+ public:
+  struct Entry {
+    std::uint64_t pair;
+    std::uint32_t feature;
+    bool is_taken;
+    Vec3 point, impulse;
+  };
+
+  /// Entries to be filled with the contacts of the step, then `sort`.
+  std::span<Entry> renew(std::size_t count) {
+    entries_.resize(count);
+    return entries_;
+  }
+  void sort() {
+    ordered_begin_ = ordered_end_ = 0;
+    const auto before = [](const Entry& x, const Entry& y) {
+      return x.pair != y.pair ? x.pair < y.pair : x.feature < y.feature;
+    };
+    if (!std::is_sorted(entries_.begin(), entries_.end(), before))
+      std::sort(entries_.begin(), entries_.end(), before);
+  }
+
+  /// The impulse of the contact of this name, or the nearest unclaimed one of its pair within `reach` (m).
+  /// Zero when there is none.
+  Vec3 take(std::uint64_t pair, std::uint32_t feature, const Vec3& point, double reach) {
+    const auto is_before = [](const Entry& e, const std::pair<std::uint64_t, std::uint32_t>& name) {
+      return e.pair != name.first ? e.pair < name.first : e.feature < name.second;
+    };
+    for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(pair, feature), is_before);
+         e != entries_.end() && e->pair == pair && e->feature == feature; ++e)
+      if (!e->is_taken) return claim(*e);
+    Entry* const nearest = find_near(pair, point, reach);
+    return nearest ? claim(*nearest) : Vec3::Zero();
+  }
+
+  void memory(auto& archive) {
+    archive(entries_);
+    ordered_begin_ = ordered_end_ = 0;
+  }
+
+ private:
+  static Vec3 claim(Entry& e) {
+    e.is_taken = true;
+    return e.impulse;
+  }
+
+  /// Of what is equally near, the last by name.
+  Entry* find_near(std::uint64_t pair, const Vec3& point, double reach) {
+    order_pair(pair);
+    const auto is_lower = [&](Index i, double x) { return entries_[i].point[axis_] < x; };
+    Index found = -1;
+    double nearest = reach * reach;
+    for (auto i = std::lower_bound(order_.begin(), order_.end(), point[axis_] - reach, is_lower);
+         i != order_.end() && entries_[*i].point[axis_] <= point[axis_] + reach; ++i) {
+      if (entries_[*i].is_taken) continue;
+      const double distance = (entries_[*i].point - point).squaredNorm();
+      if (distance < nearest || (distance == nearest && *i > found)) nearest = distance, found = *i;
+    }
+    return found < 0 ? nullptr : &entries_[found];
+  }
+
+  /// Puts the entries of a pair in order along the axis of their longest extent.
+  void order_pair(std::uint64_t pair) {
+    if (ordered_begin_ < ordered_end_ && entries_[ordered_begin_].pair == pair) return;
+    const auto is_before = [](const Entry& e, std::uint64_t p) { return e.pair < p; };
+    ordered_begin_ =
+        Index(std::lower_bound(entries_.begin(), entries_.end(), pair, is_before) - entries_.begin());
+    ordered_end_ = ordered_begin_;
+    order_.clear();
+    for (; ordered_end_ < Index(entries_.size()) && entries_[ordered_end_].pair == pair; ++ordered_end_)
+      if (is_finite(entries_[ordered_end_].point)) order_.push_back(ordered_end_);
+    if (order_.empty()) return;
+    Vec3 low = entries_[order_[0]].point, high = low;
+    for (const Index i : order_)
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], entries_[i].point[k]);
+        high[k] = std::max(high[k], entries_[i].point[k]);
+      }
+    axis_ = largest_entry(Vec3(high - low));
+    std::sort(order_.begin(), order_.end(), [&](Index i, Index j) {
+      const double x = entries_[i].point[axis_], y = entries_[j].point[axis_];
+      return x != y ? x < y : i < j;
+    });
+  }
+
+  std::vector<Entry> entries_;
+  std::vector<Index> order_;                   ///< of one pair, by `axis_`
+  Index ordered_begin_ = 0, ordered_end_ = 0;  ///< that pair's entries
+  int axis_ = 0;
+};
+
+}  // namespace delassus

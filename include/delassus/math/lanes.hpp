@@ -1,0 +1,18 @@
+/// Two numbers side by side, of which g++ and clang++ make one register.
+#pragma once
+
+#include <cstring>
+
+namespace delassus::inner {
+
+/// Arithmetic and `a < b ? a : b` act on each lane; loops of scalars over least values they leave scalar.
+typedef double Lanes __attribute__((vector_size(16)));
+inline constexpr int lane_count = 2;
+
+inline Lanes lanes_at(const double* x) {
+  Lanes out;
+  std::memcpy(&out, x, sizeof out);
+  return out;
+}
+
+}  // namespace delassus::inner
