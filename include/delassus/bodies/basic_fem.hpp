@@ -136,9 +136,8 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   }
   void restore() { x_ = shifted_x_; }
 
-  /// f(k, generation, body) for every body of tetrahedra, with `body.mesh()` and `body.blocks()`: for who
-  /// needs surfaces.
-  void each_mesh(auto&& f) const requires(E::nodes == 4) {
+  /// f(k, generation, body) for every body, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
+  void each_mesh(auto&& f) const {
     for (const Index k : body_slots_.active()) f(k, body_slots_.generation(k), bodies_[k]);
   }
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
