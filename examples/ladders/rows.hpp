@@ -117,15 +117,15 @@ struct Missing {
 };
 
 inline constexpr Missing missing[] = {
-    {"HC-19", "inverted elements", "no rung yet; a test inverts hexahedra (`loop/soft_hexahedra`)"},
-    {"HC-20", "nearly incompressible", "not built yet; soft bodies are `TetrahedralFem`"},
+    {"HC-19", "inverted elements", "no rung yet; tests do it (`loop/soft_recovery`, `loop/soft_hexahedra`)"},
+    {"HC-20", "nearly incompressible", "no rung yet; a test goes to 0.4999 (`bodies/hexahedral_bending`)"},
     {"HC-23", "Painlevé", "not built yet; needs no new part"},
     {"HC-27", "arch on moving supports", "not built yet; needs no new part"},
     {"HC-31", "rope with a knot",
      "not built yet; a rope's contact with itself needs small steps and continuous collision"},
     {"HC-32", "nut on a bolt", "not built yet; meshes are `WithMeshes`"},
     {"HC-37", "crowding", "not built yet; needs no new part"},
-    {"HC-40", "rigid on soft", "not built yet; soft bodies are `TetrahedralFem`"},
+    {"HC-40", "rigid on soft", "no rung yet; a test goes from 1 g to 1 t (`loop/soft_coupling`)"},
 };
 
 }  // namespace ladders

@@ -202,6 +202,34 @@ TEST_CASE("a point of a triangle is the same point of the element behind it") {
   }
 }
 
+TEST_CASE(
+    "a point of a triangle of a hexahedron is the same point of the hexahedron, and no corner off its face "
+    "counts") {
+  const HexahedralMesh mesh = hexahedral_box({1, 2, 3}, {1, 1, 1});
+  std::vector<Index> blocks{0, 1, 2, 3, 4, 5, 6, 7};
+  const SoftSurface skin(0, 0, 0, mesh, blocks);
+  int on_edges = 0;
+  for (Index t = 0; t < 12; ++t)
+    for (const Vec3& w : {Vec3(0.2, 0.3, 0.5), Vec3(0.4, 0.6, 0), Vec3(0, 0.3, 0.7), Vec3(0.1, 0, 0.9)}) {
+      const auto p = skin.points_of(t);
+      const Vec3 x = w[0] * p[0] + w[1] * p[1] + w[2] * p[2];
+      const Anchor at = skin.anchor(t, skin.shares(t, x));
+      REQUIRE(at.element == 0);
+      Vec3 sum = Vec3::Zero();
+      int counted = 0;
+      for (int k = 0; k < 8; ++k) {
+        const double share = inner::trilinear(k, at.local);
+        sum += share * mesh.points[mesh.hexahedra[0][k]];
+        counted += share != 0 ? 1 : 0;
+      }
+      CHECK((sum - x).norm() < 1e-15 * 8);  // eight terms of up to 3
+      CHECK(counted <= 4);
+      on_edges += counted == 2 ? 1 : 0;
+    }
+  CHECK(on_edges == 24);  // two sides of each triangle; the third is a diagonal of a face
+  CHECK(skin.anchor(3, unit_axis(1)).element == -1);
+}
+
 TEST_CASE("neighbours on one surface do not meet, though they face each other") {
   // An L of three cubes of 1 m: its hollow faces are 1 m long, and all their corners are joined by an edge.
   TetrahedralMesh mesh = delassus::box_mesh({2, 1, 2}, {2, 1, 2});

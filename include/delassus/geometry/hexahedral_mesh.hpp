@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/geometry/outer_face.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -204,9 +205,14 @@ inline HexahedralMesh oriented(HexahedralMesh mesh) {
   return mesh;
 }
 
-/// The faces that belong to one hexahedron only, each as two triangles, normals outwards, in the order of the
-/// hexahedra.
-inline std::vector<std::array<Index, 3>> surface(const HexahedralMesh& mesh) {
+/// Where corner k is in the coordinates by which an element weighs its corners: ξ.
+inline Vec3 place_of_corner(const HexahedralMesh&, int k) {
+  const auto& s = inner::hexahedron_corner[k];
+  return Vec3(s[0], s[1], s[2]);
+}
+
+/// The faces that belong to one hexahedron only, each as two triangles, in the order of the hexahedra.
+inline std::vector<OuterFace> outer_faces(const HexahedralMesh& mesh) {
   const auto sides = inner::sorted_sides(mesh);
   std::vector<inner::HexahedronSide> outer;
   for (std::size_t k = 0, next = 0; k < sides.size(); k = next) {
@@ -214,12 +220,17 @@ inline std::vector<std::array<Index, 3>> surface(const HexahedralMesh& mesh) {
     if (next == k + 1) outer.push_back(sides[k]);
   }
   std::sort(outer.begin(), outer.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
-  std::vector<std::array<Index, 3>> triangles;
+  std::vector<OuterFace> out;
   for (const auto& [q, face, number] : outer) {
-    triangles.push_back({q[0], q[1], q[2]});
-    triangles.push_back({q[0], q[2], q[3]});
+    out.push_back({{q[0], q[1], q[2]}, number / 6});
+    out.push_back({{q[0], q[2], q[3]}, number / 6});
   }
-  return triangles;
+  return out;
+}
+
+/// The triangles of `outer_faces`.
+inline std::vector<std::array<Index, 3>> surface(const HexahedralMesh& mesh) {
+  return triangles_of(outer_faces(mesh));
 }
 
 /// What must stay above zero wherever the body is put, m³.

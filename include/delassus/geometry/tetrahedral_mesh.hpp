@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/geometry/outer_face.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -117,11 +118,11 @@ inline TetrahedralMesh oriented(TetrahedralMesh mesh) {
   return mesh;
 }
 
-/// A triangle of the outer surface, its normal outwards, and the tetrahedron behind it.
-struct OuterFace {
-  std::array<Index, 3> triangle;
-  Index tetrahedron;
-};
+/// Where corner k is in the coordinates by which an element weighs its corners: their shares but for the
+/// first one's.
+inline Vec3 place_of_corner(const TetrahedralMesh&, int k) {
+  return k > 0 ? unit_axis(k - 1) : Vec3(Vec3::Zero());
+}
 
 /// The triangles that belong to one tetrahedron only, in the order of the tetrahedra.
 inline std::vector<OuterFace> outer_faces(const TetrahedralMesh& mesh) {
@@ -153,9 +154,7 @@ inline std::vector<OuterFace> outer_faces(const TetrahedralMesh& mesh) {
 
 /// The triangles of `outer_faces`.
 inline std::vector<std::array<Index, 3>> surface(const TetrahedralMesh& mesh) {
-  std::vector<std::array<Index, 3>> triangles;
-  for (const OuterFace& face : outer_faces(mesh)) triangles.push_back(face.triangle);
-  return triangles;
+  return triangles_of(outer_faces(mesh));
 }
 
 }  // namespace delassus

@@ -3,7 +3,7 @@
 
 #include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/inner/surface_topology.hpp>
-#include <delassus/geometry/tetrahedral_mesh.hpp>
+#include <delassus/geometry/outer_face.hpp>
 #include <delassus/geometry/triangle.hpp>
 #include <delassus/rows/anchor.hpp>
 
@@ -19,13 +19,16 @@ namespace delassus::inner {
 /// area has no normal and speaks for nothing.
 class SoftSurface {
  public:
-  SoftSurface(Index set, Index body, std::uint32_t generation, const TetrahedralMesh& mesh,
+  template <class Mesh>
+  SoftSurface(Index set, Index body, std::uint32_t generation, const Mesh& mesh,
               std::span<const Index> blocks)
       : set_(set), body_(body), generation_(generation) {
     std::vector<Index> vertex(mesh.points.size(), -1);
     for (const OuterFace& face : outer_faces(mesh)) {
       std::array<Index, 3> corners{};
-      std::array<int, 3> places{};
+      std::array<Vec3, 3> places;
+      const auto& element = mesh.cells()[face.element];
+      bool has_first = false;
       for (int k = 0; k < 3; ++k) {
         const Index node = face.triangle[k];
         if (vertex[node] < 0) {
@@ -34,12 +37,15 @@ class SoftSurface {
           rest_.push_back(mesh.points[node]);
         }
         corners[k] = vertex[node];
-        while (mesh.tetrahedra[face.tetrahedron][places[k]] != node) ++places[k];
+        const int corner = int(std::find(element.begin(), element.end(), node) - element.begin());
+        places[k] = place_of_corner(mesh, corner);
+        has_first = has_first || corner == 0;
       }
       corners_.push_back(corners);
       places_.push_back(places);
-      element_.push_back(face.tetrahedron);
-      base_.push_back(blocks[mesh.tetrahedra[face.tetrahedron][0]]);
+      sums_to_one_.push_back(element.size() == 4 && !has_first ? 1 : 0);
+      element_.push_back(face.element);
+      base_.push_back(blocks[element[0]]);
     }
     topology_ = SurfaceTopology(corners_, Index(block_.size()));
     vertices_ = rest_;
@@ -163,13 +169,15 @@ class SoftSurface {
     for (int k = 0; k < 3; ++k)
       if (w[k] == 1) return {.set = set_, .block = block(t, k), .has_frame = false};
     Anchor out{.set = set_, .block = base_[t], .has_frame = false, .element = element_[t]};
-    bool has_first = false;
-    for (int k = 0; k < 3; ++k) {
-      has_first = has_first || places_[t][k] == 0;
-      if (places_[t][k] > 0) out.local[places_[t][k] - 1] = w[k];
-    }
-    // The share of corner 0 is 1 less the others: to the bit none where it is not of this triangle.
-    if (!has_first) out.local[2] = 1 - out.local[0] - out.local[1];
+    const auto& at = places_[t];
+    for (int k = 0; k < 3; ++k) out.local += w[k] * at[k];
+    // To the bit in the face, so that corners beside it have no share: where the corners that count agree,
+    // and of tetrahedra also where the share of corner 0 is 1 less the others.
+    const int some = w[0] > 0 ? 0 : 1;
+    for (int i = 0; i < 3; ++i)
+      if (at[some][i] == at[2][i] || w[2] == 0)
+        if (at[some][i] == at[1][i] || w[1] == 0) out.local[i] = at[some][i];
+    if (sums_to_one_[t]) out.local[2] = 1 - out.local[0] - out.local[1];
     return out;
   }
 
@@ -196,7 +204,8 @@ class SoftSurface {
   std::uint32_t generation_;
   std::vector<Index> block_;                   ///< of each vertex
   std::vector<std::array<Index, 3>> corners_;  ///< vertices of each triangle
-  std::vector<std::array<int, 3>> places_;     ///< which corners of the element behind they are
+  std::vector<std::array<Vec3, 3>> places_;    ///< where they are in the element behind
+  std::vector<char> sums_to_one_;              ///< of a tetrahedron without its corner 0
   std::vector<Index> element_, base_;          ///< that element, and the block of its corner 0
   SurfaceTopology topology_;
   std::vector<Vec3> rest_, vertices_, velocities_, normals_, outward_;

@@ -40,7 +40,7 @@ class ContactBook {
     materials_.clear();
     world.each([&](const auto& set, auto s) {
       for (const Index b : set.active())
-        if (set.has_collider(b)) add(set, s, b, set.moves(b));
+        if (set.has_collider(b)) add(set, s, b, collider_moves(set, b));
     });
   }
 
@@ -100,6 +100,13 @@ class ContactBook {
   void memory(auto& archive) { archive(memory_); }
 
  private:
+  /// Of a collider that more than its own block moves, the set says so.
+  template <class Set>
+  static bool collider_moves(const Set& set, Index b) {
+    if constexpr (requires { set.collider_moves(b); }) return set.collider_moves(b);
+    else return set.moves(b);
+  }
+
   std::vector<Anchor> anchors_;
   std::vector<Index> materials_;
   ContactMemory memory_;

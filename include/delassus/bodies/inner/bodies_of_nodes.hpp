@@ -1,0 +1,155 @@
+/// What sets of deformable bodies share: bodies of nodes, whose blocks are the nodes.
+#pragma once
+
+#include <delassus/bodies/inner/places.hpp>
+#include <delassus/rows/body_set.hpp>
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// `Elastic` is one body: its `blocks()`, its `solve` and its `compliance`. `Body` is what a user says of a
+/// new one; a `Handle` names a node, a `BodyHandle` a body. `Set` holds nodes by `hold` and knows what
+/// `moves`.
+template <class Set, class T, int width, class Body_, class Elastic>
+class BodiesOfNodes : public Places<Set, T, width> {
+  using Places = inner::Places<Set, T, width>;
+
+ public:
+  using Body = Body_;
+  using BodyHandle = delassus::Handle<Body>;
+  using typename Places::Handle, typename Places::Velocity;
+  static constexpr const char* kind = "node";
+
+  /// Takes a body out, all its nodes with it.
+  void remove(BodyHandle body) {
+    const Index k = checked_body(body);
+    for (const Index b : bodies_[k].blocks()) {
+      self().hold(b, true);
+      slots_.give_back(b);
+    }
+    bodies_[k] = {};
+    body_slots_.give_back(k);
+  }
+
+  /// Holds a node where it is, as the clamped end of a beam.
+  void fix(Handle node, bool is_fixed = true) {
+    const Index b = this->checked(node);
+    is_fixed_[b] = is_fixed;
+    if (is_fixed) v_[b].setZero();
+    self().hold(b, false);
+  }
+  void release(Handle node) { fix(node, false); }
+  /// Fixes the nodes of a body for whose position (world, m) `where` is true; returns how many.
+  Index fix(BodyHandle body, const auto& where) {
+    Index count = 0;
+    for (const Index b : bodies_[checked_body(body)].blocks())
+      if (where(Vec3(self().pose(b).position))) fix(this->handle(b)), ++count;
+    return count;
+  }
+
+  Index node_count(BodyHandle body) const { return Index(bodies_[checked_body(body)].blocks().size()); }
+  /// Node k of a body, numbered as the points of its mesh or line.
+  Handle node(BodyHandle body, Index k) const {
+    const auto blocks = bodies_[checked_body(body)].blocks();
+    DELASSUS_EXPECT(k >= 0 && k < Index(blocks.size()), body_name(body.index) + " has nodes 0 to " +
+                                                            std::to_string(blocks.size() - 1) + ", not " +
+                                                            std::to_string(k));
+    return this->handle(blocks[k]);
+  }
+
+  bool may_sleep() const { return false; }
+  /// The stiffness couples nodes; an explicit integrator leaves it out.
+  bool is_coupled() const { return scale_.stiffness != 0; }
+  /// f(a, b): what acts on block a moves block b.
+  void each_tie(auto&& f) const {
+    if (!is_coupled()) return;
+    each_body([&](const auto& body) {
+      Index last = -1;
+      for (const Index b : body.blocks()) {
+        if (!self().moves(b)) continue;
+        if (last >= 0) f(last, b);
+        last = b;
+      }
+    });
+  }
+  void solve(std::vector<Velocity>& x) const {
+    each_body([&](const auto& body) { body.solve(x); });
+  }
+  void add_stiffness_times_velocity(std::vector<Velocity>& p, double s) const {
+    each_body([&](const auto& body) { body.add_stiffness_times_velocity(p, v_, T(s)); });
+  }
+  Index body_of(Index b) const { return body_[b]; }
+  /// A⁻¹ at nodes of one body: what its rows of W are made of.
+  void node_compliance(std::span<const Index> blocks, std::span<T> C) const {
+    touched_.clear();
+    for (const Index b : blocks) touched_.push_back(node_[b]);
+    bodies_[body_[blocks.front()]].compliance(touched_, C);
+  }
+
+ protected:
+  static std::string body_name(Index k) { return std::string(Set::body_kind) + " #" + std::to_string(k); }
+  std::string name(Index b) const { return body_name(body_[b]) + ", " + this->who(b); }
+  Index checked_body(BodyHandle body) const {
+    DELASSUS_EXPECT(body.owner == this->owner(),
+                    std::string("this ") + Set::body_kind + "'s handle belongs to another world");
+    DELASSUS_EXPECT(body_slots_.is_current(body.index, body.generation),
+                    body_name(body.index) + " was removed; its handle is stale");
+    return body.index;
+  }
+
+  /// A place for a new body; `give` puts it there.
+  Index take_body() {
+    const Index k = body_slots_.take();
+    bodies_.resize(body_slots_.size());
+    return k;
+  }
+  /// A block for node `node` of body k; the arrays of its state are the set's to fit to `blocks()`.
+  Index take_node(const Body& body, Index k, Index node, const Velocity& velocity) {
+    const Index b = Places::take(body, velocity);
+    const std::size_t n = std::size_t(slots_.size());
+    is_fixed_.resize(n), body_.resize(n), node_.resize(n);
+    is_fixed_[b] = 0;
+    body_[b] = k;
+    node_[b] = node;
+    return b;
+  }
+  BodyHandle give(Index k, Elastic body) {
+    bodies_[k] = std::move(body);
+    for (const Index b : bodies_[k].blocks()) self().hold(b, false);
+    return {k, body_slots_.generation(k), this->owner()};
+  }
+
+  void each_body(auto&& f) const {
+    for (const Index k : body_slots_.active()) f(bodies_[k]);
+  }
+  void each_body(auto&& f) {
+    for (const Index k : body_slots_.active()) f(bodies_[k]);
+  }
+  const Elastic& elastic(Index b) const { return bodies_[body_[b]]; }
+
+  /// What outlives a step; the handles of the set that wrote it stay with that set.
+  void memory(auto& archive) {
+    Places::memory(archive);
+    archive(body_slots_, is_fixed_, body_, node_, bodies_);
+  }
+
+  using Places::slots_, Places::v_;
+  SystemScale scale_;
+  Slots body_slots_;
+  std::vector<Elastic> bodies_;
+  std::vector<char> is_fixed_;
+  std::vector<Index> body_;  ///< of each block
+  std::vector<Index> node_;  ///< its number in that body
+
+ private:
+  Set& self() { return static_cast<Set&>(*this); }
+  const Set& self() const { return static_cast<const Set&>(*this); }
+
+  mutable std::vector<Index> touched_;
+};
+
+}  // namespace delassus::inner

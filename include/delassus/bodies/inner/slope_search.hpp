@@ -1,0 +1,57 @@
+/// How far to go along a step of Newton's method, by the slope alone.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/math/twist.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace delassus::inner {
+
+/// The share s ∈ {first, first/2, …} of a step δ after which the residual r(s) does not push back by more
+/// than half of what drove the step: r(s)·δ ≥ −½ r(0)·δ. `slope_at(s)` is r(s)·δ. With A positive r(0)·δ > 0,
+/// so a short step is always taken. Needs no energy, so that moments, which have none, may act. Source:
+/// docs/references.md, [MatthiesStrang1979].
+template <class Slope>
+double slope_search(double first, double start, Slope&& slope_at) {
+  double s = first;
+  for (int halvings = 0; halvings < 12; ++halvings, s /= 2) {
+    const double slope = slope_at(s);
+    if (slope >= -0.5 * std::abs(start)) return s;
+  }
+  return s;
+}
+
+/// Σ f·x over the blocks that move.
+template <class Set, class Vectors>
+double product(const Set& set, const Vectors& f, const Vectors& x) {
+  double sum = 0;
+  for (const Index b : set.active())
+    if (set.moves(b)) sum += double(f[b].dot(x[b]));
+  return sum;
+}
+
+/// The share of a step that turns no node by more than a radian: further on K says nothing of what comes.
+template <class Set, class Vectors>
+double share_within_a_radian(const Set& set, const Vectors& step) {
+  double most = 0;
+  if constexpr (Set::width == 6)
+    for (const Index b : set.active())
+      if (set.moves(b)) most = std::fmax(most, double(angular_part(step[b]).norm()));
+  return most > 1 ? 1 / most : 1;
+}
+
+/// The largest entry in size; what is not a number where one is none.
+template <class V>
+typename V::Scalar largest(const V& x) {
+  typename V::Scalar most = 0;
+  for (int i = 0; i < int(V::RowsAtCompileTime); ++i) {
+    if (!(std::abs(x[i]) <= std::numeric_limits<typename V::Scalar>::max()))
+      return std::numeric_limits<typename V::Scalar>::quiet_NaN();
+    most = std::abs(x[i]) > most ? std::abs(x[i]) : most;
+  }
+  return most;
+}
+
+}  // namespace delassus::inner

@@ -1,0 +1,23 @@
+/// The outer surface of a mesh of elements.
+#pragma once
+
+#include <delassus/core/index.hpp>
+
+#include <array>
+#include <vector>
+
+namespace delassus {
+
+/// A triangle of the outer surface, its normal outwards, and the element behind it.
+struct OuterFace {
+  std::array<Index, 3> triangle;
+  Index element;
+};
+
+inline std::vector<std::array<Index, 3>> triangles_of(const std::vector<OuterFace>& faces) {
+  std::vector<std::array<Index, 3>> triangles;
+  for (const OuterFace& face : faces) triangles.push_back(face.triangle);
+  return triangles;
+}
+
+}  // namespace delassus
