@@ -1,4 +1,4 @@
-// delassus_study: what accuracy costs, for four scenes that are built in.
+// delassus_study: what accuracy costs, for five scenes that are built in.
 #include "scene_study.hpp"
 
 #include <delassus/core/expect.hpp>
@@ -21,7 +21,7 @@ constexpr const char* help =
 Runs scenes over integrators, stabilisations, solvers, builders, tolerances and steps; draws error against time; and names
 the cheapest combination that holds an error budget. A run that was interrupted goes on from its log in DIR.
 
-  --scene NAME   sliding_box, double_pendulum, ten_boxes or heavy_chain; all four if not said
+  --scene NAME   sliding_box, double_pendulum, ten_boxes, heavy_chain or soft_bar; all five if not said
   --budget E     the largest error of a place, m; 1 mm if not said
   --shard I/N    every Nth run, from the Ith, I = 0 ... N-1; logs of shards joined in NAME.log are the whole study
   --out DIR      the folder of NAME.svg, NAME.csv and NAME.log, made if missing; "out/study" if not said
@@ -37,7 +37,8 @@ struct Part {
 constexpr Part parts[] = {{"sliding_box", sliding_box},
                           {"double_pendulum", double_pendulum},
                           {"ten_boxes", ten_boxes},
-                          {"heavy_chain", heavy_chain}};
+                          {"heavy_chain", heavy_chain},
+                          {"soft_bar", soft_bar}};
 
 bool is_scene(std::string_view name) {
   for (const Part& part : parts)

@@ -4,7 +4,7 @@ execute_process(COMMAND ${program} --quick --budget 0.5 --out ${out} RESULT_VARI
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "--quick ended with ${status}\n${text}${errors}")
 endif()
-foreach(name sliding_box double_pendulum ten_boxes heavy_chain)
+foreach(name sliding_box double_pendulum ten_boxes heavy_chain soft_bar)
   if(NOT text MATCHES "${name}, cheapest within 500 mm [^\n]*\n  auto loop = scene\\(")
     message(FATAL_ERROR "no choice of ${name} in\n${text}")
   endif()

@@ -16,6 +16,7 @@
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/pyramid.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
+#include <delassus/constraints/contact/rolling_coulomb.hpp>
 #include <delassus/constraints/contact/sequential_restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/constraints/joints/breakable.hpp>

@@ -26,6 +26,7 @@ template <class Law>
 struct Restitution;
 struct Coulomb;
 struct Pyramid;
+struct RollingCoulomb;
 struct Frictionless;
 struct BallJoint;
 struct Cylindrical;

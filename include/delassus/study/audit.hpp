@@ -115,14 +115,19 @@ class Audit {
       use.name = inner::type_text<Law>();
       use.rows = R;
       use.is_contact = ContactLaw<Law>;
-      use.has_friction = use.is_contact && R >= 3;  // rows n, t₁, t₂, and what a law has beyond
+      use.has_friction = use.is_contact && R >= 3;  // rows n, t₁, t₂
+      use.has_rolling = use.is_contact && R > 3;    // and those of moments
       for (Index k = 0; k < problem.islands.count(); ++k)
         use.work += double(R) * double(problem.islands.items(p, k).size()) *
                     std::max(1, reports[std::size_t(k)].sweeps);
       const auto& rows = problem.rows.template pool<p>();
       use.items += rows.items();
       for (Index i = 0; i < rows.items(); ++i) {
-        const double w = double(problem.W.template diagonal<p>(i).trace()) / R;
+        const auto& own = problem.W.template diagonal<p>(i);
+        constexpr int along = ContactLaw<Law> ? std::min(R, 3) : R;
+        double w = 0;
+        for (int k = 0; k < along; ++k) w += double(own(k, k)) / along;
+        if constexpr (ContactLaw<Law> && R > 3) see_rolling(use, own, rows.lambda[i], w, threshold);
         if constexpr (ContactLaw<Law>)
           see_contact(use, loop, pool, rows, i, w, threshold);
         else
@@ -176,6 +181,16 @@ class Audit {
     const bool is_felt = w * std::max(sum.norm(), radius > 0 ? std::abs(moment) / radius : 0) > threshold;
     if (is_felt) use.held += end - begin;
     if (is_felt && slips) use.slipped += end - begin;
+  }
+
+  /// Moments move what they turn by a length ℓ, ℓ² = tr W_uu / tr W_ωω: √(w w_ω) |λ_ω|.
+  template <class W, class Impulse>
+  static void see_rolling(inner::PoolUse& use, const W& own, const Impulse& lambda, double w,
+                          double threshold) {
+    double turns = 0, square = 0;
+    for (int k = 3; k < Impulse::RowsAtCompileTime; ++k)
+      turns += double(own(k, k)) / 3, square += double(lambda[k]) * double(lambda[k]);
+    use.rolled += std::sqrt(w * turns * square) > threshold;
   }
 
   template <class P>

@@ -15,7 +15,7 @@
 
 namespace delassus {
 
-enum class Effect : std::uint8_t { contact, friction, restitution, joint, body };
+enum class Effect : std::uint8_t { contact, friction, rolling, restitution, joint, body };
 enum class Verdict : std::uint8_t {
   acted,
   held,   ///< friction that acted and never slipped: any larger coefficient does the same
@@ -28,6 +28,8 @@ constexpr const char* name(Effect effect) {
       return "contact";
     case Effect::friction:
       return "friction";
+    case Effect::rolling:
+      return "rolling friction";
     case Effect::restitution:
       return "restitution";
     case Effect::joint:
@@ -125,8 +127,8 @@ namespace inner {
 struct PoolUse {
   std::string name;
   int rows = 0;
-  bool is_contact = false, has_friction = false, has_restitution = false;
-  long items = 0, acted = 0, held = 0, slipped = 0, bounced = 0;
+  bool is_contact = false, has_friction = false, has_rolling = false, has_restitution = false;
+  long items = 0, acted = 0, held = 0, slipped = 0, rolled = 0, bounced = 0;
   double work = 0;
   std::vector<long> loaded, seen;  ///< by place of a joint: steps
 };
@@ -154,6 +156,9 @@ inline void append_contact(std::vector<EffectUse>& uses, const PoolUse& pool) {
     uses.push_back({Effect::friction, pool.name, -1, verdict, pool.held, pool.items,
                     pool.work * (pool.rows - 1) / pool.rows});
   }
+  if (pool.has_rolling)
+    uses.push_back({Effect::rolling, pool.name, -1, verdict_of(pool.rolled), pool.rolled, pool.items,
+                    pool.work * (pool.rows - 3) / pool.rows});
   if (pool.has_restitution)
     uses.push_back(
         {Effect::restitution, pool.name, -1, verdict_of(pool.bounced), pool.bounced, pool.items, 0});

@@ -23,7 +23,23 @@ inline Mat3 contact_frame(const Vec3& n) {
   return frame;
 }
 
-/// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the others tangent.
+namespace inner {
+
+/// How many of a contact law's rows are of the velocity; what follows is of the rate of turn.
+template <int rows>
+inline constexpr int rows_along = rows < 3 ? rows : 3;
+
+/// The impulse of a contact as a vector of the world, moments aside.
+template <int rows, class T>
+Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
+  return frame.template topRows<rows_along<rows>>().transpose() *
+         lambda.template head<rows_along<rows>>().template cast<double>();
+}
+
+}  // namespace inner
+
+/// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the next two tangent; a law with
+/// six rows goes on with (t₁, t₂, n) · (ω_B − ω_A).
 template <class Law>
 struct Contact {
   static constexpr int rows = Law::rows;
@@ -47,9 +63,14 @@ struct Contact {
   void linearize(const Item& item, const auto& world, auto row) const {
     (void)world;
     const Vec3 point = item.record.point();
-    const Mat<rows, 3> axes = item.frame.template topRows<rows>();
-    row.end(item.record.a, point).along(axes, -1);
-    row.end(item.record.b, point).along(axes, 1);
+    constexpr int along = inner::rows_along<rows>;
+    const Mat<along, 3> axes = item.frame.template topRows<along>();
+    auto a = row.end(item.record.a, point);
+    a.along(axes, -1);
+    if constexpr (rows > along) turn(a, item.frame, -1);
+    auto b = row.end(item.record.b, point);
+    b.along(axes, 1);
+    if constexpr (rows > along) turn(b, item.frame, 1);
     row.phi(0, item.record.gap);
     if constexpr (requires { law.soften(row, item.record.gap); }) law.soften(row, item.record.gap);
   }
@@ -104,6 +125,15 @@ struct Contact {
     requires requires { item.parameters.restitution; }
   {
     return item.parameters.restitution;
+  }
+
+ private:
+  /// The rows behind those of the velocity: t₁, t₂, n.
+  static void turn(auto& end, const Mat3& frame, double sign) {
+    for (int k = 3; k < rows; ++k) {
+      const int axis = (k - 2) % 3;
+      end.about(k, Vec3(sign * frame(axis, 0), sign * frame(axis, 1), sign * frame(axis, 2)));
+    }
   }
 };
 

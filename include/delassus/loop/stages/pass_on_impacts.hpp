@@ -102,8 +102,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
           if (!(closing > 1e-12 * fastest) || !(gap < h * closing)) continue;
           const auto lambda = impact.hit(u);
           constexpr int R = Rows::template rows_of<p>;
-          impulses[std::size_t(pool.item(i).result)] +=
-              pool.item(i).frame.template topRows<R>().transpose() * lambda.template cast<double>();
+          impulses[std::size_t(pool.item(i).result)] += inner::world_impulse<R>(pool.item(i).frame, lambda);
           any = true;
         }
     });

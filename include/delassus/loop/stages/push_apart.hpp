@@ -34,6 +34,9 @@ void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
     auto& pool = laws.template pool<p>();
     if constexpr (requires { pool.law.law.stiffness; pool.items.clear(); }) {
       constexpr int rows = std::remove_cvref_t<decltype(pool.law)>::rows;
+      static_assert(rows <= 3,
+                    "delassus: CollisionsFirst makes a Penalty contact a force without moments; take Coulomb in place of "
+                    "RollingCoulomb, or the default scheme");
       for (const auto& item : pool.items) {
         const Vec3 point = item.record.point();
         Vec<rows> u = Vec<rows>::Zero();

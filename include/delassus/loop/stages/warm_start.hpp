@@ -29,7 +29,8 @@ void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double step_rat
         const Vec3 impulse = step_ratio * book.remembered(item.record, 0.02);
         if (is_zero(impulse)) continue;
         constexpr int R = Rows::template rows_of<p>;
-        lambda[i] = (item.frame.template topRows<R>() * impulse).template cast<T>();
+        constexpr int along = inner::rows_along<R>;
+        lambda[i].template head<along>() = (item.frame.template topRows<along>() * impulse).template cast<T>();
         if constexpr (requires { pool.law.clamp(item, lambda[i]); }) pool.law.clamp(item, lambda[i]);
       }
     }
@@ -51,7 +52,7 @@ void keep_impulses(Laws& laws, const Rows& rows, ContactBook& book) {
       } else {
         const auto& item = pool.item(i);
         ContactResult& result = book.results[item.result];
-        result.impulse = item.frame.template topRows<R>().transpose() * lambda[i].template cast<double>();
+        result.impulse = inner::world_impulse<R>(item.frame, lambda[i]);
         result.starts_cold = !is_finite(lambda[i]);
         if constexpr (requires { pool.law.is_sliding(item, lambda[i]); })
           result.is_sliding = pool.law.is_sliding(item, lambda[i]);
