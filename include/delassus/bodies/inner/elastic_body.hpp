@@ -52,19 +52,46 @@ class ElasticBody {
     return found;
   }
 
-  /// Makes elastic forces and A at the positions x of the set's blocks. Where A has no factor, as where x is
-  /// not finite, `solve` answers with numbers that are none, and the body stays where it was.
+  /// Makes elastic forces, A and its factor at the positions x of the set's blocks. Where A has no factor, as
+  /// where x is not finite, `solve` answers with numbers that are none, and the body stays where it was.
   void factor(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
               const std::vector<T>& inverse_mass) {
+    assemble(scale, x, mass, inverse_mass);
+    if (scale.stiffness == 0 || is_factored_) return;
+    is_factored_ = matrix_.factor(T(scale.mass), T(scale.stiffness), mass_, is_held_);
+  }
+
+  /// The same without a factor; the one there is goes, unless A is what it was.
+  void assemble(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
+                const std::vector<T>& inverse_mass) {
     const bool is_implicit = scale.stiffness != 0;
     const bool keeps_stiffness = has_constant_stiffness && has_stiffness_;
     if (is_implicit && !keeps_stiffness) matrix_.set_zero();
     for (Velocity& f : force_) f.setZero();
     for (Index e = 0; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
     has_stiffness_ = has_stiffness_ || is_implicit;
-    if (!is_implicit || is_factored_for(scale, mass, inverse_mass)) return;
-    is_factored_ = matrix_.factor(T(scale.mass), T(scale.stiffness), mass_, is_held_);
-    factored_ = scale;
+    if (!is_implicit) return;
+    const bool is_same = is_assembled_for(scale, mass, inverse_mass);
+    is_factored_ = is_factored_ && is_same;
+    scale_ = scale;
+  }
+
+  // --- for who factors A by itself -------------------------------------------------------------------------
+
+  std::span<const std::pair<Index, Index>> pairs() const { return matrix_.pairs(); }
+  std::span<const char> held() const { return is_held_; }
+  std::span<const T> mass() const { return mass_; }
+  SystemScale scale() const { return scale_; }
+  const M& material() const { return material_; }
+  void enter(auto& factor) const {
+    matrix_.enter(factor, T(scale_.mass), T(scale_.stiffness), mass_, is_held_);
+  }
+  /// y = A x by nodes, x zero at held ones.
+  void multiply(const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] = (T(scale_.mass) * mass_[k]) * x[k];
+    matrix_.add_product(T(scale_.stiffness), x, y);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (is_held_[k]) y[k].setZero();
   }
 
   /// ∫Ψ at the positions x, J.
@@ -157,10 +184,10 @@ class ElasticBody {
     }
   }
 
-  /// Whether the factor there is is the one that is wanted; takes over the masses.
-  bool is_factored_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
-    bool is_same = has_constant_stiffness && is_factored_ && factored_.mass == scale.mass &&
-                   factored_.stiffness == scale.stiffness;
+  /// Whether A is the one there was; takes over the masses.
+  bool is_assembled_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
+    bool is_same =
+        has_constant_stiffness && scale_.mass == scale.mass && scale_.stiffness == scale.stiffness;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const char is_held = inverse_mass[blocks_[k]] > T(0) ? 0 : 1;
       is_same = is_same && is_held == is_held_[k];
@@ -178,7 +205,7 @@ class ElasticBody {
   std::vector<T> mass_;
   std::vector<char> is_held_;
   NodeMatrix<T, E::nodes> matrix_;
-  SystemScale factored_;
+  SystemScale scale_;  ///< of A
   bool has_stiffness_ = false, is_factored_ = false;
   mutable std::vector<Velocity> work_, product_;
 };
