@@ -28,11 +28,14 @@ TEST_CASE("a warm step of a soft cube on the ground, with a rigid body hung from
 
 TEST_CASE("a warm step with a lazy compliance allocates nothing while the contacts stay") {
   using Soft = TetrahedralFem<Corotational>;
-  AnimationLoop loop{World{RigidBodies{}, Soft{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ImplicitEuler{},
-                     LazyCompliance{}};
+  AnimationLoop loop{World{RigidBodies{}, Soft{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     ImplicitEuler{}, LazyCompliance{}};
   bodies<RigidBodies>(loop.world()).add_fixed(HalfSpace{});
   bodies<Soft>(loop.world())
-      .add({.mesh = soft_scenes::cube(3), .elasticity = {.young = 1e5}, .position = {0, 0, 0.02}, .contact_radius = 0.02});
+      .add({.mesh = soft_scenes::cube(3),
+            .elasticity = {.young = 1e5},
+            .position = {0, 0, 0.02},
+            .contact_radius = 0.02});
   REQUIRE(allocations_of(loop, 60, 100) == 0);
   REQUIRE(loop.report().contacts > 0);
 }

@@ -3,10 +3,12 @@
 
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/bodies/inner/node_matrix.hpp>
+#include <delassus/math/lanes.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -14,6 +16,12 @@
 #include <vector>
 
 namespace delassus::inner {
+
+/// An element that takes as many at a time as there are lanes, with a material that does.
+template <class E, class M>
+concept LaneElement = requires(const M& material, const E* elements, const double* places) {
+  E::lanes_at(material, elements, places);
+};
 
 /// Of elements E. Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double,
 /// whatever T is.
@@ -68,7 +76,11 @@ class ElasticBody {
     const bool keeps_stiffness = has_constant_stiffness && has_stiffness_;
     if (is_implicit && !keeps_stiffness) matrix_.set_zero();
     for (Velocity& f : force_) f.setZero();
-    for (Index e = 0; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
+    Index e = 0;
+    if constexpr (LaneElement<E, M>)
+      for (; e + lane_count <= Index(elements_.size()); e += lane_count)
+        add_lanes(e, x, is_implicit && !keeps_stiffness);
+    for (; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
     has_stiffness_ = has_stiffness_ || is_implicit;
     if (!is_implicit) return;
     const bool is_same = is_assembled_for(scale, mass, inverse_mass);
@@ -172,6 +184,45 @@ class ElasticBody {
     const auto state = elements_[e].at(material_, corners(e, x));
     for (int a = 0; a < E::nodes; ++a) force_[t[a]] += state.force[a].template cast<T>();
     if (with_stiffness) add_stiffness(e, state.stiffness());
+  }
+
+  /// The elements e … e + lane_count − 1 at once.
+  void add_lanes(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+    double places[E::nodes * 3 * lane_count];
+    for (int l = 0; l < lane_count; ++l)
+      for (int a = 0; a < E::nodes; ++a) {
+        const Velocity& at = x[block_of(e + l, a)];
+        for (int k = 0; k < 3; ++k) places[(3 * a + k) * lane_count + l] = double(at[k]);
+      }
+    const auto state = E::lanes_at(material_, &elements_[e], places);
+    double numbers[9 * lane_count];
+    const auto each_block = [&](const LaneMatrix& block, auto&& add) {
+      std::memcpy(numbers, &block, sizeof numbers);
+      for (int l = 0; l < lane_count; ++l) {
+        Mat3 one;
+        for (int k = 0; k < 9; ++k) one.data()[k] = numbers[k * lane_count + l];
+        add(e + l, mesh_.cells()[e + l], one);
+      }
+    };
+    for (int a = 0; a < E::nodes; ++a) {
+      std::memcpy(numbers, &state.force[a], 3 * sizeof(Lanes));
+      for (int l = 0; l < lane_count; ++l)
+        for (int k = 0; k < 3; ++k) force_[mesh_.cells()[e + l][a]][k] += T(numbers[k * lane_count + l]);
+    }
+    if (!with_stiffness) return;
+    for (int a = 0; a < E::nodes; ++a)
+      each_block(state.block(a, a), [&](Index, const auto& t, const Mat3& B) {
+        matrix_.add_diagonal(t[a], B.template cast<T>());
+      });
+    for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
+      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
+      each_block(state.block(i, j), [&](Index one, const auto& t, const Mat3& B) {
+        if (t[i] < t[j])
+          matrix_.add_pair(one, k, B.template cast<T>());
+        else
+          matrix_.add_pair(one, k, B.transpose().template cast<T>());
+      });
+    }
   }
 
   void add_stiffness(Index e, const auto& K) {
