@@ -8,9 +8,8 @@
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
-#include <Eigen/SparseCholesky>
-
 #include "against.hpp"
+#include "by_rows.hpp"
 #include "tetrahedral_box.hpp"
 
 using namespace delassus;
@@ -18,8 +17,6 @@ using namespace tetrahedral_box;
 
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
-using Ldlt = Eigen::SimplicialLDLT<Sparse>;
 using Rows = RowSystem<double, Widths<3>, 3>;
 
 /// One soft body as a builder of W sees it.
@@ -85,52 +82,13 @@ Eigen::MatrixXd dense(const AssembledCompliance::Operator<Rows>& op, Index conta
   return W;
 }
 
-/// The model's way. L by rows, unit diagonal left out; H dense, a row of it a column here.
-struct ByRows {
-  Ldlt ldlt;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> L;
-  Eigen::VectorXd D;
-  Eigen::MatrixXd H, Y, scaled, W;
-
-  ByRows(const Box& box, const Rows& rows) : ldlt(box.sparse()), D(ldlt.vectorD()) {
-    L = ldlt.matrixL().nestedExpression().triangularView<Eigen::StrictlyLower>();
-    const Index m = rows.row_count(), n = 3 * box.nodes();
-    H = Eigen::MatrixXd::Zero(n, m);
-    const auto& blocks = std::get<0>(rows.pool<0>().sets);
-    for (Index i = 0; i < m / 3; ++i)
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-        for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r)
-            H(ldlt.permutationP().indices()[3 * blocks.block[e] + c], 3 * i + r) = blocks.H[e](r, c);
-    Y = H, scaled = H;
-    W.resize(m, m);
-  }
-  void build() {
-    const Index m = Index(H.cols()), n = Index(H.rows());
-    const auto* start = L.outerIndexPtr();
-    const auto* column = L.innerIndexPtr();
-    const double* value = L.valuePtr();
-    for (Index r = 0; r < m; ++r) {
-      const double* h = &H(0, r);
-      double *y = &Y(0, r), *z = &scaled(0, r);
-      for (Index i = 0; i < n; ++i) {
-        double sum = h[i];
-        for (auto e = start[i]; e < start[i + 1]; ++e) sum -= value[e] * y[column[e]];
-        y[i] = sum;
-      }
-      for (Index i = 0; i < n; ++i) z[i] = y[i] / D[i];
-    }
-    for (Index j = 0; j < m; ++j)
-      for (Index i = j; i < m; ++i) W(i, j) = W(j, i) = scaled.col(j).dot(Y.col(i));
-  }
-};
-
 void compliance_against_the_models_way(benchmark::State& state) {
   const Index contacts = Index(state.range(1));
   const World world{SoftBox(box_of(Index(state.range(0))))};
   Rows rows = contacts_on(world.box.box, contacts, Index(state.range(2)));
   AssembledCompliance::Operator<Rows> W;
-  ByRows theirs(world.box.box, rows);
+  ByRows theirs(world.box.box.sparse(), rows.row_count());
+  theirs.enter<0>(rows.pool<0>(), 0);
   against::run(
       state, [&] { W.build(world, rows); }, [&] { theirs.build(); }, 10);
   state.counters["difference"] =

@@ -78,6 +78,25 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
     scale_ = scale;
     each_body([&](auto& body) { body.factor(scale, x_, mass_, inverse_mass_); });
   }
+  /// Elastic forces and A without its factor, for a compliance that has one of its own.
+  void assemble(SystemScale scale) {
+    scale_ = scale;
+    each_body([&](auto& body) { body.assemble(scale, x_, mass_, inverse_mass_); });
+  }
+  /// The same with all nodes where they are at rest.
+  void assemble_at_rest(SystemScale scale) {
+    shifted_x_ = x_;
+    each_body([&](const auto& body) {
+      for (std::size_t k = 0; k < body.blocks().size(); ++k)
+        x_[body.blocks()[k]] = body.mesh().points[k].template cast<T>();
+    });
+    assemble(scale);
+    x_ = shifted_x_;
+  }
+  /// f(k, generation, body, x) for every body, x by blocks.
+  void each_system(auto&& f) const {
+    for (const Index k : body_slots_.active()) f(k, body_slots_.generation(k), bodies_[k], x_);
+  }
 
   /// The elastic ones are those of the last `factor`.
   void add_forces(std::vector<Velocity>& p) const {

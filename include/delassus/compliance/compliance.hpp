@@ -49,6 +49,31 @@ void add_compliance(Mat<R, R, T>& W, const Vec<R, T>& compliance, const Vec<R, T
   for (int k = 0; k < R; ++k) W(k, k) += compliance[k] + softness[k] * W(k, k);
 }
 
+/// What answers with A⁻¹ for set s: the operator where it has factors of its own, else the set. An operator
+/// begins its solves with its answer to the last free motion (guess 0) or to the last impulses (1).
+template <int s, class Operator, class Set>
+decltype(auto) inverse_of(Operator& W, Set& set, int guess) {
+  if constexpr (requires { W.template inverse<s>(set, guess); })
+    return W.template inverse<s>(set, guess);
+  else
+    return (set);
+}
+
+/// (W̃ λ)_i: without d, and without the rows' own compliance, which is no part of the motion: W_kk + R_k stands
+/// in `diagonal`.
+template <int p, class Operator, class Rows>
+auto response(const Operator& W, const Rows& rows, Index i) {
+  using T = typename Rows::Scalar;
+  const auto& pool = rows.template pool<p>();
+  Vec<Rows::template rows_of<p>, T> out = W.template residual<p>(rows, i) - pool.d[i];
+  for (int k = 0; k < out.size(); ++k) {
+    const T whole = W.template diagonal<p>(i)(k, k);
+    const T plain = (whole - pool.compliance[i][k]) / (T(1) + pool.softness[i][k]);
+    out[k] -= (whole - plain) * pool.lambda[i][k];
+  }
+  return out;
+}
+
 /// A set whose A can have entries between blocks, depending on what it holds.
 template <class Set>
 inline constexpr bool may_couple = requires(const Set& set) { set.is_coupled(); };

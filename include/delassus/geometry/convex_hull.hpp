@@ -5,7 +5,7 @@
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
-#include <delassus/math/lanes.hpp>
+#include <delassus/math/two_lanes.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -95,7 +95,7 @@ class ConvexHull {
         fingerprint_ = ((fingerprint_ ^ std::bit_cast<std::uint64_t>(v[k])) * 0x9e3779b97f4a7c15ull) ^ fingerprint_ >> 29;
   }
   void put_in_blocks() {
-    constexpr std::size_t lanes = inner::lane_count;
+    constexpr std::size_t lanes = 2;
     const std::size_t count = vertices_.size(), room = (count + lanes - 1) / lanes * lanes;
     blocks_.resize(3 * room);
     for (std::size_t i = 0; i < room; ++i)

@@ -3,8 +3,8 @@
 
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
-#include <delassus/math/lanes.hpp>
 #include <delassus/math/pose.hpp>
+#include <delassus/math/two_lanes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -160,8 +160,8 @@ inline Vec3 middle(const Shape& s) {
 
 namespace inner {
 
-/// How far a disc of radius 1 about the axis z reaches along the k-th axis of the world: no entry of a rotation
-/// is large enough to need std::hypot.
+/// How far a disc of radius 1 about the axis z reaches along the k-th axis of the world: no entry of a
+/// rotation is large enough to need std::hypot.
 inline double across(const Mat3& R, int k) { return std::sqrt(R(k, 0) * R(k, 0) + R(k, 1) * R(k, 1)); }
 
 /// How far a shape that is symmetric about its origin reaches along the k-th axis of the world, m.
@@ -201,14 +201,14 @@ inline Aabb cone_box(const Shape& s, const Pose& pose) {
 inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
   const Mat3& R = pose.rotation;
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Lanes least[3], most[3];
-  for (int k = 0; k < 3; ++k) least[k] = Lanes{infinity, infinity}, most[k] = -least[k];
+  TwoLanes least[3], most[3];
+  for (int k = 0; k < 3; ++k) least[k] = TwoLanes{infinity, infinity}, most[k] = -least[k];
   const std::span<const double> blocks = hull.blocks();
-  for (std::size_t i = 0; i < blocks.size(); i += 3 * lane_count) {
-    const Lanes x = lanes_at(&blocks[i]), y = lanes_at(&blocks[i + lane_count]),
-                z = lanes_at(&blocks[i + 2 * lane_count]);
+  for (std::size_t i = 0; i < blocks.size(); i += 6) {
+    const TwoLanes x = two_lanes_at(&blocks[i]), y = two_lanes_at(&blocks[i + 2]),
+                   z = two_lanes_at(&blocks[i + 4]);
     for (int k = 0; k < 3; ++k) {
-      const Lanes along = R(k, 0) * x + R(k, 1) * y + R(k, 2) * z;
+      const TwoLanes along = R(k, 0) * x + R(k, 1) * y + R(k, 2) * z;
       least[k] = along < least[k] ? along : least[k];
       most[k] = along > most[k] ? along : most[k];
     }

@@ -1,6 +1,7 @@
 /// An isotropic material at one F: from its derivatives by the principal stretches to its stress and tangent.
 #pragma once
 
+#include <delassus/math/lanes.hpp>
 #include <delassus/math/singular_values.hpp>
 
 namespace delassus {
@@ -56,6 +57,38 @@ class IsotropicPoint {
   double energy_;
   Mat3 hessian_;
   Vec3 half_sum_, half_difference_;
+};
+
+/// `IsotropicPoint` of one F a lane, without its energy: for a material that says it for several elements at a
+/// time. `hessian` has to be positive semidefinite.
+struct IsotropicLanes {
+  LaneMatrix U, V, hessian;
+  LaneVector stress, half_sum, half_difference;
+
+  LaneMatrix first_piola() const {
+    LaneMatrix Up;
+    for (int k = 0; k < 3; ++k) Up.column[k] = times(stress[k], U.column[k]);
+    return times_transposed(Up, V);
+  }
+  LaneVector pull(const LaneVector& gradient) const {
+    return {{dot(V.column[0], gradient), dot(V.column[1], gradient), dot(V.column[2], gradient)}};
+  }
+  LaneMatrix block(const LaneVector& a, const LaneVector& b) const {
+    LaneMatrix B;
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i) B(i, k) = hessian(i, k) * a[i] * b[k];
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      B(i, i) += half_sum[k] * a[j] * b[j];
+      B(j, j) += half_sum[k] * a[i] * b[i];
+      B(i, j) += half_difference[k] * a[j] * b[i];
+      B(j, i) += half_difference[k] * a[i] * b[j];
+    }
+    LaneMatrix UB;
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i) UB(i, k) = U(i, 0) * B(0, k) + U(i, 1) * B(1, k) + U(i, 2) * B(2, k);
+    return times_transposed(UB, U);
+  }
 };
 
 }  // namespace delassus

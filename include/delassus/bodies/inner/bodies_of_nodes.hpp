@@ -83,6 +83,8 @@ class BodiesOfNodes : public Places<Set, T, width> {
     each_body([&](const auto& body) { body.add_stiffness_times_velocity(p, v_, T(s)); });
   }
   Index body_of(Index b) const { return body_[b]; }
+  /// The number of a block among the nodes of its body.
+  Index node_of(Index b) const { return node_[b]; }
   /// A⁻¹ at nodes of one body: what its rows of W are made of.
   void node_compliance(std::span<const Index> blocks, std::span<T> C) const {
     touched_.clear();

@@ -3,10 +3,12 @@
 
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/bodies/inner/node_matrix.hpp>
+#include <delassus/math/lanes.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -14,6 +16,12 @@
 #include <vector>
 
 namespace delassus::inner {
+
+/// An element that takes as many at a time as there are lanes, with a material that does.
+template <class E, class M>
+concept LaneElement = requires(const M& material, const E* elements, const double* places) {
+  E::lanes_at(material, elements, places);
+};
 
 /// Of elements E. Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double,
 /// whatever T is.
@@ -52,19 +60,50 @@ class ElasticBody {
     return found;
   }
 
-  /// Makes elastic forces and A at the positions x of the set's blocks. Where A has no factor, as where x is
-  /// not finite, `solve` answers with numbers that are none, and the body stays where it was.
+  /// Makes elastic forces, A and its factor at the positions x of the set's blocks. Where A has no factor, as
+  /// where x is not finite, `solve` answers with numbers that are none, and the body stays where it was.
   void factor(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
               const std::vector<T>& inverse_mass) {
+    assemble(scale, x, mass, inverse_mass);
+    if (scale.stiffness == 0 || is_factored_) return;
+    is_factored_ = matrix_.factor(T(scale.mass), T(scale.stiffness), mass_, is_held_);
+  }
+
+  /// The same without a factor; the one there is goes, unless A is what it was.
+  void assemble(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
+                const std::vector<T>& inverse_mass) {
     const bool is_implicit = scale.stiffness != 0;
     const bool keeps_stiffness = has_constant_stiffness && has_stiffness_;
     if (is_implicit && !keeps_stiffness) matrix_.set_zero();
     for (Velocity& f : force_) f.setZero();
-    for (Index e = 0; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
+    Index e = 0;
+    if constexpr (LaneElement<E, M>)
+      for (; e + lane_count <= Index(elements_.size()); e += lane_count)
+        add_lanes(e, x, is_implicit && !keeps_stiffness);
+    for (; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
     has_stiffness_ = has_stiffness_ || is_implicit;
-    if (!is_implicit || is_factored_for(scale, mass, inverse_mass)) return;
-    is_factored_ = matrix_.factor(T(scale.mass), T(scale.stiffness), mass_, is_held_);
-    factored_ = scale;
+    if (!is_implicit) return;
+    const bool is_same = is_assembled_for(scale, mass, inverse_mass);
+    is_factored_ = is_factored_ && is_same;
+    scale_ = scale;
+  }
+
+  // --- for who factors A by itself -------------------------------------------------------------------------
+
+  std::span<const std::pair<Index, Index>> pairs() const { return matrix_.pairs(); }
+  std::span<const char> held() const { return is_held_; }
+  std::span<const T> mass() const { return mass_; }
+  SystemScale scale() const { return scale_; }
+  const M& material() const { return material_; }
+  void enter(auto& factor) const {
+    matrix_.enter(factor, T(scale_.mass), T(scale_.stiffness), mass_, is_held_);
+  }
+  /// y = A x by nodes, x zero at held ones.
+  void multiply(const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] = (T(scale_.mass) * mass_[k]) * x[k];
+    matrix_.add_product(T(scale_.stiffness), x, y);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (is_held_[k]) y[k].setZero();
   }
 
   /// ∫Ψ at the positions x, J.
@@ -147,6 +186,45 @@ class ElasticBody {
     if (with_stiffness) add_stiffness(e, state.stiffness());
   }
 
+  /// The elements e … e + lane_count − 1 at once.
+  void add_lanes(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+    double places[E::nodes * 3 * lane_count];
+    for (int l = 0; l < lane_count; ++l)
+      for (int a = 0; a < E::nodes; ++a) {
+        const Velocity& at = x[block_of(e + l, a)];
+        for (int k = 0; k < 3; ++k) places[(3 * a + k) * lane_count + l] = double(at[k]);
+      }
+    const auto state = E::lanes_at(material_, &elements_[e], places);
+    double numbers[9 * lane_count];
+    const auto each_block = [&](const LaneMatrix& block, auto&& add) {
+      std::memcpy(numbers, &block, sizeof numbers);
+      for (int l = 0; l < lane_count; ++l) {
+        Mat3 one;
+        for (int k = 0; k < 9; ++k) one.data()[k] = numbers[k * lane_count + l];
+        add(e + l, mesh_.cells()[e + l], one);
+      }
+    };
+    for (int a = 0; a < E::nodes; ++a) {
+      std::memcpy(numbers, &state.force[a], 3 * sizeof(Lanes));
+      for (int l = 0; l < lane_count; ++l)
+        for (int k = 0; k < 3; ++k) force_[mesh_.cells()[e + l][a]][k] += T(numbers[k * lane_count + l]);
+    }
+    if (!with_stiffness) return;
+    for (int a = 0; a < E::nodes; ++a)
+      each_block(state.block(a, a), [&](Index, const auto& t, const Mat3& B) {
+        matrix_.add_diagonal(t[a], B.template cast<T>());
+      });
+    for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
+      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
+      each_block(state.block(i, j), [&](Index one, const auto& t, const Mat3& B) {
+        if (t[i] < t[j])
+          matrix_.add_pair(one, k, B.template cast<T>());
+        else
+          matrix_.add_pair(one, k, B.transpose().template cast<T>());
+      });
+    }
+  }
+
   void add_stiffness(Index e, const auto& K) {
     const auto& t = mesh_.cells()[e];
     for (int a = 0; a < E::nodes; ++a) matrix_.add_diagonal(t[a], K.block(a, a).template cast<T>());
@@ -157,10 +235,10 @@ class ElasticBody {
     }
   }
 
-  /// Whether the factor there is is the one that is wanted; takes over the masses.
-  bool is_factored_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
-    bool is_same = has_constant_stiffness && is_factored_ && factored_.mass == scale.mass &&
-                   factored_.stiffness == scale.stiffness;
+  /// Whether A is the one there was; takes over the masses.
+  bool is_assembled_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
+    bool is_same =
+        has_constant_stiffness && scale_.mass == scale.mass && scale_.stiffness == scale.stiffness;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const char is_held = inverse_mass[blocks_[k]] > T(0) ? 0 : 1;
       is_same = is_same && is_held == is_held_[k];
@@ -178,7 +256,7 @@ class ElasticBody {
   std::vector<T> mass_;
   std::vector<char> is_held_;
   NodeMatrix<T, E::nodes> matrix_;
-  SystemScale factored_;
+  SystemScale scale_;  ///< of A
   bool has_stiffness_ = false, is_factored_ = false;
   mutable std::vector<Velocity> work_, product_;
 };

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
+#include <delassus/math/lanes.hpp>
 
 #include <algorithm>
 #include <array>
@@ -91,6 +92,54 @@ struct LinearTetrahedron {
       rest += state.force[a];
     }
     state.force[0] = -rest;
+    return state;
+  }
+
+  /// The same of as many elements as there are lanes; `places`: coordinate k of corner a of element l at
+  /// (3 a + k) lane_count + l.
+  template <class Points>
+  struct LaneState {
+    Points point;
+    Lanes volume;
+    LaneVector b[4], force[4];  ///< b: the gradients, pulled
+    LaneMatrix block(int i, int j) const {
+      LaneMatrix K = point.block(b[i], b[j]);
+      for (LaneVector& column : K.column) column = times(volume, column);
+      return K;
+    }
+  };
+  template <class M>
+    requires requires(const M& material, const LaneMatrix& F) { material.at(F); }
+  static auto lanes_at(const M& material, const LinearTetrahedron* elements, const double* places) {
+    double numbers[13 * lane_count];
+    for (int l = 0; l < lane_count; ++l) {
+      for (int a = 0; a < 4; ++a)
+        for (int k = 0; k < 3; ++k) numbers[(3 * a + k) * lane_count + l] = elements[l].gradient[a][k];
+      numbers[12 * lane_count + l] = elements[l].volume;
+    }
+    const auto load = [](const double* from, int a) {
+      return LaneVector{{load_lanes(from + 3 * a * lane_count), load_lanes(from + (3 * a + 1) * lane_count),
+                         load_lanes(from + (3 * a + 2) * lane_count)}};
+    };
+    LaneMatrix F{};
+    const LaneVector origin = load(places, 0);
+    for (int a = 1; a < 4; ++a) {
+      const LaneVector x = load(places, a), g = load(numbers, a);
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) F(i, k) += (x[i] - origin[i]) * g[k];
+    }
+    LaneState<decltype(material.at(F))> state{material.at(F), load_lanes(numbers + 12 * lane_count), {}, {}};
+    const LaneMatrix P = state.point.first_piola();
+    for (int k = 0; k < 3; ++k) state.force[0][k] = all_lanes(0);
+    for (int a = 0; a < 4; ++a) {
+      const LaneVector g = load(numbers, a);
+      state.b[a] = state.point.pull(g);
+      if (a == 0) continue;
+      for (int i = 0; i < 3; ++i) {
+        state.force[a][i] = -state.volume * (P(i, 0) * g[0] + P(i, 1) * g[1] + P(i, 2) * g[2]);
+        state.force[0][i] -= state.force[a][i];
+      }
+    }
     return state;
   }
 };

@@ -66,22 +66,34 @@ class NodeMatrix {
     }
   }
 
-  /// Factors scale.mass M + scale.stiffness K on the nodes whose inverse mass is not 0; false where there is
-  /// no factor.
-  bool factor(T mass_share, T stiffness_share, std::span<const T> mass, std::span<const char> is_held) {
-    factor_.set_zero();
+  /// The pairs i < j that share an element.
+  std::span<const std::pair<Index, Index>> pairs() const { return pairs_; }
+
+  /// mass_share M + stiffness_share K on the nodes that are not held, 1 on the others, for a factor of any
+  /// scalar.
+  template <class F>
+  void enter(F& factor, T mass_share, T stiffness_share, std::span<const T> mass,
+             std::span<const char> is_held) const {
+    using Other = typename F::Block;
+    using S = typename Other::Scalar;
+    factor.set_zero();
     for (Index i = 0; i < Index(diagonal_.size()); ++i) {
       Block A = Block::Identity();
       if (!is_held[i]) {
         A = stiffness_share * diagonal_[i];
         for (int k = 0; k < 3; ++k) A(k, k) += mass_share * mass[i];
       }
-      factor_.add_diagonal(i, A);
+      factor.add_diagonal(i, Other(A.template cast<S>()));
     }
     for (std::size_t e = 0; e < pairs_.size(); ++e) {
       const auto [i, j] = pairs_[e];
-      if (!is_held[i] && !is_held[j]) factor_.add_pair(i, j, Block(stiffness_share * upper_[e]));
+      if (!is_held[i] && !is_held[j])
+        factor.add_pair(i, j, Other((stiffness_share * upper_[e]).template cast<S>()));
     }
+  }
+  /// Factors it; false where there is no factor.
+  bool factor(T mass_share, T stiffness_share, std::span<const T> mass, std::span<const char> is_held) {
+    enter(factor_, mass_share, stiffness_share, mass, is_held);
     return factor_.factor();
   }
   void solve(std::vector<Velocity>& x) const { factor_.solve(x); }

@@ -11,6 +11,7 @@
 #include <delassus/loop/stages/predict.hpp>
 #include <delassus/loop/stages/project_position.hpp>
 #include <delassus/loop/stages/push_apart.hpp>
+#include <delassus/loop/stages/refine.hpp>
 #include <delassus/loop/stages/solve.hpp>
 #include <delassus/loop/stages/warm_start.hpp>
 
@@ -93,8 +94,14 @@ void AnimationLoop<Policies...>::linearize() {
 
 template <class... Policies>
 void AnimationLoop<Policies...>::free_motion() {
+  constexpr bool is_refined = requires { requires RefinedOperator<typename Work::Operator>; };
+  if constexpr (is_refined) work_.W.begin(part<role::Compliance>());
   world().each([&](auto& set, auto s) {
-    delassus::free_motion(set, part<role::Integrator>(), std::get<s>(scratch_), h_);
+    if constexpr (has_constraints)
+      delassus::free_motion(set, inner::inverse_of<s>(work_.W, set, 0), part<role::Integrator>(),
+                            std::get<s>(scratch_), h_);
+    else
+      delassus::free_motion(set, set, part<role::Integrator>(), std::get<s>(scratch_), h_);
   });
   tell<stage::FreeMotion>();
 }
@@ -155,6 +162,14 @@ void AnimationLoop<Policies...>::solve() {
   if constexpr (has_constraints) {
     inner::with_observer(policies_, [&](auto& observer) {
       solve_islands(work_, part<role::Solver>(), h_, observer);
+      if constexpr (RefinedOperator<typename Work::Operator>) {
+        static_assert(!Work::predicts && !Work::restitutes,
+                      "delassus: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with "
+                      "restitution; use AssembledCompliance");
+        while (refine(world(), work_, scratch_, h_)) solve_islands(work_, part<role::Solver>(), h_, observer);
+        part<role::Compliance>().report = work_.W.report();
+        if (!work_.W.is_settled()) report_.status = worse(report_.status, Status::max_iterations);
+      }
     });
     for (const SolveReport& r : work_.reports) {
       report_.status = worse(report_.status, r.status);
@@ -197,7 +212,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::correct() {
   if constexpr (has_constraints) {
     if constexpr (Work::predicts) take_change(work_.rows, work_.predicted);
-    delassus::correct(world(), work_.rows, scratch_, work_.islands, work_.is_sick);
+    delassus::correct(world(), work_.rows, work_.W, scratch_, work_.islands, work_.is_sick);
     if constexpr (Work::predicts) give_back_total(work_.rows, work_.predicted);
     if constexpr (Work::has_dormant)
       work_.activity.watch(part<role::Activity>(), world(), work_.rows, work_.islands, work_.reports, h_);
@@ -213,7 +228,7 @@ void AnimationLoop<Policies...>::move_freely() {
     if (set.is_separable()) {
       delassus::move_freely(set, part<role::Integrator>(), h_);
     } else {
-      delassus::free_motion(set, part<role::Integrator>(), std::get<s>(scratch_), h_);
+      delassus::free_motion(set, set, part<role::Integrator>(), std::get<s>(scratch_), h_);
       set.v_next = set.v_free;
       part<role::Integrator>().advance(set, h_);
     }
@@ -226,7 +241,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::advance() {
   if constexpr (has_constraints)
     if constexpr (Work::projects_position)
-      report_.status = worse(report_.status, find_displacements(std::as_const(*this).world(), laws(), work_,
+      report_.status = worse(report_.status, find_displacements(world(), laws(), work_,
                                                                 part<role::Stabilisation>(), part<role::Solver>(),
                                                                 scratch_, h_));
   world().each([&](auto& set, auto) {

@@ -52,15 +52,15 @@ void drop_rounding(V& v_next, const V& v_free) {
 
 /// v_next = v_free + A⁻¹ Hᵀ λ. The velocities of an island with one that is not finite are all made so: `advance` leaves
 /// such bodies where they were, and no other island notices.
-template <class World, class Rows, class Scratch, int pools>
-void correct(World& world, const Rows& rows, Scratch& scratch, const Islands<pools>& islands,
+template <class World, class Rows, class Operator, class Scratch, int pools>
+void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, const Islands<pools>& islands,
              std::vector<char>& is_sick) {
   is_sick.assign(islands.count(), 0);
   Index first = 0;
   bool any = false;
   world.each([&](auto& set, auto s) {
     for (const Index b : set.active()) set.v_next[b] = set.v_free[b];
-    add_impulses<s>(set, rows, set.v_next, std::get<s>(scratch));
+    add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);
       if (island < 0) continue;

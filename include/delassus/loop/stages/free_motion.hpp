@@ -8,17 +8,19 @@
 
 namespace delassus {
 
-/// v_free = v + A⁻¹ p, p the integrator's impulse. Blocks that do not move keep v.
-template <class Set, class I>
-void free_motion(Set& set, const I& integrator, std::vector<typename Set::Velocity>& p, double h) {
-  set.factor(integrator.scale(h));
+/// v_free = v + A⁻¹ p, p the integrator's impulse and A⁻¹ the set's or another `inverse`. Blocks that do not
+/// move keep v.
+template <class Set, class Inverse, class I>
+void free_motion(Set& set, Inverse&& inverse, const I& integrator, std::vector<typename Set::Velocity>& p,
+                 double h) {
+  inverse.factor(integrator.scale(h));
   p.resize(set.blocks());
   for (auto& x : p) x.setZero();
   integrator.impulse(set, p, h);
   const auto& v = set.velocity();
   if (inner::is_coupled(set)) {
     if constexpr (requires { set.solve(p); }) {
-      set.solve(p);
+      inverse.solve(p);
       for (const Index b : set.active()) set.v_free[b] = v[b] + p[b];
     }
   } else {

@@ -15,25 +15,15 @@ namespace delassus {
 /// so that the solve of d + W̃ λ finds the total λ, and W̃ has a say in the change λ − λ₀ only. `predicted` takes λ₀.
 template <class World, class Rows, class Operator, class Scratch, class Kept>
 void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& predicted) {
-  using T = typename Rows::Scalar;
   W.reset(rows);
   predicted.resize_like(rows);
   for_each_index<Rows::pool_count>([&](auto p) {
-    const auto& pool = rows.template pool<p>();
-    for (Index i = 0; i < pool.items(); ++i) {
-      // (W̃ + R) λ₀, and without the rows' own compliance R: it is no part of the motion, W_kk + R_k stands in `diagonal`.
-      auto& response = std::get<p>(predicted.pools)[i];
-      response = W.template residual<p>(rows, i) - pool.d[i];
-      for (int k = 0; k < response.size(); ++k) {
-        const T whole = W.template diagonal<p>(i)(k, k);
-        const T plain = (whole - pool.compliance[i][k]) / (T(1) + pool.softness[i][k]);
-        response[k] -= (whole - plain) * pool.lambda[i][k];
-      }
-    }
+    for (Index i = 0; i < rows.template pool<p>().items(); ++i)
+      std::get<p>(predicted.pools)[i] = inner::response<p>(W, rows, i);
   });
   world.each([&](auto& set, auto s) {
     for (auto& v : set.v_next) v.setZero();
-    add_impulses<s>(set, rows, set.v_next, std::get<s>(scratch));
+    add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
     for (std::size_t b = 0; b < set.v_free.size(); ++b) set.v_free[b] += set.v_next[b];
   });
   for_each_index<Rows::pool_count>([&](auto p) {

@@ -89,7 +89,7 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
 /// w = A⁻¹ Hᵀ μ of the position problem, into `work.displacement`; returns how its solve ended where that
 /// was far from closing the gaps (they are what is left of the last step's, and small): the worst island's. λ and d of the step are put back.
 template <class World, class Laws, class Work, class S, class Solver, class Scratch>
-Status find_displacements(const World& world, const Laws& laws, Work& work, const S& stabilisation, const Solver& solver,
+Status find_displacements(World& world, const Laws& laws, Work& work, const S& stabilisation, const Solver& solver,
                         Scratch& scratch, double h) {
   for (auto& aside : work.aside) aside.resize_like(work.rows);
   for_each_index<Laws::pool_count>([&](auto p) {
@@ -107,11 +107,11 @@ Status find_displacements(const World& world, const Laws& laws, Work& work, cons
       const SolveReport r = solve_island(book, work.rows, work.W, work.islands, k, solver, work.solver, h, nobody);
       if (r.measure.residual > far) worst = worse(worst, r.status);
     }
-  world.each([&](const auto& set, auto s) {
+  world.each([&](auto& set, auto s) {
     auto& to = std::get<s>(work.displacement);
     to.resize(set.blocks());
     for (auto& x : to) x.setZero();
-    add_impulses<s>(set, work.rows, to, std::get<s>(scratch));
+    add_impulses<s>(inner::inverse_of<s>(work.W, set, 1), work.rows, to, std::get<s>(scratch));
   });
   for_each_index<Laws::pool_count>([&](auto p) {
     std::swap(std::get<p>(work.aside[0].pools), work.rows.template pool<p>().lambda);

@@ -1,0 +1,45 @@
+/// The Delassus operator of soft bodies by a factor that is kept while it serves.
+#pragma once
+
+#include <delassus/compliance/inner/turned_operator.hpp>
+#include <delassus/core/expect.hpp>
+
+#include <cmath>
+
+namespace delassus {
+
+/// W̃ from an old factor of A, turned with the nodes; the rows are solved and what W̃ missed of W is put right,
+/// until they are off by no more than `violation` in the step. The motion itself is that of the A of the
+/// step, by conjugate gradients. A is factored anew when the solves of a step took too long or when passes
+/// bring too little. S is the scalar of the factor. Bodies that are not soft are as with
+/// `AssembledCompliance`.
+template <class S>
+struct BasicLazyCompliance {
+  using plays = role::Compliance;
+  double violation = 1e-5;   ///< m, rad
+  double tolerance = 1e-6;   ///< |p − A Δv| ≤ tolerance |p|
+  int max_iterations = 8;    ///< of conjugate gradients; with 0 A is factored in every step
+  double contraction = 0.3;  ///< what a pass may leave of the violation before the factor is old
+  int max_passes = 10;
+  ComplianceReport report{};  ///< of the last step
+
+  void check() const {
+    DELASSUS_EXPECT(std::isfinite(violation) && violation > 0,
+                    "LazyCompliance: violation " + inner::text(violation) + " m must be finite and > 0");
+    DELASSUS_EXPECT(tolerance > 0 && tolerance < 1,
+                    "LazyCompliance: tolerance " + inner::text(tolerance) + " must lie in (0, 1)");
+    DELASSUS_EXPECT(max_iterations >= 0 && max_passes >= 0,
+                    "LazyCompliance: max_iterations and max_passes must be >= 0");
+    DELASSUS_EXPECT(contraction > 0 && contraction < 1,
+                    "LazyCompliance: contraction " + inner::text(contraction) + " must lie in (0, 1)");
+  }
+  inner::TurnedLimits limits() const {
+    return {violation, tolerance, contraction, max_iterations, max_passes};
+  }
+
+  template <class Rows>
+  class Operator : public inner::TurnedOperator<S, Rows, inner::FactorOfAStep> {};
+};
+using LazyCompliance = BasicLazyCompliance<float>;
+
+}  // namespace delassus

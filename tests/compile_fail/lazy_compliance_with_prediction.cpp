@@ -1,0 +1,12 @@
+// expect: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with restitution
+#include <delassus/bodies/elasticity/linear.hpp>
+#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/compliance/lazy.hpp>
+#include <delassus/delassus.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{TetrahedralFem<Linear>{}}, Constraints{BallJoint{}}, LazyCompliance{}, PredictiveScheme{}};
+  loop.step(0.01);
+}
