@@ -233,16 +233,14 @@ TEST_CASE(
     auto& set = bodies<RigidBodies>(loop.world());
     const Quat axis = frame_along({0, -1, 0});
     std::vector<ConstraintHandle<Limit<Turn>>> stops;
-    RigidBodies::Handle last;
-    for (int k = 0; k < links; ++k) {
-      const auto link =
-          set.add({.position = {0.2 * (k + 0.5), 0, 0}, .mass = 1.0, .shape = Box{0.2, 0.05, 0.05}});
-      const Vec3 at(0.2 * k, 0, 0);
-      const Anchor a = k ? anchor_at(set, last, at, axis) : world_anchor(at, axis),
-                   b = anchor_at(set, link, at, axis);
-      loop.add(Hinge::Item{a, b});
-      stops.push_back(loop.add(Limit<Turn>::Item{.a = a, .b = b, .lower = -0.5, .upper = 0.5}));
-      last = link;
+    Anchor end = world_anchor(Vec3::Zero(), axis);
+    while (int(stops.size()) < links) {
+      const double x = 0.2 * double(stops.size()) + 0.1;
+      const auto link = set.add({.position = {x, 0, 0}, .mass = 1.0, .shape = Box{0.2, 0.05, 0.05}});
+      const Anchor near = anchor(set, link, {-0.1, 0, 0}, axis);
+      loop.add(Hinge::Item{end, near});
+      stops.push_back(loop.add(Limit<Turn>::Item{.a = end, .b = near, .lower = -0.5, .upper = 0.5}));
+      end = anchor(set, link, {0.1, 0, 0}, axis);
     }
     const double start = kinetic_energy(set) + potential_energy(set);
     double over = 0, gained = -1e300;
