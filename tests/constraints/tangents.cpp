@@ -1,8 +1,14 @@
 // The slopes that Newton's method takes of Coulomb's law, against differences.
 #include <delassus/constraints/contact/coulomb.hpp>
+#include <delassus/constraints/joints/drive.hpp>
+#include <delassus/constraints/joints/limit.hpp>
+#include <delassus/constraints/joints/motor.hpp>
+#include <delassus/constraints/law.hpp>
 
 #include "catch.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 using namespace delassus;
@@ -61,5 +67,31 @@ TEST_CASE("the convex tangent of Coulomb's law is the slope of its impulse, symm
     auto fixed = problem(slip, force);
     law.convex_tangent({0.6}, fixed, slip.norm());
     REQUIRE((fixed.lambda - force).norm() <= 1e-13);
+  }
+}
+
+static_assert(Differentiable<Limit<Turn>> && Differentiable<Motor<Turn>> && Differentiable<Drive<Slide>>);
+
+// Both laws are piecewise linear: λ = P(λ − d/W), slope 1/W where P leaves it, and nothing where P cuts it.
+TEST_CASE("the tangents of limits and motors are the slopes of their impulses") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const double w = 0.7;
+  for (int n = 0; n < 100; ++n) {
+    const double first = any(random), second = any(random), before = any(random), after = any(random);
+    Local<2> stops{w * Mat<2, 2>::Identity(), {first, second}, {before, after}};
+    const Mat<2, 2> slopes = Limit<Turn>{}.tangent({}, stops);
+    const double low = before - first / w, high = after - second / w;
+    CHECK(stops.lambda[0] == std::max(0.0, low));
+    CHECK(stops.lambda[1] == std::min(0.0, high));
+    CHECK(slopes(0, 0) == (low >= 0 ? 1 / w : 0));
+    CHECK(slopes(1, 1) == (high <= 0 ? 1 / w : 0));
+    CHECK((slopes(0, 1) == 0 && slopes(1, 0) == 0));
+
+    const Motor<Turn>::Memory<double> cap{0.4};
+    Local<1> motor{Mat<1, 1>(w), Vec<1>(first), Vec<1>(before)};
+    const Mat<1, 1> slope = Motor<Turn>{}.tangent(Motor<Turn>::Item{}, motor, cap);
+    CHECK(motor.lambda[0] == std::clamp(low, -0.4, 0.4));
+    CHECK(slope(0, 0) == (std::abs(low) <= 0.4 ? 1 / w : 0));
   }
 }

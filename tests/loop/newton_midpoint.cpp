@@ -4,7 +4,9 @@
 #include "convergence_order.hpp"
 #include "loop/chains.hpp"
 
+#include <cstdlib>
 #include <limits>
+#include <vector>
 
 #include "catch.hpp"
 
@@ -128,6 +130,59 @@ TEST_CASE("a heavy chain swings with the period of its first mode") {
     last = x;
   }
   CHECK(std::abs((second - first) * first_frequency(links, ratio) / EIGEN_PI - 1) <= 0.005);
+}
+
+// HC-03: released 5° from the vertical. The amplitude makes the period longer by θ²/16 = 5e-4; from rest the
+// end passes below after a quarter, with DELASSUS_LONG again after half a period more, where the straight
+// start's other modes weigh less.
+TEST_CASE(
+    "a thousand links under ten thousand times their weight swing with the period of their first mode") {
+  const int links = 1000;
+  const double ratio = 1e4, h = 1.0 / 60;
+  auto loop = rods(links, ratio, 5 * EIGEN_PI / 180, NewtonMidpoint{});
+  const int passes = std::getenv("DELASSUS_LONG") != nullptr ? 2 : 1;
+  double last = end_of(loop).x(), gap = 0;
+  std::vector<double> at;
+  for (int n = 1; int(at.size()) < passes; ++n) {
+    REQUIRE(n < 2000);
+    const StepReport report = loop.step(h);
+    REQUIRE(report.status <= Status::stalled);
+    gap = std::max(gap, report.max_joint_violation);
+    const double x = end_of(loop).x();
+    if (x * last < 0) at.push_back(h * (n - 1 + last / (last - x)));
+    last = x;
+  }
+  const double period = 2 * EIGEN_PI / first_frequency(links, ratio);
+  CAPTURE(gap, 4 * at[0] / period);
+  CHECK(gap <= 1e-4 * 0.2);
+  CHECK(std::abs(4 * at[0] / period - 1) <= 0.005);
+  if (passes > 1) CHECK(std::abs(2 * (at[1] - at[0]) / period - 1) <= 0.005);
+}
+
+// AC-07: disc of 0.3 m on an arm of 0.2 m, 50 rad/s, its axis level: m g r = I Ω ω with no spin of the
+// precession along the axis. A turn in 7.2 s; second order leaves (h ω)²/12 = 1.3e-3 of the spin's angle,
+// none of L.
+TEST_CASE("a wheel on an arm turns about the pivot by its weight's moment over its spin, and does not sink") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  const double arm = 0.2, spin = 50, along = 0.3 * 0.3 / 2, across = along / 2;
+  const double precession = 9.81 * arm / (along * spin), h = 2.5e-3;
+  const auto wheel = rigid.add({.position = {arm, 0, 0},
+                                .velocity = {0, precession * arm, 0},
+                                .angular_velocity = {spin, 0, precession},
+                                .mass = 1.0,
+                                .inertia = Mat3(Vec3(along, across, across).asDiagonal())});
+  loop.add(BallJoint::Item{anchor(rigid, wheel, {-arm, 0, 0}), world_anchor(Vec3::Zero())});
+  CHECK(precession == Approx(0.872).epsilon(1e-9));
+  double turned = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Vec3 last = rigid.position(wheel);
+    loop.step(h);
+    const Vec3 now = rigid.position(wheel);
+    turned += std::asin((last.x() * now.y() - last.y() * now.x()) / (arm * arm));
+    REQUIRE(std::abs(now.z()) <= 1e-3 * arm);
+  }
+  CHECK(turned / 10 == Approx(precession).epsilon(2e-3));
 }
 
 // The gap is rounding of x = 0.4 m, the energy that of 4e6 J.

@@ -4,7 +4,7 @@
 #include "convergence_order.hpp"
 #include "loop/smooth_scenes.hpp"
 
-#include <limits>
+#include <cstdlib>
 
 #include "catch.hpp"
 
@@ -22,21 +22,41 @@ TEST_CASE("a pendulum is met by Rattle with second order, and within its constan
   CHECK(error(0.01) <= 1.5 * 6.0e-3);
 }
 
-// AC-10: |ΔE| ≤ 1e-3 J at 1 ms, and no trend. The energy swings by h² times what the run comes across: by up
-// to 1.22e-3 J in these 40 s, within 1.5 times the figure. A drift would make the second half twice the
-// first.
-TEST_CASE("a double pendulum keeps its energy under Rattle without a trend") {
+namespace {
+
+/// The largest change of energy (J) of the double pendulum in each half of a run, and the largest gap (m).
+struct Swing {
+  double first = 0, second = 0, gap = 0;
+};
+Swing swing(double h, double seconds) {
   auto loop = double_pendulum(Rattle{});
-  double worst[2] = {0, 0}, gap = 0;
-  for (int n = 0; n < 40000; ++n) {
-    const StepReport report = loop.step(1e-3);
+  Swing seen;
+  const long steps = std::lround(seconds / h);
+  for (long n = 0; n < steps; ++n) {
+    const StepReport report = loop.step(h);
     REQUIRE(report.status <= Status::stalled);
-    gap = std::max(gap, report.max_joint_violation);
-    worst[n >= 20000] = std::max(worst[n >= 20000], std::abs(energy(loop)));
+    seen.gap = std::max(seen.gap, report.max_joint_violation);
+    double& worst = 2 * n < steps ? seen.first : seen.second;
+    worst = std::max(worst, std::abs(energy(loop)));
   }
-  CHECK(gap <= 1e-12);  // of 2 m
-  CHECK(worst[0] <= 1.5e-3);
-  CHECK(worst[1] <= 1.5 * worst[0]);
+  return seen;
+}
+
+}  // namespace
+
+// AC-10: 1e-3 J at 1 ms, and no trend in 1000 s. What swings is the method's h² times what the run comes
+// across, and is 1.24e-3 J at 1 ms, within 1.5 times the figure: half the step has a quarter of it, to the
+// few per cent that chaos moves its highest place. The figure itself is met from 0.9 ms on. A drift would
+// make the second half twice the first; 1000 s with DELASSUS_LONG in the environment.
+TEST_CASE("a double pendulum keeps its energy under Rattle without a trend, to the square of the step") {
+  const bool is_long = std::getenv("DELASSUS_LONG") != nullptr;
+  const Swing whole = swing(1e-3, is_long ? 1000 : 40), half = swing(5e-4, 40);
+  CAPTURE(whole.first, whole.second, half.first, half.second);
+  CHECK(whole.gap <= 1e-12);  // of 2 m
+  CHECK(whole.first <= 1.5e-3);
+  CHECK(whole.second <= 1.5 * whole.first);
+  CHECK(half.first == Approx(whole.first / 4).epsilon(0.1));
+  CHECK(half.first <= 1e-3);
 }
 
 TEST_CASE("two hinges in space are met by Rattle with second order") {
@@ -115,14 +135,10 @@ TEST_CASE("Rattle keeps its order with a shaken pivot, damped springs and soft j
   CHECK(are_of_order(orders, 2));
 }
 
+TEST_CASE("joints that contradict each other are told, and leave all bodies as they were under Rattle") {
+  CHECK(leaves_contradictions(Rattle{}));
+}
+
 TEST_CASE("a force that is no number leaves all bodies where they were under Rattle") {
-  auto loop = spatial(Rattle{});
-  auto& rigid = bodies<RigidBodies>(loop.world());
-  loop.step(0.01);
-  const Vec3 before = end_of(loop);
-  rigid.apply_force(rigid.handle(0), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
-  CHECK(loop.step(0.01).status == Status::quarantined);
-  CHECK((end_of(loop) - before).norm() == 0);
-  CHECK(loop.step(0.01).status == Status::converged);
-  CHECK((end_of(loop) - before).norm() > 0);
+  CHECK(leaves_what_is_no_number(Rattle{}));
 }

@@ -4,6 +4,7 @@
 #include <delassus/delassus.hpp>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace smooth {
@@ -73,6 +74,41 @@ double energy(const Loop& loop) {
   double sum = 0;
   loop.world().each([&](const auto& set, auto) { sum += kinetic_energy(set) + potential_energy(set); });
   return sum;
+}
+/// `spatial` when a force is no number: all bodies stay for the step that says so, and go on in the next.
+template <class Integrator>
+bool leaves_what_is_no_number(Integrator integrator) {
+  auto loop = spatial(integrator);
+  auto& rigid = bodies<RigidBodies>(loop.world());
+  loop.step(0.01);
+  const Vec3 before = end_of(loop);
+  rigid.apply_force(rigid.handle(0), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  const bool is_told = loop.step(0.01).status == Status::quarantined;
+  const bool has_stayed = (end_of(loop) - before).norm() == 0;
+  return is_told && has_stayed && loop.step(0.01).status == Status::converged &&
+         (end_of(loop) - before).norm() > 0;
+}
+/// `spatial` with its first body on a second hinge to the world, a tenth of a metre from where it is: its
+/// state stays through steps that say so, and it swings on when the hinge goes.
+template <class Integrator>
+bool leaves_contradictions(Integrator integrator) {
+  auto loop = spatial(integrator);
+  const auto& rigid = loop.world().template set<0>();
+  loop.step(0.01);
+  const Quat axis = frame_along(Vec3(0.3, 1, 0.2));
+  const auto wrong = loop.add(Hinge::Item{anchor_at(rigid, rigid.handle(0), Vec3(0.5, 0, 0), axis),
+                                          world_anchor({0.5, 0.1, 0}, axis)});
+  const Vec3 place = rigid.pose(0).position, velocity = rigid.velocity(rigid.handle(0));
+  bool is_well = velocity.norm() > 0.01;
+  for (int n = 0; n < 3; ++n) {
+    const StepReport report = loop.step(0.01);
+    is_well = is_well && report.status == Status::infeasible && report.quarantined == 0;
+    is_well = is_well && (rigid.pose(0).position - place).norm() == 0 &&
+              (rigid.velocity(rigid.handle(0)) - velocity).norm() == 0;
+  }
+  loop.remove(wrong);
+  is_well = is_well && loop.step(0.01).status <= Status::stalled;
+  return is_well && (rigid.pose(0).position - place).norm() > 0;
 }
 /// `seconds` of a loop at h.
 template <class Loop>

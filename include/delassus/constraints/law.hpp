@@ -35,12 +35,17 @@ concept Projects = requires(const L law, const typename L::Item item, Local<L::r
   { law.project(item, local, memory) } -> std::same_as<void>;
 };
 
-/// tangent(item, local) is `project` for a W that is diagonal, friction rows alike, and without memory: it replaces
-/// local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element of the generalised
-/// derivative will do where there are several. An island with a law that has none is swept.
+/// tangent(item, local) is `project` for a W that is diagonal, friction rows alike, and without memory: it
+/// replaces local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element
+/// of the generalised derivative will do where there are several. An island with a law that has none is
+/// swept. A law whose cap on the impulse is in its memory has tangent(item, local, memory).
 template <class L>
 concept Differentiable = requires(const L law, const typename L::Item item, Local<L::rows>& local) {
   { law.tangent(item, local) } -> std::same_as<Mat<L::rows, L::rows>>;
+}
+|| requires(const L law, const typename L::Item item, Local<L::rows>& local,
+            const typename L::template Memory<double>& memory) {
+  { law.tangent(item, local, memory) } -> std::same_as<Mat<L::rows, L::rows>>;
 };
 
 /// The same of a law that contacts wrap, which gets its parameters in place of the item.

@@ -11,7 +11,8 @@ namespace delassus {
 /// the method, joint drift, the mass ratio that sweeps can take) falls as it would with smaller steps, at one
 /// detection. Contacts go with their bodies, with the normals of the start. Loads act over the whole step,
 /// kinematic bodies arrive at its end; `impulse` and `contacts` have the sum of the parts, the report the
-/// worst status, residual and sweeps of them and the last one's joint violation. Listeners hear a stage once a part. Takes every integrator; no activity.
+/// worst status, residual, sweeps and joint violation of them. Listeners hear a stage once a part. Takes
+/// every integrator; no activity.
 struct Substeps {
   using plays = role::Scheme;
   static constexpr bool takes_whole_steps = true;

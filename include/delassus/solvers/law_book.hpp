@@ -109,7 +109,10 @@ class LawBook<Constraints<Laws...>, T> {
     requires Differentiable<std::tuple_element_t<p, std::tuple<Laws...>>>
   Mat<R, R, N> tangent(Index i, Local<R, N>& c) const {
     const auto& pool = constraints_->template pool<p>();
-    return pool.law.tangent(pool.item(i), c);
+    if constexpr (requires { pool.law.tangent(pool.item(i), c); })
+      return pool.law.tangent(pool.item(i), c);
+    else
+      return pool.law.tangent(pool.item(i), c, std::get<p>(memory_)[i]);
   }
 
   /// The same with the slip of friction rows given, where the law has a convex form.
@@ -120,9 +123,20 @@ class LawBook<Constraints<Laws...>, T> {
     if constexpr (requires { pool.law.convex_tangent(pool.item(i), c, slip); })
       return pool.law.convex_tangent(pool.item(i), c, slip);
     else
-      return pool.law.tangent(pool.item(i), c);
+      return tangent<p>(i, c);
   }
 
+  /// Whether the law of pool p has a cone or a cap of its own.
+  template <int p>
+  static consteval bool clamps() {
+    using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
+    using Memory = typename std::tuple_element_t<p, Memories>::value_type;
+    return requires(const Law& law, const typename Law::Item& item, Vec<Law::rows, T>& x,
+                    const Memory& memory) {
+      law.clamp(item, x, memory);
+    }
+    || requires(const Law& law, const typename Law::Item& item, Vec<Law::rows, T>& x) { law.clamp(item, x); };
+  }
   template <int p, int R>
   void clamp(Index i, Vec<R, T>& lambda) const {
     const auto& pool = constraints_->template pool<p>();

@@ -18,6 +18,7 @@ namespace delassus {
 struct Turn {
   static constexpr bool winds = true;  // known up to whole turns
   static constexpr const char* force_unit = "N·m";
+  static constexpr double limit_margin = 1;  ///< rad: 60 rad/s at 60 steps a second
 
   static double value(const JointFrames& f) {
     return std::atan2(f.a(1).dot(f.b(0)) - f.a(0).dot(f.b(1)), f.a(0).dot(f.b(0)) + f.a(1).dot(f.b(1)));
@@ -35,6 +36,7 @@ struct Turn {
 struct Slide {
   static constexpr bool winds = false;
   static constexpr const char* force_unit = "N";
+  static constexpr double limit_margin = 0.05;  ///< m
 
   static double value(const JointFrames& f) { return f.a(2).dot(f.xb - f.xa); }
   static void write(auto& joint, int k, double factor) { joint.along(k, factor * joint.a(2)); }

@@ -17,9 +17,10 @@ namespace delassus {
 /// axis come to it within the step and no further; e = 0 takes the speed away, e > 0 gives the share e of it
 /// back.
 ///
-/// A bound has a row only while it is nearer than `margin` plus twice the way of the last step: one that is
-/// far costs nothing and does not weigh in the residual. Something that is hit and goes further than that in
-/// its first step passes the stop by that step's way, and is pushed back as from an overlap.
+/// A bound has a row only while it is nearer than `margin` (1 rad, 0.05 m) plus twice the way of the last
+/// step: one that is far costs nothing and does not weigh in the residual. Something that is hit and goes
+/// further than that in its first step passes the stop by that step's way, and is pushed back as from an
+/// overlap.
 template <class Coordinate>
 struct Limit : OnAxis<Coordinate> {
   static constexpr int rows = 2;
@@ -30,7 +31,7 @@ struct Limit : OnAxis<Coordinate> {
     double lower = -std::numeric_limits<double>::infinity();  ///< rad or m
     double upper = std::numeric_limits<double>::infinity();
     double restitution = 0;  ///< e in [0, 1]
-    double margin = 0.05;    ///< rad or m
+    double margin = Coordinate::limit_margin;  ///< rad or m
     double position = 0;     ///< q at the start of the last step
     double way = 0;          ///< what the last step added to it
   };
@@ -69,6 +70,17 @@ struct Limit : OnAxis<Coordinate> {
       c.lambda[0] = -b[0] / c.W(0, 0);
     else if (b[1] > T(0) && c.W(1, 1) > T(0))
       c.lambda[1] = -b[1] / c.W(1, 1);
+  }
+  /// The rows of a diagonal W are apart: each stops where it would let its bound be passed.
+  template <class T>
+  Mat<2, 2, T> tangent(const Item& item, Local<2, T>& c) const {
+    const Vec<2, T> free = c.lambda - c.d.cwiseQuotient(c.W.diagonal());
+    c.lambda = free;
+    clamp(item, c.lambda);
+    Mat<2, 2, T> slope = Mat<2, 2, T>::Zero();
+    for (int k = 0; k < 2; ++k)
+      if (c.lambda[k] == free[k]) slope(k, k) = 1 / c.W(k, k);
+    return slope;
   }
   template <class T>
   Vec<2, T> natural_map(const Item& item, const Vec<2, T>& lambda, const Vec<2, T>& u, T scale) const {

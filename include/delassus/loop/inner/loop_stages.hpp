@@ -87,7 +87,7 @@ void AnimationLoop<Policies...>::linearize() {
     if constexpr (Work::passes_impacts_on)
       pass_on_impacts(world(), laws(), work_.rows, work_.impacts, work_.contacts.results.size(), h_);
     report_.rows = work_.rows.row_count();
-    report_.max_joint_violation = worst_equality(laws(), work_.rows);
+    report_.max_joint_violation = std::max(report_.max_joint_violation, worst_equality(laws(), work_.rows));
   }
   tell<stage::Linearize>();
 }
@@ -194,7 +194,7 @@ void AnimationLoop<Policies...>::solve_whole_step() {
     if constexpr (has_constraints) {
       work_.reports.assign(1, work_.whole_step.solve(world(), laws(), work_.rows, part<role::Integrator>(), h_));
       report_.status = worse(report_.status, work_.reports[0].status);
-      report_.residual = work_.reports[0].measure.residual;
+      report_.residual = std::max(report_.residual, work_.reports[0].measure.residual);
       report_.islands = 1;
       keep_impulses(laws(), work_.rows, work_.contacts);
       inner::note_broken(laws(), h_);

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/loop/stages/equalities.hpp>
+#include <delassus/loop/stages/leave_step.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -38,7 +39,12 @@ class RattleStep<World<Sets...>, Laws, Rows> {
     begin(world, rows, integrator, h);
     find_places(world, laws, rows, integrator, h, report);
     find_velocities(world, rows, integrator, h);
-    finish(world, rows, report);
+    for_each_index<Rows::pool_count>([&](auto p) {
+      auto& lambda = rows.template pool<p>().lambda;
+      for (std::size_t i = 0; i < lambda.size(); ++i)
+        lambda[i] = std::get<p>(first_.pools)[i] + std::get<p>(second_.pools)[i];
+    });
+    inner::keep_or_leave(world, laws, rows, integrator, equalities_, paths_, h * speed_, report);
     return report;
   }
 
@@ -171,29 +177,6 @@ class RattleStep<World<Sets...>, Laws, Rows> {
           });
   }
 
-  /// A step whose joints could not be closed leaves every body where it was.
-  void finish(World& world, Rows& rows, SolveReport& report) {
-    bool is_lost = !std::isfinite(report.measure.residual) ||
-                   (report.status == Status::max_iterations && report.measure.residual > 1e-3);
-    world.each([&](const auto& set, auto) {
-      for (const Index b : set.active())
-        is_lost = is_lost || (set.moves(b) && !is_finite(set.v_next[b]) && Rows::pool_count > 0);
-    });
-    if (is_lost) report.status = Status::quarantined;
-    world.each([&](auto& set, auto s) {
-      for (const Index b : set.active()) {
-        if (is_lost && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
-        if (!set.moves(b) || !is_finite(set.v_next[b])) std::get<s>(paths_).back(set.state(), b);
-      }
-    });
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = rows.template pool<p>().lambda;
-      for (std::size_t i = 0; i < lambda.size(); ++i) {
-        lambda[i] = std::get<p>(first_.pools)[i] + std::get<p>(second_.pools)[i];
-        if (is_lost) lambda[i].setZero();
-      }
-    });
-  }
   static auto next_of(World& world) {
     return [&world](auto s) -> auto& { return world.template set<s>().v_next; };
   }

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/loop/stages/equalities.hpp>
+#include <delassus/loop/stages/leave_step.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -57,7 +58,9 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
       }
     });
     project(world, laws, rows, integrator, h, report);
-    finish(world, rows, report);
+    for_each_index<Rows::pool_count>(
+        [&](auto p) { rows.template pool<p>().lambda = std::get<p>(lambda_.pools); });
+    inner::keep_or_leave(world, laws, rows, integrator, equalities_, paths_, h * speed_, report);
     return report;
   }
 
@@ -214,28 +217,6 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
       const auto& blocks = std::get<s>(rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         if (set.moves(blocks.block[e])) set.displace(blocks.block[e], blocks.G[e] * change);
-    });
-  }
-
-  /// A step whose joints could not be closed leaves every body where it was.
-  void finish(World& world, Rows& rows, SolveReport& report) {
-    bool is_lost = report.status == Status::max_iterations && !(report.measure.residual <= 1e-3);
-    world.each([&](const auto& set, auto) {
-      for (const Index b : set.active())
-        is_lost = is_lost || (Rows::pool_count > 0 && set.moves(b) && !is_finite(set.v_next[b]));
-    });
-    if (is_lost) report.status = Status::quarantined;
-    world.each([&](auto& set, auto s) {
-      for (const Index b : set.active()) {
-        if (is_lost && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
-        if (!set.moves(b) || !is_finite(set.v_next[b])) std::get<s>(paths_).back(set.state(), b);
-      }
-    });
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = rows.template pool<p>().lambda;
-      lambda = std::get<p>(lambda_.pools);
-      if (is_lost)
-        for (auto& x : lambda) x.setZero();
     });
   }
 

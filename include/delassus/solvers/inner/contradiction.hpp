@@ -10,8 +10,8 @@
 
 namespace delassus::inner {
 
-/// Impulses z that move nothing and yet would do work against what the rows ask: z free on an equality, ≥ 0
-/// on a lower row, ≤ 0 on an upper one, 0 where friction or a bound holds, and
+/// Impulses z that move nothing and yet would do work against what the rows ask: z free on an equality and in
+/// a motor without a cap, ≥ 0 on a lower row, ≤ 0 on an upper one, 0 where friction or a bound holds, and
 ///
 ///   W z = 0,   dᵀz < 0.
 ///
@@ -43,7 +43,7 @@ class Contradiction {
     problem_.each([&](auto p, Index i) {
       auto z = problem_.rows().template pool<p>().lambda[i];
       z -= std::get<p>(before.pools)[i];
-      clear_bounded<p>(z);
+      clear_bounded<p>(i, z);
       problem_.template assign<p>(i, z);
     });
     if (!scale_to_free()) return false;
@@ -61,13 +61,16 @@ class Contradiction {
   }
 
  private:
+  template <int p>
+  static constexpr auto kinds = Problem::BookType::template kinds<p>();
+
   template <int p, class Z>
-  static void clear_bounded(Z& z) {
-    constexpr auto kinds = Problem::BookType::template kinds<p>();
-    for (std::size_t k = 0; k < kinds.size(); ++k) z[Index(k)] = allowed(kinds[k], z[Index(k)]);
+  void clear_bounded(Index i, Z& z) const {
+    for (std::size_t k = 0; k < kinds<p>.size(); ++k) z[Index(k)] = allowed<p>(i, k, z[Index(k)]);
   }
-  static T allowed(RowKind kind, T z) {
-    switch (kind) {
+  template <int p>
+  T allowed(Index i, std::size_t row, T z) const {
+    switch (kinds<p>[row]) {
       case RowKind::equality:
         return z;
       case RowKind::lower:
@@ -77,7 +80,19 @@ class Contradiction {
       case RowKind::friction:
         break;
     }
-    return 0;
+    return has_no_cap<p>(i) ? z : T(0);
+  }
+  /// A row alone whose law leaves any impulse as it is.
+  template <int p>
+  bool has_no_cap(Index i) const {
+    if constexpr (kinds<p>.size() == 1 && kinds<p>[0] == RowKind::friction &&
+                  requires { requires Problem::BookType::template clamps<p>(); }) {
+      Vec<1, T> huge(std::sqrt(std::numeric_limits<T>::max()));
+      problem_.book().template clamp<p>(i, huge);
+      return huge[0] == std::sqrt(std::numeric_limits<T>::max());
+    } else {
+      return false;
+    }
   }
 
   /// z ← z |d|/|z|, both in energy: (d + W z) − d loses what is smaller than the rounding of d. False for z = 0.
@@ -120,16 +135,15 @@ class Contradiction {
   /// Gauss-Seidel on min ½ zᵀ W z, row by row.
   void sweep() {
     problem_.each([&](auto p, Index i) {
-      constexpr auto kinds = Problem::BookType::template kinds<p>();
       const auto c = problem_.template local<p>(i);
       auto u = moved_by<p>(i, c);
       auto z = c.lambda;
-      for (std::size_t row = 0; row < kinds.size(); ++row) {
+      for (std::size_t row = 0; row < kinds<p>.size(); ++row) {
         const Index k = Index(row);
-        if (kinds[row] == RowKind::friction || !(c.W(k, k) > T(0))) continue;
-        const T next = allowed(kinds[row], z[k] - u[k] / c.W(k, k)), change = next - z[k];
+        if (!(c.W(k, k) > T(0))) continue;
+        const T next = allowed<p>(i, row, z[k] - u[k] / c.W(k, k)), change = next - z[k];
         z[k] = next;
-        for (Index j = 0; j < Index(kinds.size()); ++j) u[j] += c.W(j, k) * change;
+        for (Index j = 0; j < Index(kinds<p>.size()); ++j) u[j] += c.W(j, k) * change;
       }
       problem_.template assign<p>(i, z);
     });
