@@ -53,6 +53,31 @@ TEST_CASE("the natural map is zero for a contact that is open, that sticks, and 
   }
 }
 
+// Both are sums of squares of at most five roundings each of numbers below |s λ| + (1 + μ) |u|.
+TEST_CASE("the squares of the natural map at two scales are those of the map") {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> draw(-2, 2);
+  int open = 0, sticking = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const double friction = std::abs(draw(random)), scale = std::exp(3 * draw(random));
+    Vec3 lambda = Vec3::Zero(), u;
+    for (int k = 0; k < 3; ++k) u[k] = draw(random);
+    if (n % 5 != 0)
+      for (int k = 0; k < 3; ++k) lambda[k] = draw(random);
+    if (n % 3 == 0) u *= 1e-3;
+    const Vec<2> squares = coulomb_natural_squares<double>(lambda, u, friction, scale);
+    for (int k = 0; k < 2; ++k) {
+      const double s = k == 0 ? scale : 1.0, size = s * lambda.norm() + (1 + friction) * u.norm();
+      const Vec3 map = coulomb_natural_map<double>(lambda, u, friction, s);
+      REQUIRE(std::abs(squares[k] - map.squaredNorm()) <= 1e-14 * size * size);
+      open += map.norm() == 0;
+      sticking += map.norm() > 0 && map.tail<2>() == u.tail<2>();
+    }
+  }
+  REQUIRE(open > 300);
+  REQUIRE(sticking > 300);
+}
+
 TEST_CASE("the natural map sees each way to break the law") {
   const double mu = 0.5;
   REQUIRE(coulomb_natural_map<double>({-1, 0, 0}, {0, 0, 0}, mu, 1.0).norm() > 0.1);      // pulls

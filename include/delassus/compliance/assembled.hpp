@@ -108,6 +108,20 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
     return Vec<Rows::template rows_of<p>, T>(others<p>(rows, i).template cast<T>());
   }
 
+  /// Its first row, of three.
+  template <int p>
+  requires(Rows::template rows_of<p> == 3) T free_normal_velocity(const Rows& rows, Index i)
+  const {
+    double sum = double(rows.template pool<p>().d[i][0]);
+    for_each_index<pools>([&](auto b) {
+      const auto& W = std::get<b>(std::get<p>(blocks_));
+      const Index first = W.start[i];
+      sum += inner::first_of_row(W.start[i + 1] - first, W.block.data() + first, W.column.data() + first,
+                                 rows.template pool<b>().lambda.data());
+    });
+    return T(sum);
+  }
+
   template <int p>
   void commit(const Rows&, Index, const Vec<Rows::template rows_of<p>, T>&) {}
 

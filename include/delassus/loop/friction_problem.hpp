@@ -34,6 +34,10 @@ struct GivenContact : Coulomb {
     return Coulomb::natural_map(item.parameters, lambda, u, scale);
   }
   template <class T>
+  Vec<2, T> natural_squares(const Item& item, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
+    return Coulomb::natural_squares(item.parameters, lambda, u, scale);
+  }
+  template <class T>
   void clamp(const Item& item, Vec<3, T>& lambda) const {
     Coulomb::clamp(item.parameters, lambda);
   }

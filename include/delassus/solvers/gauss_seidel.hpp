@@ -46,7 +46,7 @@ struct BasicGaussSeidel {
       if (report.sweeps >= min_iterations && is_done(report.measure, rows)) break;
       const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
       for (int k = 0; k < batch && !is_over; ++k) {
-        problem.sweep(relaxation);
+        problem.template sweep<!Criterion::needs_measure>(relaxation);
         ++report.sweeps;
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       }

@@ -3,6 +3,8 @@
 
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/local.hpp>
+#include <delassus/solvers/impulses.hpp>
+#include <delassus/solvers/inner/share_of_measure.hpp>
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
@@ -14,18 +16,6 @@
 #include <vector>
 
 namespace delassus {
-
-/// Impulses of all pools, set aside.
-template <class Rows>
-struct Impulses;
-template <class T, int... w, int... R>
-struct Impulses<RowSystem<T, Widths<w...>, R...>> {
-  std::tuple<std::vector<Vec<R, T>>...> pools;
-
-  void resize_like(const RowSystem<T, Widths<w...>, R...>& rows) {
-    for_each_index<sizeof...(R)>([&](auto p) { std::get<p>(pools).resize(rows.template pool<p>().items()); });
-  }
-};
 
 /// Asks a solver to tell of every sweep.
 struct NoObserver {
@@ -81,19 +71,24 @@ class IslandProblem {
     return count;
   }
 
-  /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the others
-  /// stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows.
+  /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the
+  /// others stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows. Sets the last change if asked: its roots
+  /// are an eighth of a sweep.
+  template <bool tells_change = false>
   double sweep(double relaxation = 1) {
-    return visit_all(relaxation, [](auto, Index, const auto&, const auto&, T) {});
+    return double(visit_all<tells_change>(relaxation, [](auto, Index, const auto&, const auto&) {
+                    return T(0);
+                  }).energy);
   }
   /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
+  template <bool tells_change = false>
   double sweep(double relaxation, const Impulses<Rows>& x, double& curvature) {
-    T sum = 0;
-    const double energy = visit_all(relaxation, [&](auto p, Index i, const auto& change, const auto& z, T weight) {
-      sum -= weight * change.dot(z - std::get<p>(x.pools)[i]);
-    });
-    curvature = double(sum);
-    return energy;
+    const Moved moved =
+        visit_all<tells_change>(relaxation, [&](auto p, Index i, const auto& change, const auto& z) {
+          return change.dot(z - std::get<p>(x.pools)[i]);
+        });
+    curvature = -double(moved.along);
+    return double(moved.energy);
   }
 
   /// One step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint in order: less than an
@@ -110,7 +105,7 @@ class IslandProblem {
       const Vec<R, T> change = next - lambda;
       lambda = next;
       W_.template commit<p>(rows_, i, change);
-      const T weight = c.W.trace() / T(R);
+      const T weight = inner::weight_of(c.W);
       energy += weight * change.squaredNorm();
       sum -= weight * change.dot(next - std::get<p>(x.pools)[i]);
     });
@@ -121,7 +116,9 @@ class IslandProblem {
   Measure measure() {
     MeasureSums sums;
     for_each_index<pools>([&](auto p) {
-      for (const Index i : islands_.items(p, island_)) add<p>(i, local<p>(i), sums);
+      MeasureSums here = sums;
+      for (const Index i : islands_.items(p, island_)) add<p>(i, local<p>(i), here);
+      sums = here;
     });
     Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
@@ -212,19 +209,22 @@ class IslandProblem {
   /// What constraint i adds to the measure when its velocity and impulse are those of `c`.
   template <int p>
   void add(Index i, const Local<Rows::template rows_of<p>, T>& c, MeasureSums& sums) {
-    const T weight = c.W.trace() / T(Rows::template rows_of<p>);
-    const double square = double(book_.template natural_map<p>(i, c, weight).squaredNorm());
-    const double lambda = double(c.lambda.squaredNorm());
-    sums.residual += square;
-    sums.worst = std::max(sums.worst, square);
-    sums.siconos += double(book_.template natural_map<p>(i, c, T(1)).squaredNorm());
-    sums.d += double(rows_.template pool<p>().d[i].squaredNorm());
-    sums.u += double(c.d.squaredNorm());
-    sums.lambda += lambda;
-    sums.reach = std::max(sums.reach, double(weight) * std::sqrt(lambda));
+    inner::add_share<p>(book_, i, c, rows_.template pool<p>().d[i], sums);
   }
 
  private:
+  /// A contact without impulse that goes on opening, of which its normal row tells.
+  template <int p>
+  bool stays_open(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) const {
+    if constexpr (requires {
+                    requires Book::template has_cone<p>();
+                    W_.template free_normal_velocity<p>(rows_, i);
+                  })
+      return is_zero(lambda) && W_.template free_normal_velocity<p>(rows_, i) >= T(0);
+    else
+      return false;
+  }
+
   /// The impulse that meets the law of item i while the others stand still.
   template <int p>
   Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
@@ -238,21 +238,31 @@ class IslandProblem {
     }
   }
 
-  template <class See>
-  double visit_all(double relaxation, See&& see) {
-    T energy = 0, displacement = 0, most = 0;
+  /// Sums over the visits of a sweep: Σ w |Δλ|², Σ w Δλ·see, Σ w |Δλ| and the largest w |Δλ|.
+  struct Moved {
+    T energy = 0, along = 0, displacement = 0, most = 0;
+  };
+
+  template <bool tells_change, class See>
+  Moved visit_all(double relaxation, const See& see) {
+    Moved moved;
     for_each_index<pools>([&](auto p) {
-      for (const Index i : islands_.items(p, island_)) visit<p>(i, T(relaxation), see, energy, displacement, most);
+      Moved here = moved;
+      for (const Index i : islands_.items(p, island_)) visit<p, tells_change>(i, T(relaxation), see, here);
+      moved = here;
     });
-    last_change_ = h_ * double(displacement);
-    worst_change_ = h_ * double(most);
-    return double(energy);
+    if constexpr (tells_change) {
+      last_change_ = h_ * double(moved.displacement);
+      worst_change_ = h_ * double(moved.most);
+    }
+    return moved;
   }
 
-  template <int p, class See>
-  void visit(Index i, T relaxation, See& see, T& energy, T& displacement, T& most) {
+  template <int p, bool tells_change, class See>
+  void visit(Index i, T relaxation, const See& see, Moved& moved) {
     constexpr int R = Rows::template rows_of<p>;
     auto& lambda = rows_.template pool<p>().lambda[i];
+    if (stays_open<p>(i, lambda)) return;
     Vec<R, T> next = answer<p>(i, lambda);
     if (relaxation != T(1)) {
       next = lambda + relaxation * (next - lambda);
@@ -261,12 +271,14 @@ class IslandProblem {
     const Vec<R, T> change = next - lambda;
     lambda = next;
     W_.template commit<p>(rows_, i, change);
-    const T weight = W_.template diagonal<p>(i).trace() / T(R), square = change.squaredNorm();
-    energy += weight * square;
-    see(std::integral_constant<int, p>{}, i, change, next, weight);
-    const T share = weight * std::sqrt(square);
-    displacement += share;
-    most = std::max(most, share);
+    const T weight = inner::weight_of(W_.template diagonal<p>(i)), square = change.squaredNorm();
+    moved.energy += weight * square;
+    moved.along += weight * see(std::integral_constant<int, p>{}, i, change, next);
+    if constexpr (tells_change) {
+      const T share = weight * std::sqrt(square);
+      moved.displacement += share;
+      moved.most = std::max(moved.most, share);
+    }
   }
 
   Book& book_;

@@ -85,6 +85,16 @@ class LawBook<Constraints<Laws...>, T> {
     }
   }
 
+  /// |natural_map|² at `scale` and at 1, where the law knows both at once.
+  template <int p, int R, class Law = std::tuple_element_t<p, std::tuple<Laws...>>>
+  requires requires(const Law& law, const typename Law::Item& item, const Vec<R, T>& x, T scale) {
+    law.natural_squares(item, x, x, scale);
+  }
+  Vec<2, T> natural_squares(Index i, const Local<R, T>& c, T scale) const {
+    const auto& pool = constraints_->template pool<p>();
+    return pool.law.natural_squares(pool.item(i), c.lambda, c.d, scale);
+  }
+
   template <int p>
   static constexpr auto kinds() {
     return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();

@@ -18,11 +18,13 @@ struct Measure {
   double siconos = 0;
   double worst = 0;
   double floor = 0;
-  double last_change = 0;   ///< Σ|h w_i Δλ_i| of the last sweep, m: the change expressed as displacement
+  /// Σ|h w_i Δλ_i| of the last sweep, m: the change expressed as displacement. Infinite where the criterion
+  /// does not ask for it.
+  double last_change = 0;
   double worst_change = 0;  ///< its largest share of one constraint
 };
 
-/// Sums that become a Measure.
+/// Sums that become a Measure: squares all of them, worst and reach the largest ones.
 struct MeasureSums {
   double residual = 0, siconos = 0, d = 0, u = 0, lambda = 0, worst = 0, reach = 0;
 
@@ -33,7 +35,7 @@ struct MeasureSums {
     return {.residual = share(std::sqrt(residual), velocity),
             .siconos = share(std::sqrt(siconos), mixed),
             .worst = share(std::sqrt(worst), velocity),
-            .floor = velocity > 0 ? 8 * epsilon * reach / velocity : 0};
+            .floor = velocity > 0 ? 8 * epsilon * std::sqrt(reach) / velocity : 0};
   }
 };
 

@@ -16,6 +16,17 @@ inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const
     r.noalias() += W[e].template cast<Sum>() * x[column[e]].template cast<Sum>();
 }
 
+/// Σ_e (W_e x_{column(e)})₀: the first of those rows alone, at a third of the products.
+template <int Rb, class S, class T>
+inline double first_of_row(Index count, const Mat<3, Rb, S>* W, const Index* column, const Vec<Rb, T>* x) {
+  double sum[Rb] = {};
+  for (Index e = 0; e < count; ++e)
+    for (int k = 0; k < Rb; ++k) sum[k] += double(W[e](0, k)) * double(x[column[e]][k]);
+  double all = 0;
+  for (int k = 0; k < Rb; ++k) all += sum[k];
+  return all;
+}
+
 /// Two numbers that one instruction adds or multiplies. Of arrays and loops compilers made nine scalar
 /// products of a 3 × 3 block.
 typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
@@ -26,6 +37,28 @@ inline Pair pair_at(const double* x) {
   return p;
 }
 
+#ifdef __AVX__
+/// Where four numbers fit in a register, a column of the block at a time: the fourth number of the first two
+/// is the next column's, and the third column is read from the entry before it, so that nothing outside of
+/// the block is touched.
+typedef double Four __attribute__((vector_size(4 * sizeof(double))));
+
+inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* column, const Vec<3>* x) {
+  Four first{}, second{}, third{};
+  for (Index e = 0; e < count; ++e) {
+    const double* w = W[e].data();
+    const double* y = x[column[e]].data();
+    Four a, b, c;
+    std::memcpy(&a, w, sizeof a);
+    std::memcpy(&b, w + 3, sizeof b);
+    std::memcpy(&c, w + 5, sizeof c);
+    first += a * y[0];
+    second += b * y[1];
+    third += c * y[2];
+  }
+  for (int k = 0; k < 3; ++k) r[k] += (first[k] + second[k]) + third[k + 1];
+}
+#else
 /// The same for the 3 × 3 blocks of contacts, two entries at a time as they lie, column by column:
 ///
 ///   (w₀₀ w₁₀) x₀,  (w₂₀ w₀₁) (x₀ x₁),  (w₁₁ w₂₁) x₁,  (w₀₂ w₁₂) x₂,  w₂₂ x₂,
@@ -47,5 +80,6 @@ inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* col
   r[1] += (first[1] + second[0]) + third[1];
   r[2] += (across[0] + second[1]) + last;
 }
+#endif
 
 }  // namespace delassus::inner

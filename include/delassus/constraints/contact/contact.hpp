@@ -111,6 +111,12 @@ struct Contact {
     return local().natural_map(item.parameters, lambda, u, scale);
   }
   template <class T>
+  Vec<2, T> natural_squares(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u,
+                            T scale) const requires requires {
+    local().natural_squares(item.parameters, lambda, u, scale);
+  }
+  { return local().natural_squares(item.parameters, lambda, u, scale); }
+  template <class T>
   void clamp(const Item& item, Vec<rows, T>& lambda) const {
     local().clamp(item.parameters, lambda);
   }

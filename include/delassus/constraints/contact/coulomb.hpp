@@ -19,7 +19,7 @@ namespace delassus {
 ///   stick  λ = −W⁻¹ b lies in the cone;
 ///   slip   u_n = 0 and u_t = −α λ_t with α > 0: after eliminating λ_n,
 ///          (S + α 1) λ_t = −c,  S = W_tt − W_tn W_nt/W_nn,  c = b_t − W_tn b_n/W_nn,
-///          and α is the root of μ λ_n(α) = |λ_t(α)|, by a bracketed Newton iteration that starts at the last α.
+///          and α is the root of μ λ_n(α) = |λ_t(α)|, by a bracketed iteration that starts at the last α.
 struct Coulomb {
   static constexpr int rows = 3;
   static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
@@ -37,7 +37,7 @@ struct Coulomb {
     Mat<2, 2, T> schur;     ///< S
     Vec<2, T> to_normal;    ///< W_nt / W_nn
     Vec<2, T> from_normal;  ///< W_tn / W_nn
-    T normal;               ///< W_nn
+    T over_normal;          ///< 1 / W_nn
     T alpha = 0;
   };
 
@@ -58,15 +58,14 @@ struct Coulomb {
     Mat<3, 3, T> lifted = W;
     for (int k = 0; k < 3; ++k) lifted(k, k) += lift;
     memory.inverse = inverse(lifted);
-    memory.normal = lifted(0, 0);
+    memory.over_normal = T(1) / lifted(0, 0);
     for (int i = 0; i < 2; ++i) {
-      memory.to_normal[i] = lifted(0, i + 1) / memory.normal;
-      memory.from_normal[i] = lifted(i + 1, 0) / memory.normal;
+      memory.to_normal[i] = lifted(0, i + 1) * memory.over_normal;
+      memory.from_normal[i] = lifted(i + 1, 0) * memory.over_normal;
     }
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
-        memory.schur(i, j) =
-            lifted(i + 1, j + 1) - memory.normal * memory.from_normal[i] * memory.to_normal[j];
+        memory.schur(i, j) = lifted(i + 1, j + 1) - lifted(i + 1, 0) * memory.to_normal[j];
     memory.alpha = 0;
   }
 
@@ -127,8 +126,12 @@ struct Coulomb {
     return coulomb_natural_map(lambda, u, T(p.friction), scale);
   }
   template <class T>
+  Vec<2, T> natural_squares(const Parameters& p, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
+    return coulomb_natural_squares(lambda, u, T(p.friction), scale);
+  }
+  template <class T>
   void clamp(const Parameters& p, Vec<3, T>& lambda) const {
-    lambda = project_on_cone(lambda, T(p.friction));
+    if (!inner::is_in_cone(lambda, T(p.friction))) lambda = project_on_cone(lambda, T(p.friction));
   }
 
   /// |λ_t| = μ λ_n > 0 to rounding.
@@ -139,49 +142,54 @@ struct Coulomb {
   }
 
  private:
+  /// With X = adj(S + α) c = a + α c and D = det(S + α) = α² + τ α + δ: λ_t = −X/D, λ_n = (W_nt X/D −
+  /// b_n)/W_nn, so that the root is that of P(α) = √Q(α) with quadratic polynomials,
+  ///
+  ///   P = μ (W_nt X − b_n D)/W_nn,   Q = |X|²,
+  ///
+  /// found by Halley's iteration on P/√Q − 1, which is nearly straight in α. S = s 1 has the root in closed
+  /// form; that starts the first visit, with s = cᵀSc/|c|².
   template <class T>
   static Vec<3, T> slip(const Vec<3, T>& b, T mu, Memory<T>& memory) {
-    if (mu == T(0)) return {-b[0] / memory.normal, T(0), T(0)};
-    const T c1 = b[1] - memory.from_normal[0] * b[0], c2 = b[2] - memory.from_normal[1] * b[0];
-    const T bn = b[0] / memory.normal;
+    const T bn = b[0] * memory.over_normal;
+    if (mu == T(0)) return {-bn, T(0), T(0)};
     const auto& S = memory.schur;
-    constexpr T tolerance = T(16) * std::numeric_limits<T>::epsilon(), near = sizeof(T) == 8 ? T(3e-8) : T(7e-4);
+    const auto& k = memory.to_normal;
+    const T c1 = b[1] - memory.from_normal[0] * b[0], c2 = b[2] - memory.from_normal[1] * b[0];
+    const T a1 = S(1, 1) * c1 - S(0, 1) * c2, a2 = S(0, 0) * c2 - S(1, 0) * c1;
+    const T trace = S(0, 0) + S(1, 1), determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+    const T across = mu * (k[0] * c1 + k[1] * c2);
+    const T p2 = -mu * bn, p1 = p2 * trace + across, p0 = p2 * determinant + mu * (k[0] * a1 + k[1] * a2);
+    const T q2 = c1 * c1 + c2 * c2, q1 = T(2) * (a1 * c1 + a2 * c2), q0 = a1 * a1 + a2 * a2;
+    constexpr T tolerance = T(16) * std::numeric_limits<T>::epsilon(),
+                near = sizeof(T) == 8 ? T(3e-6) : T(2e-3);
     T low = 0, high = std::numeric_limits<T>::infinity(), alpha = memory.alpha;
-    T x1 = 0, x2 = 0, normal = 0, length = 0;
+    if (alpha == T(0)) {
+      const T start = (std::sqrt(q2) - across) / p2 - trace + T(0.5) * q1 / q2;
+      if (start > T(0) && start < high) alpha = start;
+    }
     for (int iteration = 0; iteration < 60; ++iteration) {
-      // λ_t = −(S + α)⁻¹ c and λ_n = −b_n/W_nn − (W_nt/W_nn) λ_t.
-      const T s11 = S(0, 0) + alpha, s22 = S(1, 1) + alpha, over = T(1) / (s11 * s22 - S(0, 1) * S(1, 0));
-      x1 = -(s22 * c1 - S(0, 1) * c2) * over;
-      x2 = -(s11 * c2 - S(1, 0) * c1) * over;
-      normal = -(bn + memory.to_normal[0] * x1 + memory.to_normal[1] * x2);
-      const T square = x1 * x1 + x2 * x2;
-      length = std::sqrt(square);
-      const T gap = mu * normal - length;  // negative: α must grow
-      if (std::abs(gap) <= tolerance * length || high - low <= tolerance * alpha) break;
+      const T P = (p2 * alpha + p1) * alpha + p0, dP = T(2) * p2 * alpha + p1;
+      const T Q = (q2 * alpha + q1) * alpha + q0, dQ = T(2) * q2 * alpha + q1;
+      const T root = std::sqrt(Q), over = T(1) / Q;
+      const T gap = P - root;  // negative: α must grow
+      if (std::abs(gap) <= tolerance * root || high - low <= tolerance * alpha) break;
       (gap < 0 ? low : high) = alpha;
-      // Newton on μ λ_n/|λ_t| − 1, with dλ_t/dα = −(S + α)⁻¹ λ_t.
-      const T y1 = -(s22 * x1 - S(0, 1) * x2) * over, y2 = -(s11 * x2 - S(1, 0) * x1) * over;
-      const T normal_slope = -(memory.to_normal[0] * y1 + memory.to_normal[1] * y2);
-      const T slope = mu * (normal_slope - normal * (x1 * y1 + x2 * y2) / square);
-      T next = slope > 0 ? alpha - gap / slope : T(-1);
-      if (std::abs(gap) <= near * length && next > low && next < high) {
-        // So near the root that what the tangent leaves out, of the order of gap², is rounding: no further evaluation.
-        const T step = next - alpha;
-        alpha = next;
-        x1 += step * y1;
-        x2 += step * y2;
-        normal += step * normal_slope;
-        length = inner::length(x1, x2);
-        break;
-      }
-      if (!(next > low && next < high)) {
-        const T first = T(0.05) * (S(0, 0) + S(1, 1));
-        next = high < std::numeric_limits<T>::infinity() ? T(0.5) * (low + high) : std::max(T(4) * alpha, first);
-      }
-      if (next == alpha) break;
+      const T slope = dP - T(0.5) * P * dQ * over;
+      const T bend = T(2) * p2 - over * (dP * dQ + P * (q2 - T(0.75) * dQ * dQ * over));
+      T next = alpha - gap * slope / (slope * slope - T(0.5) * gap * bend);
+      const bool is_inside = slope > 0 && next > low && next < high;
+      if (!is_inside)
+        next = high < std::numeric_limits<T>::infinity() ? T(0.5) * (low + high)
+                                                         : std::max(T(4) * alpha, T(0.05) * trace);
+      const bool is_last = next == alpha || (is_inside && std::abs(gap) <= near * root);
       alpha = next;
+      if (is_last) break;  // so near the root that what is left, of the order of gap³, is rounding
     }
     memory.alpha = alpha;
+    const T over = T(1) / ((alpha + trace) * alpha + determinant);
+    const T x1 = -(a1 + alpha * c1) * over, x2 = -(a2 + alpha * c2) * over;
+    const T normal = -(bn + k[0] * x1 + k[1] * x2), length = inner::length(x1, x2);
     if (!(normal > 0) || !(length > 0)) return {std::max(normal, T(0)), T(0), T(0)};
     const T scale = mu * normal / length;  // on the cone to the last bit
     return {normal, scale * x1, scale * x2};

@@ -1,42 +1,71 @@
 /// Nesterov's momentum over any sweep, restarted when it turns against the residual.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace delassus::inner {
 
+/// When momentum has gone on for too long. The gradient restart, (y − z)·(z − x) > 0, is enough where rows
+/// are rigid; where they yield, momentum over sweeps can grow between two such restarts and go round for
+/// ever. A sweep that moved four times the energy of the least since the last restart therefore asks for one
+/// too, and makes the rule strict: from then on no sweep may move more than the one before. Strictness costs
+/// rigid rows sweeps, so that it ends with 60 that did not halve the movement.
+class RestartRule {
+ public:
+  /// After a sweep that moved λ by `moved` in energy, its product being `curvature`.
+  bool asks(double curvature, double moved) {
+    const bool has_grown = moved > (is_strict_ ? last_ : 4 * least_since_restart_);
+    const bool is_asked = curvature > 0 || has_grown;
+    ++since_change_;
+    is_futile_ = false;
+    if (moved < 0.25 * least_) {
+      least_ = moved;
+      unhalved_ = 0;
+    } else if (is_strict_ ? ++unhalved_ > 60 : has_grown && curvature <= 0) {
+      is_futile_ = is_strict_ && was_short_;
+      was_short_ = !is_strict_ && since_change_ <= 12;
+      is_strict_ = !is_strict_;
+      least_ = moved;
+      unhalved_ = since_change_ = 0;
+    }
+    last_ = is_asked ? infinity : moved;
+    least_since_restart_ = is_asked ? infinity : std::min(least_since_restart_, moved);
+    return is_asked;
+  }
+  /// That sweep was the last of a strict time that did not halve the movement, and the loose time before it
+  /// ended in growth at once: the mark of going round in circles.
+  bool is_futile() const { return is_futile_; }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  double last_ = infinity, least_since_restart_ = infinity, least_ = infinity;
+  int unhalved_ = 0, since_change_ = 0;
+  bool is_strict_ = false, was_short_ = false, is_futile_ = false;
+};
+
 /// With z = sweep(y), y = P_K(x + (θ₋ − 1)/θ (x − x₋)):
 ///
 ///   x⁺ = z,  θ⁺ = (1 + √(1 + 4 θ²))/2,
 ///
-/// restarted (θ = 1, y = z) when (y − z)·(z − x) > 0 or when the sweep moved more than `slack` times the one
-/// before, in energy. No slack converges where rows are soft, and is slow on rigid ones; a slack of 4 the
-/// other way round. It begins without, and changes over after 60 sweeps none of which halved the movement.
-/// `x` is room for the impulses before; sweep(x, curvature) sets that product and returns how much it moved.
-/// Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the gradient restart.
+/// and where `RestartRule` asks for it y = z once and θ⁺ = θ/2: a restart from θ = 1 would forget how slow
+/// the problem is, and take up to twice the sweeps on rigid rows. Ends where the rule is futile and the error
+/// stands. `x` is room for the impulses before; sweep(x, curvature) sets that product and returns how much it
+/// moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the gradient restart.
 template <class Problem, class Pursuit, class Impulses, class Sweep>
 void momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  double theta = 1, last = infinity, slack = 1, least = infinity;
-  int unhalved = 0;
+  RestartRule rule;
+  double theta = 1;
   problem.save(x);
   for (;;) {
     double curvature = 0;
     const double moved = sweep(x, curvature);  // λ is z now
     if (!pursuit.goes_on(moved)) return;
-    if (moved < 0.25 * least) {
-      least = moved;
-      unhalved = 0;
-    } else if (++unhalved > 60) {
-      slack = 5 - slack;
-      least = moved;
-      unhalved = 0;
-    }
-    if (curvature > 0 || moved > slack * last) {
+    if (rule.asks(curvature, moved)) {
       problem.save(x);
-      theta = 1;
-      last = infinity;
+      theta = std::max(1.0, 0.5 * theta);
+      if (rule.is_futile() && pursuit.stands()) return;
     } else {
       const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
       if (theta > 1)
@@ -44,7 +73,6 @@ void momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
       else
         problem.save(x);
       theta = next;
-      last = moved;
     }
   }
 }

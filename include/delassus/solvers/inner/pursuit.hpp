@@ -68,6 +68,13 @@ class Pursuit {
     return !is_last_ && !stalls();
   }
 
+  /// The best error did not halve within 60 sweeps, or half as many as it took to get there: a stage that has
+  /// another sign of going round in circles need not wait for the end of its patience.
+  bool stands() const {
+    return Criterion::needs_measure &&
+           report_.sweeps - progressed_ > std::max(60, (progressed_ - opened_) / 2);
+  }
+
   /// The tolerance is met, or no sweep is left.
   bool is_over() const { return is_met_ || is_last_ || is_quarantined(); }
   bool is_quarantined() const { return report_.status == Status::quarantined; }
@@ -111,7 +118,9 @@ class Pursuit {
            report_.sweeps - progressed_ > std::max(patience_, (progressed_ - opened_) / 2);
   }
 
-  static constexpr double near = 1.5;  ///< of the tolerance, at which an error foretold is worth a measure
+  /// Of the tolerance, at which an error foretold is worth a measure. A measure mends the ratio, so that an
+  /// error that stays a little above the tolerance is not measured again in every sweep.
+  static constexpr double near = 1.05;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
 
