@@ -15,7 +15,8 @@ namespace delassus {
 /// forces at points, so that light links under a heavy load hold at large steps: see docs/decisions/0010. For
 /// rigid bodies and laws whose rows are equalities.
 ///
-/// Forces are those of the start of the step. All islands are solved as one. The solver, the compliance and
+/// {.max_iterations = 1, .acceptable = ∞} is one linear solve a step, half the time: what a step leaves open the next one
+/// closes, and the status is `max_iterations`. Forces are those of the start of the step. All islands are solved as one. The solver, the compliance and
 /// the stabilisation of the loop are not asked.
 struct NewtonMidpoint {
   using plays = role::Integrator;
@@ -27,11 +28,14 @@ struct NewtonMidpoint {
   static constexpr bool can_move = requires { typename Set::Midpoint; };
   double tolerance = 1e-10;  ///< of what is missing in every equation, in units of the largest velocity
   int max_iterations = 20;   ///< factorizations; reaching it is a status
+  double acceptable = 1e-3;  ///< of the same, when they run out: a step that misses more is not taken; ∞ takes any
 
   void check() const {
     DELASSUS_EXPECT(tolerance >= 0, "NewtonMidpoint: tolerance " + inner::text(tolerance) + " must be >= 0");
     DELASSUS_EXPECT(max_iterations > 0,
                     "NewtonMidpoint: max_iterations " + inner::text(max_iterations) + " must be > 0");
+    DELASSUS_EXPECT(acceptable >= 0,
+                    "NewtonMidpoint: acceptable " + inner::text(acceptable) + " must be >= 0");
   }
   SystemScale scale(double) const { return {.mass = 1}; }
   void impulse(const auto& set, auto& p, double h) const {

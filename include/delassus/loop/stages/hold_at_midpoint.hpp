@@ -50,17 +50,24 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
       begin(world, integrator, h);
       iterate(world, laws, rows, integrator, h, is_damped, report);
       if (report.status != Status::max_iterations) break;
+      if (is_cut_short(integrator, report)) break;
       if (!is_damped)
         for_each_index<Rows::pool_count>([&](auto p) {
           for (auto& x : std::get<p>(lambda_.pools)) x.setZero();
         });
     }
-    finish(world, rows, report);
+    finish(world, rows, integrator, report);
     return report;
   }
 
  private:
   static constexpr int most_undamped = 10;
+
+  /// Ended by its own number of factorizations, near enough to be taken.
+  template <class I>
+  static bool is_cut_short(const I& integrator, const SolveReport& report) {
+    return report.factorizations >= integrator.max_iterations && report.measure.residual <= integrator.acceptable;
+  }
 
   template <class I>
   void iterate(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, bool is_damped,
@@ -239,9 +246,11 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
 
   /// v_next from the means. A solve that is no number, or far from its equations, leaves every body where it
   /// was: what it misses would come back as energy.
-  void finish(World& world, Rows& rows, SolveReport& report) {
-    const bool is_lost = !std::isfinite(report.measure.residual) ||
-                         (report.status == Status::max_iterations && report.measure.residual > 1e-3);
+  template <class I>
+  void finish(World& world, Rows& rows, const I& integrator, SolveReport& report) {
+    const bool is_lost =
+        !std::isfinite(report.measure.residual) ||
+        (report.status == Status::max_iterations && report.measure.residual > integrator.acceptable);
     if (is_lost) report.status = Status::quarantined;
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active()) {
