@@ -3,9 +3,8 @@
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/full_newton.hpp>
 
-#include <algorithm>
-
 #include "catch.hpp"
+#include "energy_watch.hpp"
 #include "rod_scenes.hpp"
 #include "soft_scenes.hpp"
 
@@ -40,18 +39,11 @@ Outcome fly(double theta) {
   set.gravity.setZero();
   add_spinning(set);
   const Vec3 P = momentum(set), L = angular_momentum(set);
-  const double first = kinetic_energy(set) + potential_energy(set);
-  double last = first;
-  Outcome out{0, 0, -first, 0};
-  for (int n = 0; n < 10000; ++n) {
-    loop.step(0.001);
-    REQUIRE(loop.report().status <= Status::stalled);
-    const double now = kinetic_energy(set) + potential_energy(set);
-    out.rise = std::max(out.rise, now - last);
-    last = now;
-  }
+  const double first = total_energy(set);
+  const EnergyWatch seen = watch_energy(loop, set, 10000, 0.001);
+  CHECK(loop.report().status <= Status::stalled);
   return {(momentum(set) - P).norm() / P.norm(), (angular_momentum(set) - L).norm() / L.norm(),
-          out.rise / first, last / first};
+          seen.rise / first, seen.last / first};
 }
 
 }  // namespace
@@ -77,15 +69,8 @@ TEST_CASE("implicit Euler solved to the end takes a shaken rod to rest, and its 
   set.gravity.setZero();
   set.add(bent_rod());
   shake(set, 0.05, 1);
-  const double first = kinetic_energy(set) + potential_energy(set);
-  double last = first, rise = -first;
-  for (int n = 0; n < 200; ++n) {
-    loop.step(0.02);
-    const double now = kinetic_energy(set) + potential_energy(set);
-    rise = std::max(rise, now - last);
-    last = now;
-  }
-  CHECK(rise <= 1e-14 * first);
+  const double first = total_energy(set);
+  CHECK(watch_energy(loop, set, 200, 0.02).rise <= 1e-14 * first);
   CHECK(set.elastic_energy() < 1e-3 * first);
 }
 
