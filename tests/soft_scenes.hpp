@@ -42,6 +42,52 @@ void settle(Set& set, int iterations) {
   }
 }
 
+/// How far A⁻¹ (M d − h² ∂f/∂x d) is from d, ∂f/∂x by differences of forces 1e-5 m apart: of the order of
+/// their square where A = M + h² K and K is the whole derivative.
+template <class Set>
+double error_of_stiffness(Set& set) {
+  const double h2 = 1e-3, step = 1e-5;
+  std::vector<Vec3> direction(set.blocks(), Vec3::Zero());
+  for (Index k = 0; k < set.blocks(); ++k)
+    if (set.moves(k)) direction[k] = Vec3(std::cos(3 * k), std::sin(5 * k), std::cos(7 * k));
+  const auto moved = [&](double s) {
+    for (Index k = 0; k < set.blocks(); ++k) set.displace(k, s * direction[k]);
+    return elastic_forces(set);
+  };
+  const auto up = moved(step), down = moved(-2 * step);
+  moved(step);
+  std::vector<Vec3> y(set.blocks());
+  for (Index k = 0; k < set.blocks(); ++k)
+    y[k] = double(set.mass(k)) * direction[k] - h2 / (2 * step) * (up[k] - down[k]);
+  set.factor({.mass = 1, .stiffness = h2});
+  set.solve(y);
+  double worst = 0;
+  for (Index k = 0; k < set.blocks(); ++k) worst = std::max(worst, (y[k] - direction[k]).norm());
+  return worst;
+}
+
+/// The lowest frequency (rad/s) that v holds a part of, by inverse iteration, v ← K⁻¹ M v, ω² =
+/// v·Mv/(v·MK⁻¹Mv). K is factored.
+template <class Set, class Velocity>
+double lowest_frequency(const Set& set, std::vector<Velocity> v, int iterations) {
+  double omega2 = 0;
+  for (int n = 0; n < iterations; ++n) {
+    auto z = v;
+    for (Index b = 0; b < set.blocks(); ++b) z[b] *= set.moves(b) ? set.mass(b) : 0.0;
+    auto y = z;
+    set.solve(y);
+    double before = 0, after = 0, size = 0;
+    for (Index b = 0; b < set.blocks(); ++b) {
+      before += v[b].dot(z[b]);
+      after += y[b].dot(z[b]);
+      size = std::max(size, y[b].norm());
+    }
+    omega2 = before / after;
+    for (Index b = 0; b < set.blocks(); ++b) v[b] = y[b] / size;
+  }
+  return std::sqrt(omega2);
+}
+
 /// The unit cube in n³ cells, inner points moved by up to `jitter` of a cell.
 inline TetrahedralMesh cube(Index n, double jitter = 0, unsigned seed = 1) {
   TetrahedralMesh mesh = box_mesh({1, 1, 1}, {n, n, n});

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "catch.hpp"
+#include "geometry/closed_surface.hpp"
 
 using namespace delassus;
 
@@ -50,18 +51,10 @@ TEST_CASE("the hexahedra of a box fill it, and its surface closes around it") {
   }
   CHECK(std::abs(sum - 6) < 1e-13);  // 480 roundings of terms of 1/80
   CHECK(std::abs(shares - 6) < 1e-12);
-  // Divergence theorem on the flat sides: Σ a·x/3 of outward areas is the volume.
-  const auto triangles = surface(mesh);
-  CHECK(triangles.size() == 2 * 2 * (4 * 3 + 3 * 5 + 4 * 5));
-  double enclosed = 0;
-  Vec3 closed = Vec3::Zero();
-  for (const auto& [a, b, c] : triangles) {
-    const Vec3 area = (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]) / 2;
-    enclosed += area.dot(mesh.points[a]) / 3;
-    closed += area;
-  }
-  CHECK(std::abs(enclosed - 6) < 1e-13);
-  CHECK(closed.norm() < 1e-13);
+  CHECK(surface(mesh).size() == 2 * 2 * (4 * 3 + 3 * 5 + 4 * 5));
+  const Enclosed enclosed = enclosed_by_surface(mesh);
+  CHECK(std::abs(enclosed.volume - 6) < 1e-13);
+  CHECK(enclosed.area.norm() < 1e-13);
 }
 
 TEST_CASE("a hexahedron that is flat, folded, inside out or names no point is refused by its number") {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "catch.hpp"
+#include "geometry/closed_surface.hpp"
 
 using namespace delassus;
 
@@ -34,19 +35,10 @@ TEST_CASE("the tetrahedra of a box fill it, and its surface closes around it, wi
     double sum = 0;
     for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e) sum += volume(mesh, e);
     CHECK(std::abs(sum - 6) < 1e-13);  // 360 roundings of terms of 1/60
-    // Divergence theorem: Σ a·x/3 of outward areas is the volume; a torn or mirrored mesh has inner faces in
-    // its surface.
-    const auto triangles = surface(mesh);
-    CHECK(triangles.size() == 2 * 2 * (4 * 3 + 3 * 5 + 4 * 5));
-    double enclosed = 0;
-    Vec3 closed = Vec3::Zero();
-    for (const auto& [a, b, c] : triangles) {
-      const Vec3 area = (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]) / 2;
-      enclosed += area.dot(mesh.points[a]) / 3;
-      closed += area;
-    }
-    CHECK(std::abs(enclosed - 6) < 1e-13);
-    CHECK(closed.norm() < 1e-13);
+    CHECK(surface(mesh).size() == 2 * 2 * (4 * 3 + 3 * 5 + 4 * 5));
+    const Enclosed enclosed = enclosed_by_surface(mesh);
+    CHECK(std::abs(enclosed.volume - 6) < 1e-13);
+    CHECK(enclosed.area.norm() < 1e-13);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <delassus/core/status.hpp>
 #include <delassus/rows/body_set.hpp>
 
-#include <algorithm>
 #include <vector>
 
 namespace delassus {
@@ -58,9 +57,7 @@ RestReport find_rest(Set& set, const RestOptions& options = {}) {
                                            pull(trial);
                                            return inner::product(set, trial, step);
                                          });
-    report.move = 0;
-    for (const Index b : set.active())
-      if (set.moves(b)) report.move = std::max(report.move, s * double(inner::largest(step[b])));
+    report.move = s * inner::largest(set, step);
     if (!(report.move >= 0)) {  // no factor, or numbers that are none
       set.restore();
       report.status = Status::quarantined;

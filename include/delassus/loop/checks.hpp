@@ -234,7 +234,7 @@ consteval bool whole_step_fits() {
     if constexpr (are_equal)
       static_assert(can_move,
                     "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles, GeneralizedAlpha "
-                    "particles and soft bodies; take the other sets out of World{...}, or use ImplicitMidpoint");
+                    "particles and soft bodies, FullNewton soft bodies and rods; take the other sets out of World{...}, or use ImplicitMidpoint");
     if constexpr (are_equal && can_move)
       static_assert(is_plain,
                     "delassus: NewtonMidpoint, Rattle and RungeKutta4 make their step at once, without W; take out the "

@@ -3,6 +3,7 @@
 #include <delassus/bodies/elasticity/linear.hpp>
 #include <delassus/bodies/elasticity/st_venant_kirchhoff.hpp>
 #include <delassus/bodies/elasticity/stable_neo_hookean.hpp>
+#include <delassus/bodies/elasticity/with_fibres.hpp>
 
 #include <delassus/math/rotation.hpp>
 
@@ -14,6 +15,9 @@
 using namespace delassus;
 
 namespace {
+
+using Muscle = WithFibres<StableNeoHookean>;
+static_assert(ElasticMaterial<Muscle>);
 
 struct Draw {
   std::mt19937 random;
@@ -44,7 +48,7 @@ Mat3 diagonal(double x, double y, double z) { return columns<double>({x, 0, 0}, 
 }  // namespace
 
 TEMPLATE_TEST_CASE("the stress is the energy's derivative, at every F but where R jumps", "", Linear,
-                   Corotational, StableNeoHookean, StVenantKirchhoff) {
+                   Corotational, StableNeoHookean, StVenantKirchhoff, Muscle) {
   const TestType material{.young = 1, .poisson = 0.35};
   Draw draw(3);
   const double h = 1e-5;
@@ -63,7 +67,7 @@ TEMPLATE_TEST_CASE("the stress is the energy's derivative, at every F but where 
 }
 
 TEMPLATE_TEST_CASE("the tangent is the stress's derivative where it is positive", "", Linear, Corotational,
-                   StableNeoHookean, StVenantKirchhoff) {
+                   StableNeoHookean, StVenantKirchhoff, Muscle) {
   const TestType material{.young = 1, .poisson = 0.3};
   Draw draw(5);
   for (int n = 0; n < 40; ++n) {
@@ -81,7 +85,7 @@ TEMPLATE_TEST_CASE("the tangent is the stress's derivative where it is positive"
 }
 
 TEMPLATE_TEST_CASE("the tangent is positive semidefinite at every F, flat and inside out ones too", "",
-                   Corotational, StableNeoHookean, StVenantKirchhoff) {
+                   Corotational, StableNeoHookean, StVenantKirchhoff, Muscle) {
   const TestType material{.young = 1, .poisson = 0.4};
   Draw draw(9);
   bool is_cut = false;
@@ -107,7 +111,7 @@ TEMPLATE_TEST_CASE("the tangent is positive semidefinite at every F, flat and in
   CHECK(is_cut);  // there was something to cut
 }
 
-TEMPLATE_TEST_CASE("no turn strains, 179 degrees included", "", Corotational, StableNeoHookean,
+TEMPLATE_TEST_CASE("no turn strains, 179 degrees included", "", Corotational, StableNeoHookean, Muscle,
                    StVenantKirchhoff) {
   const TestType material{.young = 1, .poisson = 0.3};
   Draw draw(11);
@@ -168,6 +172,28 @@ TEST_CASE(
   CHECK(std::abs(stress(1 / std::sqrt(3.0)) + 0.192450089729875) < 1e-14);
   CHECK(stress(0.5) > stress(1 / std::sqrt(3.0)));
   CHECK(stress(0.65) > stress(1 / std::sqrt(3.0)));
+}
+
+TEST_CASE("fibres add k/2 (l^2 - 1) l where they are pulled, and nothing where they are pressed or across") {
+  const Vec3 along = Vec3(1, 2, -2) / 3;
+  const Muscle muscle{.young = 2, .poisson = 0.3, .direction = along, .fibres = 3};
+  const StableNeoHookean rubber{.young = 2, .poisson = 0.3};
+  for (const double stretch : {0.6, 1.0, 1.5}) {
+    // F stretches the direction of the fibres alone.
+    Mat3 F = Mat3::Identity();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) F(i, j) += (stretch - 1) * along[i] * along[j];
+    const Mat3 more = Mat3(muscle.at(F).stress()) - Mat3(rubber.at(F).stress());
+    const double expected = stretch > 1 ? 3.0 * (stretch * stretch - 1) * stretch : 0;  // k = 6
+    CHECK(std::abs(along.dot(more * along) - expected) < 1e-13);
+    CHECK(Vec3(more * Vec3(Vec3(2, 1, 2) / 3)).norm() < 1e-13);
+    const double energy = stretch > 1 ? 0.75 * (stretch * stretch - 1) * (stretch * stretch - 1) : 0;
+    CHECK(std::abs(muscle.at(F).energy() - rubber.at(F).energy() - energy) < 1e-13);
+  }
+  CHECK_THROWS_WITH(check_material(Muscle{.direction = {1, 1, 0}}, "soft body #0"),
+                    Catch::Contains("direction of its fibres is not a unit vector"));
+  CHECK_THROWS_WITH(check_material(Muscle{.fibres = -1}, "soft body #0"),
+                    Catch::Contains("fibres, -1 times"));
 }
 
 TEST_CASE("a material with impossible numbers is refused") {

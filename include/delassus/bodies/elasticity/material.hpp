@@ -40,6 +40,7 @@ void check_material(const M& material, const std::string& who) {
                   who + ": Young's modulus " + inner::text(material.young) + " must be finite and > 0 Pa");
   DELASSUS_EXPECT(material.poisson > -1 && material.poisson < 0.5,
                   who + ": Poisson's ratio " + inner::text(material.poisson) + " must lie in (-1, 0.5)");
+  if constexpr (requires { material.check(who); }) material.check(who);  // what is its own
 }
 
 }  // namespace delassus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/elasticity/material.hpp>
+#include <delassus/bodies/inner/held_nodes.hpp>
 #include <delassus/bodies/inner/node_matrix.hpp>
 #include <delassus/math/lanes.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -123,35 +123,11 @@ class ElasticBody {
     for (std::size_t k = 0; k < blocks_.size(); ++k) p[blocks_[k]] += product_[k];
   }
 
-  /// x ← A⁻¹ x on the body's blocks; held nodes become zero. A body on which nothing acts is passed over.
-  void solve(std::vector<Velocity>& x) const {
-    bool is_still = true;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      if (is_held_[k]) x[blocks_[k]].setZero();
-      work_[k] = x[blocks_[k]];
-      is_still = is_still && is_zero(work_[k]);
-    }
-    if (is_still) return;
-    if (is_factored_)
-      matrix_.solve(work_);
-    else
-      for (Velocity& w : work_) w.setConstant(std::numeric_limits<T>::quiet_NaN());
-    for (std::size_t k = 0; k < blocks_.size(); ++k)
-      if (!is_held_[k]) x[blocks_[k]] = work_[k];
-  }
-
-  /// The rows and columns of A⁻¹ of some nodes, 3n × 3n by columns; those of held nodes are zero.
+  /// x ← A⁻¹ x on the blocks of the body.
+  void solve(std::vector<Velocity>& x) const { held_nodes().solve(matrix_, blocks(), work_, x); }
+  /// The rows and columns of A⁻¹ of some nodes, 3n × 3n by columns.
   void compliance(std::span<const Index> nodes, std::span<T> C) const {
-    const std::size_t rows = 3 * nodes.size();
-    if (!is_factored_) {
-      std::fill(C.begin(), C.end(), std::numeric_limits<T>::quiet_NaN());
-      return;
-    }
-    matrix_.compliance(nodes, C);
-    for (std::size_t i = 0; i < rows; ++i) {
-      if (!is_held_[nodes[i / 3]]) continue;
-      for (std::size_t j = 0; j < rows; ++j) C[i + rows * j] = C[j + rows * i] = T(0);
-    }
+    held_nodes().template compliance<3>(matrix_, nodes, C);
   }
 
   void memory(auto& archive) {
@@ -160,6 +136,7 @@ class ElasticBody {
   }
 
  private:
+  HeldNodes held_nodes() const { return {is_held_, is_factored_}; }
   void prepare() {
     const std::size_t n = blocks_.size();
     elements_.clear();

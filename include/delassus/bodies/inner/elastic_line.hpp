@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/bodies/inner/beam.hpp>
+#include <delassus/bodies/inner/held_nodes.hpp>
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/bodies/rod.hpp>
 #include <delassus/linear/block_chain.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -108,35 +108,11 @@ class ElasticLine {
     }
   }
 
-  /// x ← A⁻¹ x on the rod's blocks; held nodes become zero. A rod on which nothing acts is passed over.
-  void solve(std::vector<Velocity>& x) const {
-    bool is_still = true;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      if (is_held_[k]) x[blocks_[k]].setZero();
-      work_[k] = x[blocks_[k]];
-      is_still = is_still && is_zero(work_[k]);
-    }
-    if (is_still) return;
-    if (is_factored_)
-      A_.solve(work_);
-    else
-      for (Velocity& w : work_) w.setConstant(std::numeric_limits<T>::quiet_NaN());
-    for (std::size_t k = 0; k < blocks_.size(); ++k)
-      if (!is_held_[k]) x[blocks_[k]] = work_[k];
-  }
-
-  /// The rows and columns of A⁻¹ of some nodes, 6n × 6n by columns; those of held nodes are zero.
+  /// x ← A⁻¹ x on the blocks of the body.
+  void solve(std::vector<Velocity>& x) const { held().solve(A_, blocks(), work_, x); }
+  /// The rows and columns of A⁻¹ of some nodes, 6n × 6n by columns.
   void compliance(std::span<const Index> nodes, std::span<T> C) const {
-    if (!is_factored_) {
-      std::fill(C.begin(), C.end(), std::numeric_limits<T>::quiet_NaN());
-      return;
-    }
-    A_.compliance(nodes, C);
-    const std::size_t rows = 6 * nodes.size();
-    for (std::size_t i = 0; i < rows; ++i) {
-      if (!is_held_[nodes[i / 6]]) continue;
-      for (std::size_t j = 0; j < rows; ++j) C[i + rows * j] = C[j + rows * i] = T(0);
-    }
+    held().template compliance<6>(A_, nodes, C);
   }
 
   void memory(auto& archive) {
@@ -145,6 +121,7 @@ class ElasticLine {
   }
 
  private:
+  HeldNodes held() const { return {is_held_, is_factored_}; }
   void prepare() {
     const std::size_t n = blocks_.size();
     force_.assign(n, Velocity::Zero());

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/elasticity/material.hpp>
-#include <delassus/geometry/hexahedral_mesh.hpp>
-#include <delassus/math/pivoted_lu.hpp>
+#include <delassus/bodies/inner/hexahedron_modes.hpp>
 #include <delassus/math/singular_values.hpp>
 
 #include <algorithm>
@@ -11,12 +10,6 @@
 #include <cmath>
 
 namespace delassus::inner {
-
-/// The four shapes of a hexahedron that no affine map makes: ηζ, ζξ, ξη, ξηζ at the corners.
-inline double hourglass(int k, int corner) {
-  const auto& s = hexahedron_corner[corner];
-  return k == 3 ? s[0] * s[1] * s[2] : s[(k + 1) % 3] * s[(k + 2) % 3];
-}
 
 /// A hexahedron of trilinear shape functions N_a with three incompatible modes 1 − ξ_i², held by the mean
 /// gradients g_a = ∫∇N_a/V. The nodes' places are an affine map and four vectors q_k, the parts of the shapes
@@ -37,12 +30,8 @@ class IncompatibleHexahedron {
   using Corners = EightPoints;
 
   IncompatibleHexahedron() = default;
-  IncompatibleHexahedron(const HexahedralMesh& mesh, Index e, const Lame& lame) {
-    const Corners X = corners(mesh, e);
-    const Samples samples = sample(X);
-    make_gamma(X);
-    make_modes(samples, lame);
-  }
+  IncompatibleHexahedron(const HexahedralMesh& mesh, Index e, const Lame& lame)
+      : shape_(corners(mesh, e), lame) {}
 
   /// N_k; `local` is ξ.
   static double weight(const Vec3& local, int k) { return trilinear(k, local); }
@@ -71,7 +60,7 @@ class IncompatibleHexahedron {
   Mat3 deformation(const Corners& x) const {
     Mat3 F = Mat3::Zero();
     for (int a = 1; a < nodes; ++a) {
-      const Vec3 edge = x[a] - x[0], &b = gradient_[a];
+      const Vec3 edge = x[a] - x[0], &b = shape_.gradient[a];
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
     }
@@ -85,7 +74,7 @@ class IncompatibleHexahedron {
     const Turning turning = turn<M>(F, x);
     double sum = 0;
     for (int k = 0; k < 4; ++k) sum += turning.q[k].dot(turning.s[k]);
-    return volume_ * material.at(F).energy() + 0.5 * sum;
+    return shape_.volume * material.at(F).energy() + 0.5 * sum;
   }
 
   template <class Point>
@@ -99,7 +88,7 @@ class IncompatibleHexahedron {
   }
 
  private:
-  static constexpr int modes = 12;  ///< three a shape
+  static constexpr int modes = HexahedronModes::modes;
 
   /// What the modes are in the axes of R: q_k and s_k = Σ_l S_kl q_l (N). With the turn of R,
   ///
@@ -111,123 +100,6 @@ class IncompatibleHexahedron {
     Mat3 R, softened;
     std::array<Vec3, 4> q, s;
   };
-
-  /// The Jacobians of Gauss's points.
-  struct Samples {
-    std::array<Mat3, 8> inverse;  ///< ∂ξ/∂X
-    std::array<double, 8> volume;
-    Mat3 middle;  ///< det J ∂ξ/∂X at ξ = 0
-  };
-
-  Samples sample(const Corners& X) {
-    Samples at;
-    volume_ = 0;
-    for (Vec3& g : gradient_) g.setZero();
-    for (int g = 0; g < 8; ++g) {
-      const Vec3 xi = gauss_point(g);
-      const Mat3 J = jacobian(X, xi);
-      at.inverse[g] = inverse(J);
-      at.volume[g] = determinant(J);
-      volume_ += at.volume[g];
-      for (int a = 0; a < nodes; ++a)
-        gradient_[a] += at.volume[g] * (at.inverse[g].transpose() * trilinear_slope(a, xi));
-    }
-    for (Vec3& g : gradient_) g /= volume_;
-    const Mat3 J = jacobian(X, Vec3::Zero());
-    at.middle = determinant(J) * inverse(J);
-    return at;
-  }
-
-  /// γ_k · (1, X, Y, Z) = 0 and γ_k · h_l = δ_kl, h the shapes: G⁻¹ of the vectors h_k − Σ_i (h_k · X_i) g_i,
-  /// G their products with h.
-  void make_gamma(const Corners& X) {
-    Mat<4, 8> gamma;
-    Mat<4, 4> G = Mat<4, 4>::Zero();
-    for (int k = 0; k < 4; ++k) {
-      Vec3 moment = Vec3::Zero();
-      for (int a = 0; a < nodes; ++a) moment += hourglass(k, a) * X[a];
-      for (int a = 0; a < nodes; ++a) gamma(k, a) = hourglass(k, a) - moment.dot(gradient_[a]);
-    }
-    for (int k = 0; k < 4; ++k)
-      for (int l = 0; l < 4; ++l)
-        for (int a = 0; a < nodes; ++a) G(k, l) += gamma(k, a) * hourglass(l, a);
-    PivotedLu<4, double> lu;
-    lu.factor(G);
-    lu.template solve<8>(gamma);
-    for (int k = 0; k < 4; ++k)
-      for (int a = 0; a < nodes; ++a) gamma_[k][a] = gamma(k, a);
-  }
-
-  /// S: of Hooke's law on the gradients b of the four shapes less their mean and of the three incompatible
-  /// modes,
-  ///
-  ///   K_ij = ∫ μ ((b_i·b_j) 1 + b_j b_iᵀ) + λ Σ_m t_im t_jmᵀ,   t_im = ∫ φ_m b_i,
-  ///
-  /// φ an orthonormal base of the functions linear in ξ, the last nine rows eliminated.
-  void make_modes(const Samples& at, const Lame& lame) {
-    constexpr int shapes = 7, n = 3 * shapes;
-    Vec3 b[shapes][8];
-    make_gradients(at, b);
-    double phi[4][8];
-    make_linear_functions(at, phi);
-    double K[n][n];
-    for (int i = 0; i < shapes; ++i)
-      for (int j = 0; j < shapes; ++j) {
-        Mat3 block = Mat3::Zero();
-        for (int g = 0; g < 8; ++g) {
-          const double mu = lame.mu * at.volume[g], along = mu * b[i][g].dot(b[j][g]);
-          for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) block(r, c) += mu * b[j][g][r] * b[i][g][c] + (r == c ? along : 0);
-        }
-        for (int m = 0; m < 4; ++m) {
-          Vec3 ti = Vec3::Zero(), tj = Vec3::Zero();
-          for (int g = 0; g < 8; ++g) {
-            ti += at.volume[g] * phi[m][g] * b[i][g];
-            tj += at.volume[g] * phi[m][g] * b[j][g];
-          }
-          for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) block(r, c) += lame.lambda * ti[r] * tj[c];
-        }
-        for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c) K[3 * i + r][3 * j + c] = block(r, c);
-      }
-    for (int k = n; k-- > modes;)
-      for (int r = 0; r < k; ++r)
-        for (int c = 0; c < k; ++c) K[r][c] -= K[r][k] * K[k][c] / K[k][k];
-    for (int r = 0; r < modes; ++r)
-      for (int c = 0; c < modes; ++c) S_[r][c] = 0.5 * (K[r][c] + K[c][r]);
-  }
-
-  /// At Gauss's points. An incompatible mode has the gradient −2ξ_i ∂ξ_i/∂X of the middle, scaled by
-  /// det J(0)/det J so that its mean vanishes.
-  void make_gradients(const Samples& at, Vec3 (&b)[7][8]) const {
-    for (int g = 0; g < 8; ++g) {
-      const Vec3 xi = gauss_point(g);
-      for (int k = 0; k < 4; ++k) {
-        b[k][g].setZero();
-        for (int a = 0; a < nodes; ++a)
-          b[k][g] +=
-              hourglass(k, a) * (Vec3(at.inverse[g].transpose() * trilinear_slope(a, xi)) - gradient_[a]);
-      }
-      for (int i = 0; i < 3; ++i)
-        b[4 + i][g] = (-2 * xi[i] / at.volume[g]) * Vec3(at.middle(i, 0), at.middle(i, 1), at.middle(i, 2));
-    }
-  }
-
-  /// 1, ξ, η, ζ made orthonormal over the element, at Gauss's points.
-  static void make_linear_functions(const Samples& at, double (&phi)[4][8]) {
-    for (int m = 0; m < 4; ++m) {
-      for (int g = 0; g < 8; ++g) phi[m][g] = m == 0 ? 1 : gauss_point(g)[m - 1];
-      for (int l = 0; l < m; ++l) {
-        double part = 0;
-        for (int g = 0; g < 8; ++g) part += at.volume[g] * phi[l][g] * phi[m][g];
-        for (int g = 0; g < 8; ++g) phi[m][g] -= part * phi[l][g];
-      }
-      double square = 0;
-      for (int g = 0; g < 8; ++g) square += at.volume[g] * phi[m][g] * phi[m][g];
-      for (int g = 0; g < 8; ++g) phi[m][g] /= std::sqrt(square);
-    }
-  }
 
   template <ElasticMaterial M>
   Turning turn(const Mat3& F, const Corners& x) const {
@@ -244,13 +116,13 @@ class IncompatibleHexahedron {
     }
     for (int k = 0; k < 4; ++k) {
       Vec3 q = Vec3::Zero();
-      for (int a = 1; a < nodes; ++a) q += gamma_[k][a] * (x[a] - x[0]);
+      for (int a = 1; a < nodes; ++a) q += shape_.gamma[k][a] * (x[a] - x[0]);
       t.q[k] = t.R.transpose() * q;
     }
     for (int k = 0; k < 4; ++k)
       for (int i = 0; i < 3; ++i) {
         double sum = 0;
-        for (int l = 0; l < modes; ++l) sum += S_[3 * k + i][l] * t.q[l / 3][l % 3];
+        for (int l = 0; l < modes; ++l) sum += shape_.S[3 * k + i][l] * t.q[l / 3][l % 3];
         t.s[k][i] = sum;
       }
     return t;
@@ -261,12 +133,12 @@ class IncompatibleHexahedron {
   void add_forces(const Mat3& stress, const Turning& t, Corners& force) const {
     Vec3 moment = Vec3::Zero();
     for (int k = 0; k < 4; ++k) moment += t.s[k].cross(t.q[k]);
-    const Mat3 pull = volume_ * stress + t.R * skew(Vec3(t.softened * moment));
+    const Mat3 pull = shape_.volume * stress + t.R * skew(Vec3(t.softened * moment));
     Vec3 rest = Vec3::Zero();
     for (int a = 1; a < nodes; ++a) {
       Vec3 s = Vec3::Zero();
-      for (int k = 0; k < 4; ++k) s += gamma_[k][a] * t.s[k];
-      force[a] = -(pull * gradient_[a] + t.R * s);
+      for (int k = 0; k < 4; ++k) s += shape_.gamma[k][a] * t.s[k];
+      force[a] = -(pull * shape_.gradient[a] + t.R * s);
       rest += force[a];
     }
     force[0] = -rest;
@@ -279,8 +151,8 @@ class IncompatibleHexahedron {
     for (int k = 0; k < 4; ++k) {
       const Mat3 lever = skew(t.q[k]) * t.softened;
       for (int a = 0; a < nodes; ++a) {
-        Mat3 block = lever * skew(gradient_[a]);
-        for (int i = 0; i < 3; ++i) block(i, i) += gamma_[k][a];
+        Mat3 block = lever * skew(shape_.gradient[a]);
+        for (int i = 0; i < 3; ++i) block(i, i) += shape_.gamma[k][a];
         const Mat3 turned = block * t.R.transpose();
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) D[3 * k + i][3 * a + j] = turned(i, j);
@@ -289,7 +161,7 @@ class IncompatibleHexahedron {
     for (int r = 0; r < modes; ++r) {
       for (double& y : SD[r]) y = 0;
       for (int l = 0; l < modes; ++l)
-        for (int c = 0; c < 3 * nodes; ++c) SD[r][c] += S_[r][l] * D[l][c];
+        for (int c = 0; c < 3 * nodes; ++c) SD[r][c] += shape_.S[r][l] * D[l][c];
     }
     for (int r = 0; r < 3 * nodes; ++r) {
       for (double& y : K[r]) y = 0;
@@ -298,10 +170,7 @@ class IncompatibleHexahedron {
     }
   }
 
-  std::array<Vec3, nodes> gradient_;
-  std::array<std::array<double, nodes>, 4> gamma_;
-  std::array<std::array<double, modes>, modes> S_;  ///< N/m
-  double volume_ = 0;
+  HexahedronModes shape_;
 
  public:
   /// K by pairs of corners.
@@ -326,8 +195,8 @@ class IncompatibleHexahedron {
     Turning turning;
     Corners force;
     Stiffness<Point> stiffness() const {
-      Stiffness<Point> K{point, element.volume_, {}, {}};
-      for (int a = 0; a < nodes; ++a) K.b[a] = point.pull(element.gradient_[a]);
+      Stiffness<Point> K{point, element.shape_.volume, {}, {}};
+      for (int a = 0; a < nodes; ++a) K.b[a] = point.pull(element.shape_.gradient[a]);
       element.make_mode_stiffness(turning, K.K);
       return K;
     }

@@ -42,14 +42,14 @@ double share_within_a_radian(const Set& set, const Vectors& step) {
   return most > 1 ? 1 / most : 1;
 }
 
-/// The largest entry in size; what is not a number where one is none.
-template <class V>
-typename V::Scalar largest(const V& x) {
-  typename V::Scalar most = 0;
-  for (int i = 0; i < int(V::RowsAtCompileTime); ++i) {
-    if (!(std::abs(x[i]) <= std::numeric_limits<typename V::Scalar>::max()))
-      return std::numeric_limits<typename V::Scalar>::quiet_NaN();
-    most = std::abs(x[i]) > most ? std::abs(x[i]) : most;
+/// The largest entry in size of the blocks that move; no number where one of them is none.
+template <class Set, class Vectors>
+double largest(const Set& set, const Vectors& x) {
+  double most = 0;
+  for (const Index b : set.active()) {
+    if (!set.moves(b)) continue;
+    if (!is_finite(x[b])) return std::numeric_limits<double>::quiet_NaN();
+    for (int i = 0; i < Set::width; ++i) most = std::fmax(most, std::abs(double(x[b][i])));
   }
   return most;
 }
