@@ -195,17 +195,14 @@ class ElasticBody {
         for (int k = 0; k < 3; ++k) places[(3 * a + k) * lane_count + l] = double(at[k]);
       }
     const auto state = E::lanes_at(material_, &elements_[e], places);
-    double numbers[9 * lane_count];
+    double numbers[3 * lane_count], blocks[lane_count][9];
     const auto each_block = [&](const LaneMatrix& block, auto&& add) {
-      std::memcpy(numbers, &block, sizeof numbers);
-      for (int l = 0; l < lane_count; ++l) {
-        Mat3 one;
-        for (int k = 0; k < 9; ++k) one.data()[k] = numbers[k * lane_count + l];
-        add(e + l, mesh_.cells()[e + l], one);
-      }
+      split_lanes(block, blocks);
+      for (int l = 0; l < lane_count; ++l)
+        add(e + l, mesh_.cells()[e + l], Mat3(Eigen::Map<const Mat3>(blocks[l])));
     };
     for (int a = 0; a < E::nodes; ++a) {
-      std::memcpy(numbers, &state.force[a], 3 * sizeof(Lanes));
+      std::memcpy(numbers, &state.force[a], sizeof numbers);
       for (int l = 0; l < lane_count; ++l)
         for (int k = 0; k < 3; ++k) force_[mesh_.cells()[e + l][a]][k] += T(numbers[k * lane_count + l]);
     }
