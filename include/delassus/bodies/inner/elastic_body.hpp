@@ -212,7 +212,7 @@ class ElasticBody {
         matrix_.add_diagonal(t[a], B.template cast<T>());
       });
     for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
-      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
+      const int i = pairs_of_nodes<E::nodes>[k][0], j = pairs_of_nodes<E::nodes>[k][1];
       each_block(state.block(i, j), [&](Index one, const auto& t, const Mat3& B) {
         if (t[i] < t[j])
           matrix_.add_pair(one, k, B.template cast<T>());
