@@ -7,7 +7,9 @@
 
 #include <Eigen/SparseCholesky>
 
-#include <utility>
+#include "against.hpp"
+
+#include <tuple>
 #include <vector>
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -37,6 +39,11 @@ struct ByRows {
     L = ldlt.matrixL().nestedExpression().triangularView<Eigen::StrictlyLower>();
   }
   void solve() { x = ldlt.solve(x).eval(); }
+  /// Of a step: factor, W, the solve of the free motion and that of the corrective one.
+  double step_seconds() {
+    const double factored = against::seconds([&] { factor(); }), built = against::seconds([&] { build(); });
+    return factored + built + 2 * against::seconds([&] { solve(); });
+  }
 
   /// The rows of a pool from row `first` on, as they act on set s.
   template <int s>

@@ -50,6 +50,37 @@ inline LaneMatrix times_transposed(const LaneMatrix& A, const LaneMatrix& B) {
   return C;
 }
 
+namespace inner {
+
+/// Row k of `rows` becomes what was column k. P is Lanes.
+template <class P>
+void transpose_lanes(P* rows) {
+  if constexpr (lane_count > 1) {
+    Eigen::internal::PacketBlock<P, lane_count> square;
+    for (int k = 0; k < lane_count; ++k) square.packet[k] = rows[k];
+    Eigen::internal::ptranspose(square);
+    for (int k = 0; k < lane_count; ++k) rows[k] = square.packet[k];
+  }
+}
+
+}  // namespace inner
+
+/// The matrix of lane l at to[l], by columns.
+inline void split_lanes(const LaneMatrix& M, double (*to)[9]) {
+  Lanes e[9];
+  std::memcpy(e, &M, sizeof e);
+  constexpr int whole = 8 / lane_count * lane_count;
+  for (int first = 0; first < whole; first += lane_count) {
+    inner::transpose_lanes(&e[first]);
+    for (int l = 0; l < lane_count; ++l) store_lanes(&to[l][first], e[first + l]);
+  }
+  for (int k = whole; k < 9; ++k) {
+    double column[lane_count];
+    store_lanes(column, e[k]);
+    for (int l = 0; l < lane_count; ++l) to[l][k] = column[l];
+  }
+}
+
 /// `SingularValues` of one matrix a lane.
 struct LaneSingularValues {
   LaneMatrix U, V;

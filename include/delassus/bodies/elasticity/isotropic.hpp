@@ -17,6 +17,26 @@ struct PrincipalState {
   Vec3 flip = Vec3::Zero(), twist = Vec3::Zero();
 };
 
+namespace inner {
+
+/// ∂P/∂F contracted with two gradients, all in the axes of the principal stretches.
+template <class M, class V>
+M principal_block(const M& hessian, const V& half_sum, const V& half_difference, const V& a, const V& b) {
+  M B;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) B(i, k) = hessian(i, k) * a[i] * b[k];
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    B(i, i) += half_sum[k] * a[j] * b[j];
+    B(j, j) += half_sum[k] * a[i] * b[i];
+    B(i, j) += half_difference[k] * a[j] * b[i];
+    B(j, i) += half_difference[k] * a[i] * b[j];
+  }
+  return B;
+}
+
+}  // namespace inner
+
 /// P = U diag(p) Vᵀ, and ∂P/∂F by its modes: the three stretches, which the Hessian couples, and six that are
 /// eigenvectors themselves. Each is cut at zero: the result is positive semidefinite. Sources:
 /// [IrvingTeranFedkiw2004], [Smith2018].
@@ -39,17 +59,7 @@ class IsotropicPoint {
   /// A gradient in the axes of the principal stretches.
   Vec3 pull(const Vec3& gradient) const { return V_.transpose() * gradient; }
   Mat3 block(const Vec3& a, const Vec3& b) const {
-    Mat3 B;
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k) B(i, k) = hessian_(i, k) * a[i] * b[k];
-    for (int k = 0; k < 3; ++k) {
-      const int i = (k + 1) % 3, j = (k + 2) % 3;
-      B(i, i) += half_sum_[k] * a[j] * b[j];
-      B(j, j) += half_sum_[k] * a[i] * b[i];
-      B(i, j) += half_difference_[k] * a[j] * b[i];
-      B(j, i) += half_difference_[k] * a[i] * b[j];
-    }
-    return U_ * B * U_.transpose();
+    return U_ * inner::principal_block(hessian_, half_sum_, half_difference_, a, b) * U_.transpose();
   }
 
  private:
@@ -74,16 +84,7 @@ struct IsotropicLanes {
     return {{dot(V.column[0], gradient), dot(V.column[1], gradient), dot(V.column[2], gradient)}};
   }
   LaneMatrix block(const LaneVector& a, const LaneVector& b) const {
-    LaneMatrix B;
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < 3; ++i) B(i, k) = hessian(i, k) * a[i] * b[k];
-    for (int k = 0; k < 3; ++k) {
-      const int i = (k + 1) % 3, j = (k + 2) % 3;
-      B(i, i) += half_sum[k] * a[j] * b[j];
-      B(j, j) += half_sum[k] * a[i] * b[i];
-      B(i, j) += half_difference[k] * a[j] * b[i];
-      B(j, i) += half_difference[k] * a[i] * b[j];
-    }
+    const LaneMatrix B = inner::principal_block(hessian, half_sum, half_difference, a, b);
     LaneMatrix UB;
     for (int k = 0; k < 3; ++k)
       for (int i = 0; i < 3; ++i) UB(i, k) = U(i, 0) * B(0, k) + U(i, 1) * B(1, k) + U(i, 2) * B(2, k);

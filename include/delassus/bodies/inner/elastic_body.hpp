@@ -172,17 +172,14 @@ class ElasticBody {
         for (int k = 0; k < 3; ++k) places[(3 * a + k) * lane_count + l] = double(at[k]);
       }
     const auto state = E::lanes_at(material_, &elements_[e], places);
-    double numbers[9 * lane_count];
+    double numbers[3 * lane_count], blocks[lane_count][9];
     const auto each_block = [&](const LaneMatrix& block, auto&& add) {
-      std::memcpy(numbers, &block, sizeof numbers);
-      for (int l = 0; l < lane_count; ++l) {
-        Mat3 one;
-        for (int k = 0; k < 9; ++k) one.data()[k] = numbers[k * lane_count + l];
-        add(e + l, mesh_.cells()[e + l], one);
-      }
+      split_lanes(block, blocks);
+      for (int l = 0; l < lane_count; ++l)
+        add(e + l, mesh_.cells()[e + l], Mat3(Eigen::Map<const Mat3>(blocks[l])));
     };
     for (int a = 0; a < E::nodes; ++a) {
-      std::memcpy(numbers, &state.force[a], 3 * sizeof(Lanes));
+      std::memcpy(numbers, &state.force[a], sizeof numbers);
       for (int l = 0; l < lane_count; ++l)
         for (int k = 0; k < 3; ++k) force_[mesh_.cells()[e + l][a]][k] += T(numbers[k * lane_count + l]);
     }
@@ -192,7 +189,7 @@ class ElasticBody {
         matrix_.add_diagonal(t[a], B.template cast<T>());
       });
     for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
-      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
+      const int i = pairs_of_nodes<E::nodes>[k][0], j = pairs_of_nodes<E::nodes>[k][1];
       each_block(state.block(i, j), [&](Index one, const auto& t, const Mat3& B) {
         if (t[i] < t[j])
           matrix_.add_pair(one, k, B.template cast<T>());

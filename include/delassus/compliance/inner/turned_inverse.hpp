@@ -30,7 +30,7 @@ class TurnedInverse {
   using Places = std::vector<Velocity>;
 
   Index nodes() const { return Index(slot_.size()); }
-  /// There is no factor, or it is of other masses, held nodes, step or damping.
+  /// There is no factor, or it is of other held nodes, or of another step or damping.
   bool is_of_another(const auto& body) const {
     return !is_factored_ || body.scale().mass != scale_.mass || body.scale().stiffness != scale_.stiffness ||
            !std::equal(is_held_.begin(), is_held_.end(), body.held().begin(), body.held().end());
