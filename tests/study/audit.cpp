@@ -12,6 +12,7 @@ TEST_CASE("an audit finds friction, restitution, a joint and bodies that a scene
   CHECK(find(report, Effect::contact).present == 100 * 8);
   CHECK(find(report, Effect::friction).verdict == Verdict::never);
   CHECK(find(report, Effect::restitution).verdict == Verdict::never);
+  CHECK(report.predicted_saving(find(report, Effect::restitution)) == 0);  // it has no rows
   CHECK(find(report, Effect::joint, 0).verdict == Verdict::never);
   CHECK(find(report, Effect::joint, 0).place == 0);
   CHECK(find(report, Effect::joint, 1).verdict == Verdict::acted);

@@ -60,30 +60,3 @@ TEST_CASE(
   CHECK(no_limit.difference < 1e-6);
   CHECK(no_rod.difference < 1e-6);
 }
-
-// Restitution has no rows: nothing is predicted and nothing is saved.
-TEST_CASE("restitution that nothing bounces on is found, and costs no row") {
-  const AuditReport report = audit(scene(Restitution{Coulomb{.friction = 0.5}, 0.5}, false));
-  const EffectUse& use = find(report, Effect::restitution);
-  CHECK(use.verdict == Verdict::never);
-  CHECK(report.predicted_saving(use) == 0);
-  CHECK(without(report, [] { return scene(Coulomb{.friction = 0.5}, false); }).saving == 0);
-}
-
-TEST_CASE("rolling friction of a ball that lies still is found, and that of a ball that rolls out acts") {
-  auto still = loop_with(RollingCoulomb{.rolling_friction = 0.01});
-  bodies<RigidBodies>(still.world()).add_fixed(HalfSpace{});
-  bodies<RigidBodies>(still.world()).add({.position = {0, 0, 0.2}, .mass = 1.0, .shape = Sphere{0.2}});
-  const AuditReport idle = audit(run(std::move(still), 20));
-  CHECK(find(idle, Effect::rolling).verdict == Verdict::never);
-  CHECK(find(idle, Effect::rolling).work == Approx(0.5 * find(idle, Effect::contact).work));
-  auto loop = loop_with(RollingCoulomb{.rolling_friction = 0.01});
-  auto& rigid = bodies<RigidBodies>(loop.world());
-  rigid.add_fixed(HalfSpace{});
-  rigid.add({.position = {0, 0, 0.2},
-             .velocity = {1, 0, 0},
-             .angular_velocity = {0, 5, 0},
-             .mass = 1.0,
-             .shape = Sphere{0.2}});
-  CHECK(find(audit(run(std::move(loop), 20)), Effect::rolling).verdict == Verdict::acted);
-}
