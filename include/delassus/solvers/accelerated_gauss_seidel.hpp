@@ -18,10 +18,10 @@ namespace delassus {
 
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
 ///
-///   momentum    Nesterov over exact sweeps: ends nearly every solve;
+///   momentum    Nesterov over exact sweeps: ends nearly every solve; again, with more patience, unless it goes in circles;
 ///   anderson    forty plain sweeps, then mixes the last five: breaks limit cycles;
-///   projection  Nesterov over sweeps of one projection a visit, slower and without the cycles of the exact
-///   law; patient     momentum again, with ten times the patience;
+///   projection  Nesterov over sweeps of one projection a visit, slower and without the cycles of the exact law;
+///   patient     momentum again, with ten times the patience;
 ///
 /// and from the start again with twice the patience. The best measured iterate is kept, and the report names
 /// the stage that ended the solve. A solve that does not stall is in the first stage alone.
@@ -57,8 +57,8 @@ struct BasicAcceleratedGaussSeidel {
                     "AcceleratedGaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
   }
 
-  /// Sweeps in which the error must halve, at first; momentum, which may stand for a thousand before it goes
-  /// on, has three times as many, and stops sooner where it goes round in circles.
+  /// Sweeps in which the error must halve, at first. Momentum may stand for a thousand before it goes on: where it does not go
+  /// round in circles it has three times as many once more.
   static int first_patience(int rows) { return std::clamp(3 * rows, 100, 400); }
 
   template <class Problem, class Workspace>
@@ -69,7 +69,7 @@ struct BasicAcceleratedGaussSeidel {
       return problem.template sweep<!Criterion::needs_measure>(relaxation, curvature...);
     };
     const auto one_projection = [&](auto& x, double& curvature) { return problem.project_once(x, curvature); };
-    const auto momentum = [&](auto& sweep) { inner::momentum(problem, pursuit, work.x, sweep); };
+    const auto momentum = [&](auto& sweep) { return inner::momentum(problem, pursuit, work.x, sweep); };
     const int shortest = first_patience(problem.row_count());
     for (int patience = shortest;; patience *= 2) {
       const auto open = [&](const char* name, int factor) {
@@ -78,9 +78,10 @@ struct BasicAcceleratedGaussSeidel {
         pursuit.open(name, factor * patience);
         return true;
       };
-      if (open("momentum", 3)) momentum(exact);
+      const bool is_in_circles = open("momentum", 1) && momentum(exact);
       if (!pursuit.is_over() && inner::contradicts(problem, pursuit, work.x))
         return compromise(problem, pursuit.finish(), work);
+      if (!is_in_circles && open("momentum", 3)) momentum(exact);
       if (open("anderson", 1) && settle(pursuit, exact))
         inner::anderson(problem, pursuit, work.history, exact);
       if (open("projection", 4)) momentum(one_projection);

@@ -50,22 +50,23 @@ class RestartRule {
 ///   x⁺ = z,  θ⁺ = (1 + √(1 + 4 θ²))/2,
 ///
 /// and where `RestartRule` asks for it y = z once and θ⁺ = θ/2: a restart from θ = 1 would forget how slow
-/// the problem is, and take up to twice the sweeps on rigid rows. Ends where the rule is futile and the error
-/// stands. `x` is room for the impulses before; sweep(x, curvature) sets that product and returns how much it
-/// moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the gradient restart.
+/// the problem is, and take up to twice the sweeps on rigid rows. Ends, and returns true, where the rule is
+/// futile and the error stands. `x` is room for the impulses before; sweep(x, curvature) sets that product
+/// and returns how much it moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
+/// gradient restart.
 template <class Problem, class Pursuit, class Impulses, class Sweep>
-void momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
+bool momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
   RestartRule rule;
   double theta = 1;
   problem.save(x);
   for (;;) {
     double curvature = 0;
     const double moved = sweep(x, curvature);  // λ is z now
-    if (!pursuit.goes_on(moved)) return;
+    if (!pursuit.goes_on(moved)) return false;
     if (rule.asks(curvature, moved)) {
       problem.save(x);
       theta = std::max(1.0, 0.5 * theta);
-      if (rule.is_futile() && pursuit.stands()) return;
+      if (rule.is_futile() && pursuit.stands()) return true;
     } else {
       const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
       if (theta > 1)
