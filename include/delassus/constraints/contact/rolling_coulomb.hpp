@@ -210,7 +210,7 @@ struct RollingCoulomb {
     // The roll is friction under a normal impulse that does not answer to it: b_n = −W_nn λ_n.
     const Vec<3, T> roll =
         Coulomb{}.meet({double(cones.roll)},
-                       Vec<3, T>(-memory.roll.normal * lambda[0], free(3, 3, 4), free(4, 3, 4)), memory.roll);
+                       Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)), memory.roll);
     lambda[3] = roll[1], lambda[4] = roll[2];
     const T most = cones.spin * lambda[0];
     lambda[5] = W(5, 5) > T(0) ? std::clamp(-free(5, 5, 5) / W(5, 5), -most, most) : T(0);
