@@ -1,4 +1,4 @@
-// The demonstration: six scenes and two tables, in the terminal and on one page that replays them.
+// The demonstration: nine scenes and two tables, in the terminal and on one page that replays them.
 #include "scene.hpp"
 
 #include <delassus/core/expect.hpp>
@@ -50,7 +50,8 @@ struct Part {
   double share;
 };
 constexpr Part parts[] = {{"falling box", falling_box, 0.01}, {"stack", stack, 0.02}, {"slope", slope, 0.01},
-                          {"chain", chain, 0.07},             {"wall", wall, 0.41},   {"pile", pile, 0.45}};
+                          {"chain", chain, 0.07},             {"wall", wall, 0.38},   {"pile", pile, 0.41},
+                          {"soft grip", soft_grip, 0.04},     {"soft beam", soft_beam, 0.02}, {"needle", needle, 0.02}};
 
 int run(const Options& options) {
   Progress progress("demonstration");
@@ -72,8 +73,8 @@ int run(const Options& options) {
   }
   std::filesystem::create_directories(options.out);
   const std::string path = (std::filesystem::path(options.out) / "index.html").string();
-  const std::size_t bytes = write_replay_page(path, "delassus: six scenes of constrained dynamics", recordings, tables,
-      {.introduction = "Rigid bodies under joints, contact and Coulomb friction, as the library computed them: nothing here "
+  const std::size_t bytes = write_replay_page(path, "delassus: nine scenes of constrained dynamics", recordings, tables,
+      {.introduction = "Rigid and soft bodies under joints, contact and Coulomb friction, as the library computed them: nothing here "
                        "is animated by hand. Each scene states bounds of physics, and the program that wrote this page "
                        "fails when one does not hold."});
   progress.show(1);

@@ -15,12 +15,14 @@
 
 namespace demonstration {
 
-/// Steps `loop` for `seconds` by h. It must list StepTime, Stopwatch and Recorder, in this order.
-template <class Loop>
-Scene measure(Loop& loop, const std::string& backend, double h, double seconds, const Watch& watch) {
+/// Steps `loop` for `seconds` by h, `drive(time)` before each step. It must list StepTime, Stopwatch and
+/// Recorder, in this order.
+template <class Loop, class Drive>
+Scene measure(Loop& loop, const std::string& backend, double h, double seconds, const Watch& watch, Drive&& drive) {
   const int steps = int(std::lround(seconds / h));
   Scene scene{.backend = backend, .h = h, .steps = steps};
   for (int i = 0; i < steps; ++i) {
+    drive(i * h);
     const StepReport report = loop.step(h);
     scene.mean_contacts += double(report.contacts) / steps;
     scene.max_penetration = std::max(scene.max_penetration, report.max_penetration);
@@ -35,6 +37,10 @@ Scene measure(Loop& loop, const std::string& backend, double h, double seconds, 
   scene.milliseconds = mean_of(loop.template get<StepTime>().milliseconds());
   scene.recording = std::move(loop.template get<Recorder>().recording());
   return scene;
+}
+template <class Loop>
+Scene measure(Loop& loop, const std::string& backend, double h, double seconds, const Watch& watch) {
+  return measure(loop, backend, h, seconds, watch, [](double) {});
 }
 
 }  // namespace demonstration

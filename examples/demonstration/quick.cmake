@@ -5,7 +5,7 @@ if(NOT status EQUAL 0)
   message(FATAL_ERROR "--quick ended with ${status}\n${text}${errors}")
 endif()
 foreach(row "Falling box +1 +none" "Stack of ten +10 +native" "Slope +5 +native" "Hanging chain +20 +none"
-    "Wall +101 +native" "Pile of 200 +200 +(FCL|native)" "\n +0\\.001 +[0-9]" "\n +1e-09 +[0-9]")
+    "Wall +101 +native" "Soft grip +[0-9]+ +native" "Soft beam +[0-9]+ +native" "Needle +[0-9]+ +none" "Pile of 200 +200 +(FCL|native)" "\n +0\\.001 +[0-9]" "\n +1e-09 +[0-9]")
   if(NOT text MATCHES "${row}")
     message(FATAL_ERROR "no row matches '${row}' in\n${text}")
   endif()

@@ -49,6 +49,9 @@ Scene slope(bool is_quick, const Watch& watch);
 Scene chain(bool is_quick, const Watch& watch);
 Scene wall(bool is_quick, const Watch& watch);
 Scene pile(bool is_quick, const Watch& watch);
+Scene soft_grip(bool is_quick, const Watch& watch);
+Scene soft_beam(bool is_quick, const Watch& watch);
+Scene needle(bool is_quick, const Watch& watch);
 
 /// One row per scene, in the order given.
 Table table_of_scenes(const std::vector<Scene>& scenes);

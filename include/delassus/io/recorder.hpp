@@ -8,14 +8,19 @@
 #include <delassus/loop/stage.hpp>
 #include <delassus/rows/alive.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace delassus {
 
 /// Bodies as they are when the first step ends; frames at most `frames_per_second`; a sample of every series
 /// a step. A Stopwatch listed before it gives the stage times. A joint is drawn from the centre of one body
-/// through its anchors to the centre of the other.
+/// through its anchors to the centre of the other, a body of tetrahedra as the edges of its surface.
 class Recorder {
  public:
   using plays = role::Listener;
@@ -42,20 +47,41 @@ class Recorder {
     if constexpr (requires { loop.island_reports(); })  // else there is no solver to ask
       if constexpr (requires { loop.template part<role::Solver>().tolerance; })
         recording_.steps.tolerance = loop.template part<role::Solver>().tolerance;
-    loop.world().each([&](const auto& set, auto) {
+    loop.world().each([&](const auto& set, auto s) {
       for (const Index b : alive(set)) {
         if (set.has_collider(b))
           recording_.bodies.push_back(recorded_body(set.shape(b), is_fixed(set, b)));
         else
-          recording_.bodies.push_back(recorded_particle(0.03));
+          recording_.bodies.push_back(recorded_particle(has_mesh<decltype(set)> ? 1e-3 : 0.03));
       }
+      if constexpr (has_mesh<decltype(set)>)
+        set.each_mesh([&](Index, auto, const auto& body) { find_edges(Index(s), body); });
     });
+  }
+
+  template <class Set>
+  static constexpr bool has_mesh = requires(const std::remove_cvref_t<Set>& set) {
+    set.each_mesh([](Index, auto, const auto&) {});
+  };
+
+  /// The edges of a body's surface, each once, by blocks of its set.
+  void find_edges(Index set, const auto& body) {
+    const std::size_t first = edges_.size();
+    for (const auto& t : surface(body.mesh()))
+      for (int k = 0; k < 3; ++k) {
+        const Index a = t[k], b = t[(k + 1) % 3];
+        if (a < b)
+          edges_.push_back({set, body.blocks()[a], body.blocks()[b]});  // the neighbour has it from b to a
+      }
+    std::sort(edges_.begin() + std::ptrdiff_t(first), edges_.end());
   }
 
   /// A kinematic body has no mass that answers, and moves.
   static bool is_fixed(const auto& set, Index b) {
-    if constexpr (requires { set.motion(b); }) return set.motion(b) == Motion::fixed;
-    else return !set.moves(b);
+    if constexpr (requires { set.motion(b); })
+      return set.motion(b) == Motion::fixed;
+    else
+      return !set.moves(b);
   }
 
   void add_frame(const auto& loop) {
@@ -74,6 +100,11 @@ class Recorder {
               {c.record.point(), c.impulse, c.is_sliding ? RecordedState::sliding : RecordedState::sticking});
       }
     loop.each_joint([&](const Anchor& a, const Anchor& b) { add_joint(frame, loop.world(), a, b); });
+    loop.world().each([&](const auto& set, auto s) {
+      if constexpr (has_mesh<decltype(set)>)
+        for (const auto& [of, a, b] : edges_)
+          if (of == Index(s)) frame.lines.push_back({set.pose(a).position, set.pose(b).position});
+    });
     recording_.frames.push_back(std::move(frame));
   }
 
@@ -114,6 +145,7 @@ class Recorder {
   }
 
   Recording recording_;
+  std::vector<std::array<Index, 3>> edges_;  ///< set and two of its blocks
 };
 
 }  // namespace delassus

@@ -143,7 +143,8 @@ inline LaneSingularValues singular_values(const LaneMatrix& F) {
   bool is_turning = true;
   for (int sweep = 0; sweep < 12 && is_turning; ++sweep) {
     is_turning = false;
-    for (const auto& [p, q] : inner::pairs_of_three) is_turning = inner::turn_columns(B, V, p, q) || is_turning;
+    for (const auto& [p, q] : inner::pairs_of_three)
+      is_turning = inner::turn_columns(B, V, p, q) || is_turning;
   }
   for (const auto& [p, q] : inner::pairs_of_three) inner::order_columns(B, V, p, q);
   const Lanes longest = root(dot(B.column[0], B.column[0])), one = all_lanes(1), zero = all_lanes(0);
