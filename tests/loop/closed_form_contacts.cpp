@@ -261,11 +261,12 @@ TEST_CASE(
     for (const double y : {-1., 1.})
       for (const double z : {-1., 1.})
         for (const double side : {-1., 1.}) corners.push_back({side * (1 - t * z), y, z});
-    const auto wedge = set.add({.mass = 1.0, .shape = ConvexHull(corners)});
+    const auto wedge =  // its centre of mass is t/3 below the middle
+        set.add({.position = {0, 0, -t / 3}, .mass = 1.0, .shape = ConvexHull(corners)});
     std::vector<RigidBodies::Handle> jaws;
     for (const double side : {-1., 1.})
       jaws.push_back(set.add({.position = side * Vec3(1 + 0.2 / std::cos(half), 0, 0),
-                              .orientation = exponential<double>({0, side * half, 0}),
+                              .orientation = exponential<double>({0, -side * half, 0}),
                               .mass = 10.0,
                               .shape = Box{0.4, 0.5, 0.5}}));
     for (int n = 0; n < 10; ++n) {

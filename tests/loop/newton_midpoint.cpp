@@ -48,8 +48,8 @@ TEST_CASE("a hundred links under a thousand times their weight hold at a sixtiet
   CHECK(kept.factorizations <= 5);
 }
 
-// One linear solve a step is asked for at 1e-4 m; what it leaves is of second order in the change of a step, 2e-5 m here,
-// and the next step closes it.
+// One linear solve a step is asked for at 1e-4 m; what it leaves is of second order in the change of a step,
+// 2e-5 m here, and the next step closes it.
 TEST_CASE("one linear solve a step holds the same chain to a tenth of a millimetre") {
   auto loop =
       rods(100, 1000, EIGEN_PI / 9,

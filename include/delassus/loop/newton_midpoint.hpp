@@ -15,9 +15,9 @@ namespace delassus {
 /// forces at points, so that light links under a heavy load hold at large steps: see docs/decisions/0010. For
 /// rigid bodies and laws whose rows are equalities.
 ///
-/// {.max_iterations = 1, .acceptable = ∞} is one linear solve a step, half the time: what a step leaves open the next one
-/// closes, and the status is `max_iterations`. Forces are those of the start of the step. All islands are solved as one. The solver, the compliance and
-/// the stabilisation of the loop are not asked.
+/// {.max_iterations = 1, .acceptable = ∞} is one linear solve a step, half the time: what a step leaves open
+/// the next one closes, and the status is `max_iterations`. Forces are those of the start of the step. All
+/// islands are solved as one. The solver, the compliance and the stabilisation of the loop are not asked.
 struct NewtonMidpoint {
   using plays = role::Integrator;
   using each_block_alone = NewtonMidpoint;
