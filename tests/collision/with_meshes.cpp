@@ -121,7 +121,8 @@ TEST_CASE("a box pushed against the rim of a meshed box is pushed back sideways,
   }
 }
 
-TEST_CASE("what slides over coplanar triangles never leaves their plane, and keeps its contacts' names") {
+TEST_CASE("what slides over coplanar triangles never leaves their plane, and keeps its contacts' names",
+          "[table]") {
   // 100 m over 20 000 triangles where DELASSUS_SLIDE is set; a tenth of both else.
   const bool is_long = std::getenv("DELASSUS_SLIDE") != nullptr;
   const int cells = is_long ? 100 : 32, steps = is_long ? 10000 : 1000;
