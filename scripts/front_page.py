@@ -16,7 +16,7 @@ MARKS = re.compile(r"(<!-- what holds -->\n).*?(<!-- end of what holds -->)", re
 
 def rows(page):
     """The rows of the ladders' table, each a dictionary."""
-    table = page.split("<!-- ladders -->\n")[1].split("\n\n")[0].splitlines()
+    table = page.split("<!-- ladders -->\n")[1].split("<!-- end of ladders -->")[0].splitlines()
     lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in table]
     return [dict(zip(lines[0], cells)) for cells in lines[2:]]
 

@@ -2,7 +2,11 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
+#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
+
+#include <span>
 
 namespace ladders {
 
@@ -28,19 +32,14 @@ struct HeavyChain {
   double end;
 };
 
-template <class Solver, class Stabilisation>
-void climb_chain(Ladder& ladder, double h, const Solver& solver, const Stabilisation& stabilisation) {
-  for (const auto& [links, end] : {HeavyChain{10, 1},
-                                   {10, 100},
-                                   {10, 1e4},
-                                   {40, 1},
-                                   {40, 100},
-                                   {40, 1e4},
-                                   {100, 1},
-                                   {100, 100},
-                                   {100, 1e4}})
+constexpr HeavyChain chains[] = {{10, 1},  {10, 100},  {10, 1e4},  {40, 1},    {40, 100},   {40, 1e4},
+                                 {100, 1}, {100, 100}, {100, 1e4}, {160, 1e4}, {1000, 100}, {1000, 1e4}};
+
+template <class... Policies>
+void climb_chain(Ladder& ladder, double h, int count, const Policies&... policies) {
+  for (const auto& [links, end] : std::span(chains).first(std::size_t(count)))
     ladder.rung(format("%d links, end %g ×", links, end), [&, links = links, end = end]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, solver, stabilisation};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       const auto chain = add_chain(loop, links);
       const auto ball = set.add(
@@ -55,9 +54,12 @@ void climb_chain(Ladder& ladder, double h, const Solver& solver, const Stabilisa
 
 }  // namespace
 
-void heavy_chain(Ladder& ladder) { climb_chain(ladder, frame, AcceleratedGaussSeidel{}, Baumgarte{}); }
-void heavy_chain_newton(Ladder& ladder) { climb_chain(ladder, frame, ProximalNewton{}, WholeViolation{}); }
-void heavy_chain_fine(Ladder& ladder) { climb_chain(ladder, frame / 16, ProximalNewton{}, WholeViolation{}); }
+void heavy_chain(Ladder& ladder) { climb_chain(ladder, frame, 9, AcceleratedGaussSeidel{}); }
+void heavy_chain_newton(Ladder& ladder) { climb_chain(ladder, frame, 9, ProximalNewton{}, WholeViolation{}); }
+void heavy_chain_fine(Ladder& ladder) {
+  climb_chain(ladder, frame / 16, 9, ProximalNewton{}, WholeViolation{});
+}
+void heavy_chain_midpoint(Ladder& ladder) { climb_chain(ladder, frame, 12, NewtonMidpoint{}); }
 
 // Forty links that start twice as far apart as their joints allow: what the joints pull together must not
 // become a shot.
@@ -73,12 +75,14 @@ void stretched_chain(Ladder& ladder) {
     });
 }
 
+namespace {
+
 // n × n small bodies in a square net, 0.5 m apart, held at two corners.
-void joint_grid(Ladder& ladder) {
+template <class... Policies>
+void climb_grid(Ladder& ladder, const Policies&... policies) {
   for (const int n : {5, 10, 20, 40})
     ladder.rung(format("%d × %d", n, n), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-6}, WholeViolation{}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       std::vector<RigidBodies::Handle> knots;
       for (int i = 0; i < n; ++i)
@@ -102,5 +106,12 @@ void joint_grid(Ladder& ladder) {
               energy_mark(seen, n * n * g * 0.5 * n)};
     });
 }
+
+}  // namespace
+
+void joint_grid(Ladder& ladder) {
+  climb_grid(ladder, AcceleratedGaussSeidel{.tolerance = 1e-6}, WholeViolation{});
+}
+void joint_grid_direct(Ladder& ladder) { climb_grid(ladder, DirectGaussSeidel{}, WholeViolation{}); }
 
 }  // namespace ladders

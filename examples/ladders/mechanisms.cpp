@@ -2,6 +2,8 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
+#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 namespace ladders {
@@ -27,18 +29,16 @@ double crank_angle(double rate, double speed, double t) {
   return phi;
 }
 
-}  // namespace
-
 // n + 1 upright unit rods with n level ones between their tops: all lie on one line twice a turn.
-void four_bars(Ladder& ladder) {
+template <class... Policies>
+void climb_four_bars(Ladder& ladder, double until, const Policies&... policies) {
   struct Case {
     int n;
     double h;
   };
-  for (const auto& [n, h] : {Case{1, 1e-2}, {1, 1e-3}, {2, 1e-3}, {5, 1e-3}, {10, 1e-3}, {40, 1e-3}})
+  for (const auto& [n, h] : {Case{1, 1e-3}, {2, 1e-3}, {5, 1e-3}, {10, 1e-3}, {40, 1e-3}, {1, 1e-2}})
     ladder.rung(format("%d four-bars, h = %g s", n, h), [&, n = n, h = h]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Planar{}},
-                         ProximalNewton{.tolerance = 1e-10}, WholeViolation{}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Planar{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       const Mat3 slim = Vec3(1. / 12, 1. / 12, 1e-3).asDiagonal();
       std::vector<RigidBodies::Handle> cranks;
@@ -62,7 +62,6 @@ void four_bars(Ladder& ladder) {
                                  anchor(set, bar, {0.5, 0, 0})});
         loop.add(Planar::Item{world_anchor({0, 0, 0}, level), anchor(set, bar, {0, 0, 0}, level)});
       }
-      const double until = ladder.is_quick() ? 1 : 10;
       double change = 0;
       const double start = energy(loop);
       const Seen seen =
@@ -76,15 +75,15 @@ void four_bars(Ladder& ladder) {
 }
 
 // A train of gears, each pair with a ratio, driven at the first wheel for a thousand turns and more.
-void gear_train(Ladder& ladder) {
+template <class Solver>
+void climb_gears(Ladder& ladder, const Solver& solver) {
   struct Case {
     int wheels;
     double ratio;
   };
   for (const auto& [wheels, ratio] : {Case{2, 1.}, {2, 10.}, {10, 1.}, {10, 2.}, {2, 1e3}, {2, 1e-3}})
     ladder.rung(format("%d wheels, ratio %g", wheels, ratio), [&, wheels = wheels, ratio = ratio]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Gear{}, Motor<Turn>{}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Gear{}, Motor<Turn>{}}, solver};
       auto& set = bodies<RigidBodies>(loop.world());
       set.gravity.setZero();
       std::vector<RigidBodies::Handle> train;
@@ -119,11 +118,11 @@ void gear_train(Ladder& ladder) {
 }
 
 // A chain of hinges, each with limits on both sides, thrown about so that they are hit again and again.
-void limits(Ladder& ladder) {
+template <class... Policies>
+void climb_limits(Ladder& ladder, const Policies&... policies) {
   for (const int links : {1, 3, 10, 32})
     ladder.rung(format("%d links, limits of ±0.5 rad", links), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Limit<Turn>{}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 5000}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Limit<Turn>{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       const Quat axis = frame_along({0, -1, 0});
       std::vector<ConstraintHandle<Limit<Turn>>> all;
@@ -147,6 +146,22 @@ void limits(Ladder& ladder) {
               {"joint gap / link", seen.joint_gap / 0.2, 0.05, 1e-2},
               energy_mark(seen, links * g * 0.1 * links)};
     });
+}
+
+}  // namespace
+
+void four_bars(Ladder& ladder) {
+  climb_four_bars(ladder, ladder.is_quick() ? 1 : 10, ProximalNewton{.tolerance = 1e-10}, WholeViolation{});
+}
+void four_bars_midpoint(Ladder& ladder) {
+  climb_four_bars(ladder, ladder.is_quick() ? 1 : 20, NewtonMidpoint{});
+}
+void gear_train(Ladder& ladder) {
+  climb_gears(ladder, AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000});
+}
+void gear_train_direct(Ladder& ladder) { climb_gears(ladder, DirectGaussSeidel{}); }
+void limits(Ladder& ladder) {
+  climb_limits(ladder, AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 5000});
 }
 
 }  // namespace ladders

@@ -3,6 +3,8 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
+#include <delassus/loop/newton_midpoint.hpp>
+
 namespace ladders {
 
 namespace {
@@ -46,15 +48,16 @@ void duplicates(Ladder& ladder) {
     });
 }
 
+namespace {
+
 // A door on more hinges than it needs, hit by nothing: the force on each hinge must not jump from step to
 // step.
-void many_hinges(Ladder& ladder) {
+template <class... Policies>
+void climb_hinges(Ladder& ladder, const Policies&... policies) {
   double of_one = 0;
   for (const int hinges : {1, 2, 3, 10, 30})
     ladder.rung(format("door on %d hinges", hinges), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 20000},
-                         WholeViolation{}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       const auto door = set.add(
           {.position = {0.5, 0, 0}, .angular_velocity = {0, 0, 2}, .mass = 20.0, .shape = Box{1, 0.05, 2}});
@@ -83,12 +86,12 @@ void many_hinges(Ladder& ladder) {
 }
 
 // 1 kg hangs on a body of mass m that hangs on the world; m goes to nothing.
-void vanishing_mass(Ladder& ladder) {
+template <class... Policies>
+void climb_vanishing(Ladder& ladder, const Policies&... policies) {
   for (int power = 0; power >= -12; power -= 2)
     ladder.rung(format("m = 1e%d kg", power), [&]() -> Marks {
       const double m = std::pow(10., power);
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-8}, PositionProjection{.rate = 1}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       const auto light = set.add({.position = {0, 0, -1}, .mass = m, .inertia = ball_inertia(m)});
       const auto heavy = set.add({.position = {0, 0, -2}, .mass = 1.0, .inertia = ball_inertia(1)});
@@ -101,6 +104,17 @@ void vanishing_mass(Ladder& ladder) {
               energy_mark(seen, 0.5 * 0.25 + g * 0.1)};
     });
 }
+
+}  // namespace
+
+void many_hinges(Ladder& ladder) {
+  climb_hinges(ladder, AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 20000}, WholeViolation{});
+}
+void many_hinges_midpoint(Ladder& ladder) { climb_hinges(ladder, NewtonMidpoint{}); }
+void vanishing_mass(Ladder& ladder) {
+  climb_vanishing(ladder, AcceleratedGaussSeidel{.tolerance = 1e-8}, PositionProjection{.rate = 1});
+}
+void vanishing_mass_midpoint(Ladder& ladder) { climb_vanishing(ladder, NewtonMidpoint{}); }
 
 // A bar that is too long for the gap between two walls, by a share of its length; then one wall goes.
 void no_room(Ladder& ladder) {

@@ -100,9 +100,6 @@ std::string markdown(const std::vector<Climbed>& all) {
   append_line([&](std::size_t c) { return table.columns[c]; });
   append_line([](std::size_t) { return std::string("---"); });
   for (const auto& row : table.rows) append_line([&](std::size_t c) { return row[c].text; });
-  out += "\nNot run:\n\n";
-  for (const Missing& row : missing)
-    out += "- " + std::string(row.id) + " " + row.title + ": " + row.reason + ".\n";
   return out;
 }
 
@@ -122,10 +119,7 @@ std::string page(const std::vector<Climbed>& all) {
     out += "<td><small>" + html(first_failing(ladder)) + "</small><td><small>" +
            html(std::string(best_peer(ladder.row->id, ladder.row->title))) + "</small>\n";
   }
-  out += "</table><h2>Not run</h2><ul>";
-  for (const Missing& row : missing)
-    out += "<li>" + html(std::string(row.id) + " " + row.title + ": " + row.reason) + "\n";
-  return out + "</ul></html>\n";
+  return out + "</table></html>\n";
 }
 
 }  // namespace ladders

@@ -2,6 +2,8 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
+#include <delassus/loop/newton_midpoint.hpp>
+
 namespace ladders {
 
 namespace {
@@ -67,12 +69,13 @@ void long_spin(Ladder& ladder) {
     });
 }
 
-void long_pendulum(Ladder& ladder) {
+namespace {
+
+template <class... Policies>
+void climb_pendulum(Ladder& ladder, const Policies&... policies) {
   for (int power = 3; power <= 6; ++power)
     ladder.rung(format("1e%d steps", power), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}},
-                         AcceleratedGaussSeidel{.tolerance = 1e-12}, PositionProjection{.rate = 1},
-                         ImplicitMidpoint{}};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       const auto bob =
           set.add({.position = {1, 0, 0}, .mass = 1.0, .inertia = Mat3(0.01 * Mat3::Identity())});
@@ -84,5 +87,13 @@ void long_pendulum(Ladder& ladder) {
               energy_mark(seen, g)};
     });
 }
+
+}  // namespace
+
+void long_pendulum(Ladder& ladder) {
+  climb_pendulum(ladder, AcceleratedGaussSeidel{.tolerance = 1e-12}, PositionProjection{.rate = 1},
+                 ImplicitMidpoint{});
+}
+void long_pendulum_midpoint(Ladder& ladder) { climb_pendulum(ladder, NewtonMidpoint{}); }
 
 }  // namespace ladders

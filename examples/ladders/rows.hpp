@@ -1,5 +1,4 @@
-/// The rows that delassus_ladders runs: one function a row, and what is known of those that cannot be run
-/// yet.
+/// The rows that delassus_ladders runs: one function a row.
 #pragma once
 
 #include "ladder.hpp"
@@ -14,8 +13,10 @@ void warm_start_energy(Ladder&);
 void heavy_chain(Ladder&);
 void heavy_chain_newton(Ladder&);
 void heavy_chain_fine(Ladder&);
+void heavy_chain_midpoint(Ladder&);
 void stretched_chain(Ladder&);
 void joint_grid(Ladder&);
+void joint_grid_direct(Ladder&);
 void stack(Ladder&);
 void stack_newton(Ladder&);
 void card_house(Ladder&);
@@ -29,12 +30,15 @@ void friction_range_newton(Ladder&);
 void grip(Ladder&);
 void duplicates(Ladder&);
 void many_hinges(Ladder&);
+void many_hinges_midpoint(Ladder&);
 void vanishing_mass(Ladder&);
+void vanishing_mass_midpoint(Ladder&);
 void no_room(Ladder&);
 void opposed_motors(Ladder&);
 void free_spin(Ladder&);
 void long_spin(Ladder&);
 void long_pendulum(Ladder&);
+void long_pendulum_midpoint(Ladder&);
 void overlap(Ladder&);
 void no_normal(Ladder&);
 void bad_input(Ladder&);
@@ -48,8 +52,18 @@ void elastic_balls(Ladder&);
 void simultaneous(Ladder&);
 void heap(Ladder&);
 void four_bars(Ladder&);
+void four_bars_midpoint(Ladder&);
 void gear_train(Ladder&);
+void gear_train_direct(Ladder&);
 void limits(Ladder&);
+void inverted_elements(Ladder&);
+void incompressible(Ladder&);
+void rigid_on_soft(Ladder&);
+void painleve(Ladder&);
+void arch(Ladder&);
+void bollard(Ladder&);
+void screw(Ladder&);
+void crowding(Ladder&);
 
 struct Row {
   const char* id;
@@ -69,6 +83,8 @@ inline constexpr Row rows[] = {
      heavy_chain_newton, Level::silver},
     {"HC-03", "chain with a heavy end, 960 steps a second", "ProximalNewton, WholeViolation",
      heavy_chain_fine, Level::gold},
+    {"HC-03", "chain with a heavy end, 60 steps a second", "NewtonMidpoint", heavy_chain_midpoint,
+     Level::gold},
     {"HC-04", "stack", "", stack, Level::gold},
     {"HC-04", "stack", "ProximalNewton", stack_newton, Level::gold},
     {"HC-05", "heavy top taken away", "", warm_start_energy, Level::gold},
@@ -78,7 +94,9 @@ inline constexpr Row rows[] = {
     {"HC-08", "range of friction", "ProximalNewton", friction_range_newton, Level::gold},
     {"HC-09", "duplicate constraints", "", duplicates, Level::gold},
     {"HC-10", "redundant hinges", "WholeViolation", many_hinges, Level::silver},
+    {"HC-10", "redundant hinges", "NewtonMidpoint", many_hinges_midpoint, Level::gold},
     {"HC-11", "vanishing mass in a chain", "PositionProjection", vanishing_mass, Level::gold},
+    {"HC-11", "vanishing mass in a chain", "NewtonMidpoint", vanishing_mass_midpoint, Level::gold},
     {"HC-12", "free spin, 100 s at 60 steps a second", "", free_spin, Level::gold},
     {"HC-13", "overlap at the start", "", overlap, Level::bronze},
     {"HC-14", "bad input", "", bad_input, Level::gold},
@@ -88,44 +106,39 @@ inline constexpr Row rows[] = {
     {"HC-17", "seams of a floor", "Seamless", seams_left_out, Level::gold},
     {"HC-18", "bullet and thin plate", "", bullet, Level::gold},
     {"HC-18", "bullet and thin plate", "Continuous", bullet_watched, Level::gold},
+    {"HC-19", "inverted elements", "TetrahedralFem, ImplicitEuler", inverted_elements, Level::gold},
+    {"HC-20", "nearly incompressible beam", "HexahedralFem", incompressible, Level::gold},
     {"HC-21", "four-bars through their singular pose", "ProximalNewton, WholeViolation", four_bars,
      Level::bronze},
+    {"HC-21", "four-bars through their singular pose", "NewtonMidpoint", four_bars_midpoint, Level::silver},
     {"HC-22", "bar without room", "", no_room, Level::gold},
     {"HC-22", "opposed motors", "", opposed_motors, Level::gold},
+    {"HC-23", "a rod that is pushed on its tip", "", painleve, Level::gold},
     {"HC-24", "elastic balls", "", elastic_balls, Level::silver},
     {"HC-25", "impacts at one moment", "", simultaneous, Level::gold},
     {"HC-26", "card house", "ProximalNewton", card_house, Level::gold},
+    {"HC-27", "arch", "ProximalNewton", arch, Level::silver},
     {"HC-28", "dominoes", "ProximalNewton", dominoes, Level::silver},
     {"HC-29", "tower of blocks, one taken out", "ProximalNewton", tower, Level::gold},
     {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-5}", heap, Level::gold},
+    {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
+     bollard, Level::silver},
+    {"HC-32", "nut on a bolt, by a joint", "", screw, Level::silver},
     {"HC-33", "train of gears", "", gear_train, Level::gold},
+    {"HC-33", "train of gears", "DirectGaussSeidel", gear_train_direct, Level::silver},
     {"HC-34", "chain at its limits", "", limits, Level::gold},
     {"HC-35", "net of ball joints", "AcceleratedGaussSeidel{.tolerance = 1e-6}, WholeViolation", joint_grid,
      Level::gold},
+    {"HC-35", "net of ball joints", "DirectGaussSeidel, WholeViolation", joint_grid_direct, Level::silver},
     {"HC-36", "stretched chain", "PositionProjection", stretched_chain, Level::gold},
+    {"HC-37", "crowding", "ProximalNewton", crowding, Level::gold},
     {"HC-38", "stiff drive", "", drives, Level::silver},
     {"HC-39", "grip", "ProximalNewton", grip, Level::silver},
+    {"HC-40", "rigid on soft", "HexahedralFem, ImplicitEuler", rigid_on_soft, Level::silver},
     {"HC-41", "long spin", "", long_spin, Level::gold},
     {"HC-41", "long pendulum", "ImplicitMidpoint, PositionProjection", long_pendulum, Level::gold},
+    {"HC-41", "long pendulum", "NewtonMidpoint", long_pendulum_midpoint, Level::gold},
     {"HC-42", "tiny and huge", "", scale, Level::gold},
-};
-
-struct Missing {
-  const char* id;
-  const char* title;
-  const char* reason;
-};
-
-inline constexpr Missing missing[] = {
-    {"HC-19", "inverted elements", "no rung yet; tests do it (`loop/soft_recovery`, `loop/soft_hexahedra`)"},
-    {"HC-20", "nearly incompressible", "no rung yet; a test goes to 0.4999 (`bodies/hexahedral_bending`)"},
-    {"HC-23", "Painlevé", "not built yet; needs no new part"},
-    {"HC-27", "arch on moving supports", "not built yet; needs no new part"},
-    {"HC-31", "rope with a knot",
-     "not built yet; a rope's contact with itself needs small steps and continuous collision"},
-    {"HC-32", "nut on a bolt", "not built yet; meshes are `WithMeshes`"},
-    {"HC-37", "crowding", "not built yet; needs no new part"},
-    {"HC-40", "rigid on soft", "no rung yet; a test goes from 1 g to 1 t (`loop/soft_coupling`)"},
 };
 
 }  // namespace ladders

@@ -1,0 +1,200 @@
+// HC-23, HC-27, HC-31, HC-32, HC-37: paradoxes, arches, ropes around posts, screws, crowds.
+#include "rows.hpp"
+#include "watch.hpp"
+
+#include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/solvers/proximal_newton.hpp>
+
+namespace ladders {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// λ of a contact in a plane, normal and along x, from its W and the velocity without it: open, stick or one
+/// of two ways of slip, by trying.
+Vec<2> planar_coulomb(const Mat<2, 2>& W, const Vec<2>& b, double mu) {
+  if (b[0] >= 0) return Vec<2>::Zero();
+  const double det = W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0);
+  const Vec<2> stick(-(W(1, 1) * b[0] - W(0, 1) * b[1]) / det, -(W(0, 0) * b[1] - W(1, 0) * b[0]) / det);
+  if (stick[0] >= 0 && std::abs(stick[1]) <= mu * stick[0]) return stick;
+  for (const double way : {-1., 1.}) {
+    const double n = -b[0] / (W(0, 0) + way * mu * W(0, 1));
+    const double slip = b[1] + (W(1, 0) + way * mu * W(1, 1)) * n;
+    if (n >= 0 && way * slip <= 0) return {n, way * mu * n};
+  }
+  return stick;
+}
+
+}  // namespace
+
+// A rod of a metre leans on the ground and is pushed along on its tip: Painlevé's. The impulse of the first
+// step.
+void painleve(Ladder& ladder) {
+  struct Case {
+    double degrees, friction, h;
+  };
+  for (const auto& [degrees, friction, h] : {Case{45, 0.5, 1e-2},
+                                             {45, 2, 1e-2},
+                                             {60, 1, 1e-3},
+                                             {60, 2, 1e-3},
+                                             {60, 2, 1e-4},
+                                             {70, 3, 1e-4},
+                                             {80, 5, 1e-4},
+                                             {60, 2, 1e-6}})
+    ladder.rung(format("%g degrees, friction %g, h = %g s", degrees, friction, h),
+                [&, degrees = degrees, friction = friction, h = h]() -> Marks {
+                  double off = 0, slack = 0;
+                  for (const double way : {-1., 1.}) {
+                    AnimationLoop loop{World{RigidBodies{}},
+                                       Constraints{Contact{Coulomb{.friction = friction}}},
+                                       AcceleratedGaussSeidel{.tolerance = 1e-13, .max_iterations = 100000}};
+                    auto& set = bodies<RigidBodies>(loop.world());
+                    set.add_fixed(HalfSpace{});
+                    const double lean = degrees * pi / 180, radius = 0.01;
+                    const Vec3 along(std::cos(lean), 0, std::sin(lean));
+                    const auto rod = set.add({.position = 0.5 * along + Vec3(0, 0, radius),
+                                              .orientation = frame_along(along),
+                                              .velocity = {3 * way, 0, 0},
+                                              .mass = 1.0,
+                                              .inertia = Mat3(Vec3(1. / 12, 1. / 12, 1e-4).asDiagonal()),
+                                              .shape = Capsule{radius, 1}});
+                    // The tip is at arm from the centre: v_x − ω_y … of a plane, ω about y, x' = ω z, z' = −ω
+                    // x.
+                    const double x = -0.5 * along.x(), z = -0.5 * along.z() - radius;
+                    Mat<2, 2> W;
+                    W(0, 0) = 1 + 12 * x * x, W(1, 1) = 1 + 12 * z * z;
+                    W(0, 1) = W(1, 0) = -12 * x * z;
+                    const Vec<2> wanted = planar_coulomb(W, {-g * h, 3 * way}, friction);
+                    loop.step(h);
+                    Vec3 impulse = Vec3::Zero();
+                    for (const ContactResult& c : loop.contacts())
+                      impulse += (c.record.b.block == rod.index ? 1. : -1.) * c.impulse;
+                    off = most(off, (Vec<2>(impulse.z(), impulse.x()) - wanted).norm() / wanted.norm());
+                    const Seen seen = run(ladder, loop, std::min(2., 2000 * h), h);
+                    slack = most(slack, seen.gain);
+                  }
+                  return {{"impulse against the closed form", off, 0.01, 0.01},
+                          {"energy gained / energy of the scene", slack / (4.5 + g / 2), 0.01, 0.01}};
+                });
+}
+
+// A half circle of twenty wedges, mean radius 10 m, on the ground's friction; Milankovitch's least thickness
+// is 0.1075 of the radius for radial joints.
+void arch(Ladder& ladder) {
+  constexpr int count = 20;
+  for (const double times : {3., 2., 1.5, 1.2, 1.07, 0.93})
+    ladder.rung(format("%g × the least thickness", times), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.8}}},
+                         ProximalNewton{}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.add_fixed(HalfSpace{});
+      const double half = 0.5 * times * 0.1075 * 10, step = pi / count;
+      std::vector<RigidBodies::Handle> stones;
+      for (int k = 0; k < count; ++k) {
+        std::vector<Vec3> corners;
+        for (const double angle : {k * step, (k + 1) * step})
+          for (const double r : {10 - half, 10 + half})
+            for (const double y : {-1., 1.}) corners.push_back({r * std::cos(angle), y, r * std::sin(angle)});
+        const ConvexHull hull(corners);
+        stones.push_back(set.add({.position = hull.centroid(), .density = 2000., .shape = hull}));
+      }
+      const auto top = stones[count / 2];
+      const double start = set.position(top).z();
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.3 : 10, frame);
+      const double drop = (start - set.position(top).z()) / 10;
+      const double wrong = times > 1 ? drop : 0.5 - drop;  // it must fall, or must not
+      return {
+          {"drop of the crown / radius, or what is missing of a fall", wrong, 0.01, times > 1 ? 1e-3 : 0.01},
+          energy_mark(seen, 2000 * 2 * half * 2 * pi * 10 * g * 6)};
+    });
+}
+
+// A rope of small beads hangs over a fixed post, one end loaded more: it holds up to exp(π μ), and a little
+// more for its own weight, an eighth of the loads.
+void bollard(Ladder& ladder) {
+  const double mu = 0.3, edge = std::exp(pi * mu);
+  for (const double share : {0.5, 0.8, 0.9, 1.1, 1.25, 0.95, 1.05})
+    ladder.rung(format("loads at %g of exp(pi mu)", share), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}, Particles{}},
+                         Constraints{Contact{Coulomb{.friction = mu}}, DistanceJoint{}},
+                         DirectGaussSeidel{.tolerance = 1e-8}, WholeViolation{}};
+      auto& rigid = bodies<RigidBodies>(loop.world());
+      auto& beads = bodies<Particles>(loop.world());
+      rigid.add_fixed(Cylinder{1, 4}, {0, 0, 0}, frame_along({0, 1, 0}));
+      constexpr int around = 40, down = 1;
+      const double radius = 0.02, r = 1 + radius, length = 2 * r * std::sin(pi / around / 2);
+      std::vector<Particles::Handle> rope;
+      const auto add = [&](const Vec3& at, double mass) {
+        rope.push_back(
+            beads.add({.position = at, .mass = mass, .radius = radius, .group = 2, .collides_with = ~2u}));
+      };
+      for (int k = down; k > 0; --k) add({-r, 0, -length * k}, k == down ? 1 : 1e-2);
+      for (int k = 0; k <= around; ++k)
+        add({-r * std::cos(pi * k / around), 0, r * std::sin(pi * k / around)}, 1e-2);
+      for (int k = 1; k <= down; ++k) add({r, 0, -length * k}, k == down ? share * edge : 1e-2);
+      for (std::size_t k = 0; k + 1 < rope.size(); ++k)
+        loop.add(DistanceJoint::Item{
+            .a = anchor(beads, rope[k]), .b = anchor(beads, rope[k + 1]), .length = length});
+      const double start = beads.position(rope.back()).z();
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.1 : 1, 0.002);
+      const double fall = start - beads.position(rope.back()).z();
+      // Beyond it the loads move with a = g (s − 1)/(s + 1), less what the rope's own weight holds: a third
+      // will do.
+      const double free = share > 1 && !ladder.is_quick() ? 0.5 * g * (share - 1) / (share + 1) : 0;
+      const double wrong = share < 1 ? fall : free / 3 - fall;
+      return {{"slip of the load that should hang, or what is missing (m)", wrong, share < 1 ? 0.05 : 0,
+               share < 1 ? 0.01 : 0},
+              energy_mark(seen, (1 + edge) * g)};
+    });
+}
+
+// A nut that is turned on a thread of 1.75 mm.
+void screw(Ladder& ladder) {
+  for (const double turns : {1., 10., 100.})
+    ladder.rung(format("%g turns", turns), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Screw{}, Motor<Turn>{}}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const auto nut = set.add({.mass = 0.02, .inertia = Mat3(1e-6 * Mat3::Identity())});
+      const Anchor bolt = world_anchor({0, 0, 0}), end = anchor(set, nut);
+      loop.add(Screw::Item{.a = bolt, .b = end, .pitch = 1.75e-3});
+      loop.add(Motor<Turn>::Item{.a = bolt, .b = end, .speed = 2 * pi});
+      const double until = ladder.is_quick() ? 1 : turns;
+      run(ladder, loop, until, 0.01);
+      // A turn of ω by the midpoint rule is 2 atan(h ω/2).
+      const double turned = until / 0.01 * 2 * std::atan(0.01 * pi) / (2 * pi);
+      return {{"way against pitch × turns", std::abs(set.position(nut).z() / (1.75e-3 * turned) - 1), 0.05,
+               5e-3}};
+    });
+}
+
+// Spheres on a plane that all want to the middle.
+void crowding(Ladder& ladder) {
+  for (const int edge : {5, 10, 20})
+    ladder.rung(format("%d spheres", edge * edge), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                         ProximalNewton{}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.add_fixed(HalfSpace{});
+      std::vector<RigidBodies::Handle> all;
+      for (int i = 0; i < edge; ++i)
+        for (int k = 0; k < edge; ++k)
+          all.push_back(
+              set.add({.position = {0.3 * (i - 0.5 * (edge - 1)), 0.3 * (k - 0.5 * (edge - 1)), 0.1},
+                       .mass = 1.0,
+                       .shape = Sphere{0.1}}));
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.2 : 10, frame, [&](int) {
+        for (const auto& body : all) {
+          const Vec3 x = set.position(body);
+          set.apply_force(body, -10 * Vec3(x.x(), x.y(), 0) / std::max(1e-3, std::hypot(x.x(), x.y())));
+        }
+      });
+      double square = 0;
+      for (const auto& body : all) square += set.velocity(body).squaredNorm() / double(all.size());
+      return {{"rms speed at the end (m/s)", std::sqrt(square), ladder.is_quick() ? 10 : 0.1,
+               ladder.is_quick() ? 10 : 1e-3},
+              {"largest overlap / diameter", seen.penetration / 0.2, 0.1, 0.01}};
+    });
+}
+
+}  // namespace ladders
