@@ -104,18 +104,17 @@ class PathImpulses {
  public:
   template <class Problem>
   bool gather(Problem& problem) {
-    items_.clear();
+    items_.resize(std::size_t(problem.row_count() / R));
+    own_.clear();
     entries_.clear();
     pairs_.clear();
     const auto& W = problem.compliance().template blocks<0, 0>();
     bool is_sound = true;
     problem.each([&](auto, Index i) {
-      PathItem<R> c{};
-      c.item = i;
-      is_sound = is_sound && i == Index(items_.size()) && problem.book().template friction<0>(i) > 0;
-      items_.push_back(c);
-      own_.resize(items_.size());
-      own_.back() = problem.compliance().template diagonal<0>(i);
+      is_sound = is_sound && i == Index(own_.size()) && problem.book().template friction<0>(i) > 0;
+      if (!is_sound) return;
+      items_[std::size_t(i)].item = i;
+      own_.push_back(problem.compliance().template diagonal<0>(i));
       for (Index e = W.start[i]; e < W.start[i + 1]; ++e) {
         entries_.push_back({i, W.column[e], W.block[e]});
         pairs_.emplace_back(i, W.column[e]);
