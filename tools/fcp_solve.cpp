@@ -1,6 +1,6 @@
 // Solves friction problems from files, one line each:
 //
-//   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|newton|plain] [--warm FILE] [--out FILE]
+//   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|newton|path|plain] [--warm FILE] [--out FILE]
 //             [--save FILE] [--time-limit S]
 //
 // err is Siconos' error, err_s the scale-free one; by default both must be within the tolerance. `build` is the own blocks'
@@ -17,6 +17,7 @@
 #include <delassus/solvers/contact_newton.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/with_deadline.hpp>
 
 #include <algorithm>
@@ -108,7 +109,9 @@ Result run_named(FrictionProblem& problem, const Options& o) {
   if (o.solver == "newton")
     return run(problem, BasicContactNewton<Criterion>{.tolerance = o.tolerance, .min_iterations = 0, .max_sweeps = no_limit},
                o.time_limit);
-  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'newton' and 'plain'");
+  if (o.solver == "path")
+    return run(problem, BasicPathNewton<Criterion>{.tolerance = o.tolerance, .max_iterations = no_limit, .max_sweeps = no_limit}, o.time_limit);
+  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'newton', 'path' and 'plain'");
   return run(problem,
              BasicAcceleratedGaussSeidel<Criterion>{
                  .tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},
@@ -141,7 +144,7 @@ Options parse(int count, char** words) {
     else inner::refuse("there is no option " + word);
   }
   DELASSUS_EXPECT(!o.files.empty(), "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] "
-                                    "[--solver accelerated|newton|plain] [--warm FILE] [--out FILE] [--save FILE] [--time-limit S]");
+                                    "[--solver accelerated|newton|path|plain] [--warm FILE] [--out FILE] [--save FILE] [--time-limit S]");
   DELASSUS_EXPECT(o.files.size() == 1 || (o.warm.empty() && o.out.empty() && o.save.empty()),
                   "--warm, --out and --save go with one problem");
   return o;

@@ -24,3 +24,19 @@ TEST_CASE("the pivoted LU leaves a residual of rounding, however ill conditioned
     REQUIRE((A * X - B).cwiseAbs().maxCoeff() <= 1e-14 * bound.maxCoeff());
   }
 }
+
+TEST_CASE("the sign of the determinant is told by the pivoted LU") {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> draw(-1, 1);
+  int negative = 0;
+  for (int n = 0; n < 200; ++n) {
+    const Mat<3, 3> A = Mat<3, 3>::NullaryExpr([&] { return draw(random); });
+    const double determinant = A.row(0).cross(A.row(1)).dot(A.row(2));
+    PivotedLu<3, double> lu;
+    if (std::abs(determinant) < 1e-10 || !lu.factor(A)) continue;
+    REQUIRE(lu.is_negative() == (determinant < 0));
+    negative += determinant < 0;
+  }
+  REQUIRE(negative > 50);
+  REQUIRE(negative < 150);
+}

@@ -59,6 +59,13 @@ class BlockLu {
     return true;
   }
 
+  /// Whether det A < 0.
+  bool is_negative() const {
+    bool is = false;
+    for (const auto& pivot : pivot_) is ^= pivot.is_negative();
+    return is;
+  }
+
   /// x ← A⁻¹ x.
   void solve(std::vector<Vec<w, T>>& x) const {
     const Index n = Index(diagonal_.size());

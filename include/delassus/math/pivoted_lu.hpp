@@ -49,6 +49,13 @@ class PivotedLu {
     }
   }
 
+  /// Whether det A < 0, of the last A that was factored.
+  bool is_negative() const {
+    bool is = false;
+    for (int k = 0; k < w; ++k) is ^= (lu_(k, k) < T(0)) ^ (swap_[k] != k);
+    return is;
+  }
+
  private:
   Mat<w, w, T> lu_;
   std::array<T, w> over_;  ///< 1 / U_kk

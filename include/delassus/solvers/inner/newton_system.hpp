@@ -80,6 +80,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
     return J.factor();
   }
+  bool is_negative() const { return matrix_->is_negative(); }  ///< det J < 0
   /// x ← J⁻¹ x.
   void solve(Velocities& x) const { matrix_->solve(x); }
 

@@ -1,0 +1,250 @@
+/// Newton's method along the path of smoothed contact laws, around its folds.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/core/status.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/path_laws.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace delassus {
+
+/// Follows the solutions (x, log τ) of `inner::PathItem`, a curve that begins with a τ at which all
+/// constraints are alike and ends at τ = 0, by its length: a step along the tangent, then Newton's method
+/// across it. Coulomb's law is not monotone, so τ need not fall all along the curve: where it turns back, a
+/// method that lowers τ alone is caught, and this one goes around. Nothing stands on a corner before τ is
+/// small, so that hyperstatic contacts whose gaps do not fit, among which others go round, are no matter.
+///
+/// It begins from λ = 0, whatever λ is, and keeps what it was given where it finds no smaller error. A
+/// factorization has six unknowns a body, without bodies three a contact; tens of them where the curve is
+/// plain, a thousand and more where it folds. Islands with laws other than equalities, φ ≥ 0 and Coulomb's
+/// are left as they are, and so are coefficients of zero where there are no bodies. Source:
+/// [ChenMangasarian1996] for following smoothed complementarity, [FukushimaLuoTseng2002] for the cone,
+/// [AllgowerGeorg1990] for the length of the curve.
+template <class Criterion = Residual>
+struct BasicPathNewton {
+  static_assert(Criterion::needs_measure,
+                "delassus: PathNewton stops on a measured error; use the criterion Residual or SiconosError");
+  using plays = role::Solver;
+  double tolerance = 1e-8;    ///< of the criterion
+  int max_iterations = 4000;  ///< factorizations
+  int max_sweeps =
+      4000;  ///< accelerated ones, from the best λ of the path where rounding or a limit ended it
+  bool scale_tolerance = false;  ///< tolerance × number of rows
+  bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+
+  template <class Rows>
+  struct Workspace {
+    inner::PathLaws<Rows> laws;
+    Impulses<Rows> best;
+    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    void reset(const Rows& rows) {
+      best.resize_like(rows);
+      sweeps.reset(rows);
+    }
+  };
+
+  void check() const {
+    DELASSUS_EXPECT(tolerance >= 0, "PathNewton: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations >= 0,
+                    "PathNewton: max_iterations " + inner::text(max_iterations) + " must be >= 0");
+    DELASSUS_EXPECT(max_sweeps >= 0, "PathNewton: max_sweeps " + inner::text(max_sweeps) + " must be >= 0");
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work) const {
+    Walk<Problem, Workspace> now{problem, work.laws, work.best, max_iterations};
+    now.report.measure = now.best = problem.measure();
+    now.report.ended_by = "path";
+    problem.tell(0, now.best);
+    if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
+    problem.save(work.best);
+    if (!meets(now.best, problem) && work.laws.gather(problem)) {
+      now.log_tau = 2 * std::log(work.laws.scale());
+      if (reach_path(now)) {
+        follow(now);
+        descend(now);
+      }
+      problem.load(work.best);
+      now.report.measure = problem.measure();
+    }
+    if (max_sweeps > 0 && !meets(now.report.measure, problem) && !problem.is_out_of_time()) {
+      SolveReport report = sweep(problem, work);
+      report.factorizations = now.report.factorizations;
+      return report;
+    }
+    now.report.status = inner::verdict<Criterion>(*this, now.report.measure, problem.row_count());
+    return now.report;
+  }
+
+ private:
+  template <class Problem, class Workspace>
+  struct Walk {
+    Problem& problem;
+    decltype(Workspace::laws)& work;
+    decltype(Workspace::best)& kept;
+    int limit;  ///< factorizations
+    SolveReport report{};
+    Measure best{};
+    double log_tau = 0, next = 0;  ///< next: log τ of the last evaluation
+    double rise = -1;              ///< d log τ/ds
+
+    double tau() const { return std::exp(log_tau); }
+
+    /// |r| at x + δ + s dx/ds, as a share of what the path may be missed by.
+    double evaluate(double t, double s) {
+      const double tau = std::exp(next), size = work.evaluate(problem, tau, t, s);
+      const double rounding = 16 * std::numeric_limits<double>::epsilon() * work.reach();
+      return size / (std::sqrt(double(work.rows())) * std::max(1e-5 * std::sqrt(tau), rounding));
+    }
+    bool factor() {
+      if (report.factorizations >= limit) return false;
+      ++report.factorizations;
+      return work.template factor<Problem>(std::exp(next));
+    }
+    /// Σ over the path's length of two directions, the second by its member.
+    template <class Which>
+    double along(const Which& which) {
+      return work.product(
+          tau(), [](const auto& c) { return c.tangent; }, which);
+    }
+  };
+
+  static constexpr double least_step = 1e-7;  ///< of the curve's length: below it goes to and fro in rounding
+
+  /// Newton's method at the first τ, from x = 0.
+  template <class W>
+  bool reach_path(W& now) const {
+    now.next = now.log_tau;
+    double size = now.evaluate(0, 0);
+    for (int step = 0; step < 60 && size > 1; ++step) {
+      if (!now.factor()) return false;
+      now.work.find_direction();
+      now.work.each_item([](auto& c) { c.direction = c.lambda; });
+      double least = size;
+      for (double t = 1; t > 1e-4 && !(least < size); t /= 2) least = now.evaluate(t, 0);
+      if (!(least < size)) return false;
+      size = least;
+      now.work.advance();
+    }
+    return size <= 1;
+  }
+
+  template <class W>
+  void follow(W& now) const {
+    if (!turn(now)) return;
+    double step = 0.5;
+    while (!is_done(now)) {
+      int corrections = -1;
+      while (corrections < 0) {
+        if (now.report.factorizations >= max_iterations || step < least_step || now.problem.is_out_of_time())
+          return;
+        corrections = go_along(now, step);
+        if (corrections < 0) step *= 0.4;
+      }
+      if (!turn(now)) return;
+      if (corrections <= 2)
+        step = std::min(2 * step, 3.0);
+      else if (corrections == 3)
+        step = std::min(1.3 * step, 3.0);
+      else if (corrections > 5)
+        step *= 0.7;
+    }
+  }
+
+  /// Where steps along the curve have drowned in rounding: τ falls by twenty times as often as a Newton step
+  /// halves r.
+  template <class W>
+  void descend(W& now) const {
+    now.next = now.log_tau;
+    for (int step = 0; step < 80 && now.report.factorizations < max_iterations; ++step) {
+      if (now.problem.is_out_of_time()) return;
+      double size = now.evaluate(0, 0);
+      if (is_done(now) || !now.factor()) return;
+      now.work.find_direction();
+      now.work.each_item([](auto& c) { c.direction = c.lambda; });
+      double t = 1, least = size;
+      for (; t > 1e-4 && !(least < size); t /= 2) least = now.evaluate(t, 0);
+      if (least < size) now.work.advance();
+      if (!(least > 0.5 * size) || least <= 1 || !(least < size)) now.next -= 3;
+    }
+  }
+
+  /// A step along the tangent, then across it back to the curve; how many corrections that took, −1: too
+  /// many.
+  template <class W>
+  static int go_along(W& now, double step) {
+    now.next = now.log_tau + step * now.rise;
+    now.work.each_item([](auto& c) { c.direction.setZero(); });
+    double last = 0;
+    for (int k = 0; k < 7; ++k) {
+      const double size = now.evaluate(1, step);
+      if (size <= 1) return k;
+      if (!std::isfinite(size) || (k > 0 && size > 0.5 * last) || !now.factor()) return -1;
+      last = size;
+      const double tau = std::exp(now.next);
+      now.work.find_direction();
+      now.work.each_item([](auto& c) { c.best = c.lambda; });
+      now.work.template find_rate<typename std::remove_cvref_t<decltype(now.problem)>>(tau);
+      // −J δ + ∂r/∂log τ δσ = −r across the tangent: δ = J⁻¹ r + rate δσ.
+      const double change = -now.along([](const auto& c) { return c.best; }) /
+                            (now.along([](const auto& c) { return c.rate; }) + now.rise);
+      now.work.each_item([&](auto& c) { c.direction += c.best + change * c.rate; });
+      now.next += change;
+    }
+    return -1;
+  }
+
+  /// x ← where the last evaluation was, and the tangent there. Along the curve det(−∂r/∂x) and d log τ/ds
+  /// change their signs together: that tells ahead from behind where it folds, or nearly meets another,
+  /// within a step.
+  template <class W>
+  static bool turn(W& now) {
+    if (!now.factor()) return false;
+    now.work.template find_rate<typename std::remove_cvref_t<decltype(now.problem)>>(std::exp(now.next));
+    now.work.advance();
+    now.log_tau = now.next;
+    const auto rate = [](const auto& c) { return c.rate; };
+    const double length = std::sqrt(now.work.product(now.tau(), rate, rate) + 1);
+    now.rise = (now.work.is_negative() ? 1 : -1) / length;
+    now.work.each_item([&](auto& c) { c.tangent = now.rise * c.rate; });
+    return std::isfinite(length);
+  }
+
+  template <class Problem, class Workspace>
+  SolveReport sweep(Problem& problem, Workspace& work) const {
+    const BasicAcceleratedGaussSeidel<Criterion> solver{.tolerance = tolerance,
+                                                        .max_iterations = max_sweeps,
+                                                        .min_iterations = 0,
+                                                        .scale_tolerance = scale_tolerance,
+                                                        .all_verified = all_verified};
+    return solver.solve(problem, work.sweeps);
+  }
+
+  /// Measures λ by W itself and keeps the best.
+  template <class W>
+  bool is_done(W& now) const {
+    const Measure m = now.problem.measure();
+    now.problem.tell(now.report.factorizations, m);
+    if (Criterion::sum(m) < Criterion::sum(now.best)) {
+      now.best = m;
+      now.problem.save(now.kept);
+    }
+    return meets(now.best, now.problem) || !std::isfinite(m.residual);
+  }
+  template <class Problem>
+  bool meets(const Measure& m, const Problem& problem) const {
+    return inner::is_within<Criterion>(*this, m, problem.row_count()) || m.residual <= m.floor;
+  }
+};
+
+using PathNewton = BasicPathNewton<>;
+
+}  // namespace delassus

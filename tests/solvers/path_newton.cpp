@@ -1,0 +1,105 @@
+#include <delassus/loop/friction_problem.hpp>
+#include <delassus/solvers/path_newton.hpp>
+
+#include "catch.hpp"
+#include "cold_problems.hpp"
+#include "scenes.hpp"
+
+using namespace scenes;
+using cold_problems::problem_of;
+
+namespace {
+
+/// `masses` of boxes on each other, from the ground up, after one step: with their bodies.
+auto tower(std::initializer_list<double> masses) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     AcceleratedGaussSeidel{.max_iterations = 1}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  double z = 0.5;
+  for (const double mass : masses) {
+    set.add({.position = {1e-3 * z, 0, z}, .velocity = {0.1, 0, 0}, .mass = mass, .shape = Box{1, 1, 1}});
+    z += 1;
+  }
+  loop.step(0.01);
+  auto p = loop.problem();
+  for (Vec3& lambda : p.rows.template pool<0>().lambda) lambda.setZero();
+  return p;
+}
+
+/// The error of the λ that a problem has, by the plain solver's measure.
+template <class Problem>
+double error(Problem& p) {
+  return solve(p, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure.residual;
+}
+
+constexpr PathNewton path_alone{.tolerance = 1e-7, .max_sweeps = 0};
+
+/// λ meets the laws, and lies in the cone to rounding.
+template <class Problem>
+void check_solved(Problem& p, const SolveReport& r) {
+  CAPTURE(r.factorizations, r.measure.residual);
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(error(p) <= 1e-7);
+  REQUIRE(error(p) >= 0);
+  for (const Vec3& x : p.rows.template pool<0>().lambda) {
+    REQUIRE(x[0] >= 0);
+    REQUIRE(x.tail<2>().norm() <= 0.5 * x[0] * (1 + 1e-12) + 1e-15);
+  }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the path of smoothed laws leads to Coulomb's law without a sweep, in body space and in contact space") {
+  for (const double heavy : {1.0, 1e3}) {
+    auto with_bodies = tower({1, 1, heavy});
+    auto without = friction_problem(with_bodies);
+    const SolveReport a = solve(with_bodies, path_alone), b = solve(without, path_alone);
+    REQUIRE(a.sweeps == 0);
+    REQUIRE(a.factorizations > 2);
+    REQUIRE(b.factorizations > 2);
+    check_solved(with_bodies, a);
+    check_solved(without, b);
+  }
+}
+
+// Four contacts a face are three too many for each λ to be unique; what moves is. Both errors of 1e-7 are
+// relative to velocities of 0.1 m/s, and three boxes pass them on with a condition of some ten.
+TEST_CASE("the motion at the end of the path is that of the sweeps") {
+  auto p = tower({1, 1, 1}), swept = p;
+  REQUIRE(solve(p, path_alone).status == Status::converged);
+  REQUIRE(solve(swept, AcceleratedGaussSeidel{.tolerance = 1e-10}).status == Status::converged);
+  const auto& contacts = p.rows.pool<0>();
+  for (Index i = 0; i < Index(contacts.lambda.size()); ++i) {
+    const double apart = (p.W.residual<0>(p.rows, i) - swept.W.residual<0>(swept.rows, i)).norm();
+    REQUIRE(apart <= 1e-6);
+  }
+}
+
+TEST_CASE("where the path is not let to its end, sweeps go on from its best impulses") {
+  auto p = tower({1, 1, 1});
+  const SolveReport r = solve(p, PathNewton{.tolerance = 1e-8, .max_iterations = 15});
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(r.sweeps > 0);
+  REQUIRE(r.factorizations <= 15);
+  REQUIRE(error(p) <= 1e-8);
+}
+
+TEST_CASE("what is solved already is not touched by the path, and a limit of none leaves λ as it is") {
+  auto p = tower({1, 1});
+  REQUIRE(solve(p, AcceleratedGaussSeidel{.tolerance = 1e-9}).status == Status::converged);
+  const auto before = p.rows.pool<0>().lambda;
+  REQUIRE(solve(p, PathNewton{.tolerance = 1e-6}).factorizations == 0);
+  REQUIRE(p.rows.pool<0>().lambda == before);
+  const SolveReport none = solve(p, PathNewton{.tolerance = 0, .max_iterations = 0, .max_sweeps = 0});
+  REQUIRE(none.factorizations == 0);
+  for (std::size_t i = 0; i < before.size(); ++i)  // W is told of λ there and back
+    REQUIRE((p.rows.pool<0>().lambda[i] - before[i]).norm() <= 1e-12);
+}
+
+TEST_CASE("a number of PathNewton that cannot be is refused in one sentence") {
+  REQUIRE_THROWS_WITH(PathNewton{.tolerance = -1}.check(), Catch::Contains("PathNewton: tolerance -1"));
+  REQUIRE_THROWS_WITH(PathNewton{.max_iterations = -1}.check(), Catch::Contains("max_iterations -1"));
+  REQUIRE_THROWS_WITH(PathNewton{.max_sweeps = -1}.check(), Catch::Contains("max_sweeps -1"));
+}
