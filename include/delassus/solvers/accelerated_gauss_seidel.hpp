@@ -18,8 +18,10 @@ namespace delassus {
 
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
 ///
-///   momentum    Nesterov over exact sweeps: ends nearly every solve; again, with more patience, unless it goes in circles;
-///   anderson    forty plain sweeps, then mixes the last five: breaks limit cycles;
+///   momentum    Nesterov over exact sweeps: ends nearly every solve;
+///   anderson    forty plain sweeps, then mixes the last five: breaks limit cycles, and ends the few slow directions that a
+///               warm start leaves;
+///   momentum    again, with three times the patience, unless it went in circles;
 ///   projection  Nesterov over sweeps of one projection a visit, slower and without the cycles of the exact law;
 ///   patient     momentum again, with ten times the patience;
 ///
@@ -58,7 +60,7 @@ struct BasicAcceleratedGaussSeidel {
   }
 
   /// Sweeps in which the error must halve, at first. Momentum may stand for a thousand before it goes on: where it does not go
-  /// round in circles it has three times as many once more.
+  /// round in circles it has three times as many once more, after the mixing.
   static int first_patience(int rows) { return std::clamp(3 * rows, 100, 400); }
 
   template <class Problem, class Workspace>
@@ -81,9 +83,9 @@ struct BasicAcceleratedGaussSeidel {
       const bool is_in_circles = open("momentum", 1) && momentum(exact);
       if (!pursuit.is_over() && inner::contradicts(problem, pursuit, work.x))
         return compromise(problem, pursuit.finish(), work);
-      if (!is_in_circles && open("momentum", 3)) momentum(exact);
       if (open("anderson", 1) && settle(pursuit, exact))
         inner::anderson(problem, pursuit, work.history, exact);
+      if (!is_in_circles && open("momentum", 3)) momentum(exact);
       if (open("projection", 4)) momentum(one_projection);
       if (open("patient", 10)) momentum(exact);
       if (pursuit.is_over()) return pursuit.finish();
