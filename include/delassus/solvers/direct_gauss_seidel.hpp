@@ -76,8 +76,10 @@ struct BasicDirectGaussSeidel {
       if (joints.factor(epsilon) && (settle(problem, joints) || epsilon == coarse)) break;
     }
     report.measure = problem.measure();
-    for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round) {
-      sweep_others(problem, work, report);
+    // What is met by the others' own scale can miss by the whole island's: each round asks for half as much.
+    double share = 1;
+    for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
+      sweep_others(problem, work, report, share);
       settle(problem, joints);
       report.measure = problem.measure();
       if (report.status == Status::infeasible) return report;
@@ -99,8 +101,8 @@ struct BasicDirectGaussSeidel {
     return true;
   }
 
-  BasicAcceleratedGaussSeidel<Criterion> sweeper(int most) const {
-    return {.tolerance = tolerance,
+  BasicAcceleratedGaussSeidel<Criterion> sweeper(int most, double share = 1) const {
+    return {.tolerance = share * tolerance,
             .max_iterations = most,
             .min_iterations = min_iterations,
             .scale_tolerance = scale_tolerance,
@@ -170,14 +172,14 @@ struct BasicDirectGaussSeidel {
     });
   }
 
-  /// The others with S in place of W, from the λ they have; W is told in the end.
+  /// The others with S in place of W, from the λ they have, to that share of the tolerance; W is told in the end.
   template <class Problem, class Workspace>
-  void sweep_others(Problem& problem, Workspace& work, SolveReport& report) const {
+  void sweep_others(Problem& problem, Workspace& work, SolveReport& report, double share) const {
     work.others.build(work.joints, problem);
     problem.save(work.before);
     Rest<Problem, decltype(work.others)> rest(problem, work.others);
     rest.each([&](auto p, Index i) { rest.template prepare<p>(i, work.others.template diagonal<p>(i)); });
-    const SolveReport swept = sweeper(max_iterations - report.sweeps).solve(rest, work.sweeps);
+    const SolveReport swept = sweeper(max_iterations - report.sweeps, share).solve(rest, work.sweeps);
     report.sweeps += swept.sweeps;
     if (swept.status == Status::infeasible) report.status = swept.status;
     rest.each([&](auto p, Index i) {
