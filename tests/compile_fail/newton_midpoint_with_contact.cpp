@@ -1,4 +1,4 @@
-// expect: delassus: NewtonMidpoint, Rattle and RungeKutta4 solve equalities; contacts, limits, motors and drives need another integrator
+// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha and FullNewton take no contacts, limits, motors and drives
 #include <delassus/delassus.hpp>
 #include <delassus/loop/newton_midpoint.hpp>
 

@@ -9,10 +9,10 @@ namespace cold_problems {
 
 using namespace delassus;
 
-/// The problem of a step of 1/60 s, from cold.
+/// The problem of a step of h, from cold.
 template <class Loop>
-auto problem_of(Loop& loop) {
-  loop.step(1.0 / 60);
+auto problem_of(Loop& loop, double h = 1.0 / 60) {
+  loop.step(h);
   auto p = loop.problem();
   for_each_index<decltype(p)::Rows::pool_count>([&](auto pool) {
     for (auto& x : p.rows.template pool<pool>().lambda) x.setZero();

@@ -1,35 +1,12 @@
 #include <delassus/solvers/contact_newton.hpp>
 
 #include "catch.hpp"
-#include "cold_problems.hpp"
 #include "scenes.hpp"
+#include "towers.hpp"
 
 using namespace scenes;
-using cold_problems::problem_of;
-
-namespace {
-
-/// `masses` of boxes on each other, from the ground up.
-auto tower(std::initializer_list<double> masses) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
-                     AcceleratedGaussSeidel{.max_iterations = 1}};
-  auto& set = rigid_bodies(loop);
-  set.add_fixed(HalfSpace{});
-  double z = 0.5;
-  for (const double mass : masses) {
-    set.add({.position = {1e-3 * z, 0, z}, .mass = mass, .shape = Box{1, 1, 1}});
-    z += 1;
-  }
-  return problem_of(loop);
-}
-
-/// The error of the λ that a problem has, by the plain solver's measure.
-template <class Problem>
-double error(Problem& p) {
-  return solve(p, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure.residual;
-}
-
-}  // namespace
+using cold_problems::error;
+using cold_problems::tower;
 
 // Sweeps contract like r/(1 + r) there [solvers]: a hundred of them leave the error near one.
 TEST_CASE(

@@ -2,36 +2,14 @@
 #include <delassus/solvers/path_newton.hpp>
 
 #include "catch.hpp"
-#include "cold_problems.hpp"
 #include "scenes.hpp"
+#include "towers.hpp"
 
 using namespace scenes;
-using cold_problems::problem_of;
+using cold_problems::error;
+using cold_problems::tower;
 
 namespace {
-
-/// `masses` of boxes on each other, from the ground up, after one step: with their bodies.
-auto tower(std::initializer_list<double> masses) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
-                     AcceleratedGaussSeidel{.max_iterations = 1}};
-  auto& set = rigid_bodies(loop);
-  set.add_fixed(HalfSpace{});
-  double z = 0.5;
-  for (const double mass : masses) {
-    set.add({.position = {1e-3 * z, 0, z}, .velocity = {0.1, 0, 0}, .mass = mass, .shape = Box{1, 1, 1}});
-    z += 1;
-  }
-  loop.step(0.01);
-  auto p = loop.problem();
-  for (Vec3& lambda : p.rows.template pool<0>().lambda) lambda.setZero();
-  return p;
-}
-
-/// The error of the λ that a problem has, by the plain solver's measure.
-template <class Problem>
-double error(Problem& p) {
-  return solve(p, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure.residual;
-}
 
 constexpr PathNewton path_alone{.tolerance = 1e-7, .max_sweeps = 0};
 
@@ -53,7 +31,7 @@ void check_solved(Problem& p, const SolveReport& r) {
 TEST_CASE(
     "the path of smoothed laws leads to Coulomb's law without a sweep, in body space and in contact space") {
   for (const double heavy : {1.0, 1e3}) {
-    auto with_bodies = tower({1, 1, heavy});
+    auto with_bodies = tower({1, 1, heavy}, 0.1, 0.01);
     auto without = friction_problem(with_bodies);
     const SolveReport a = solve(with_bodies, path_alone), b = solve(without, path_alone);
     REQUIRE(a.sweeps == 0);
@@ -67,7 +45,7 @@ TEST_CASE(
 // Four contacts a face are three too many for each λ to be unique; what moves is. Both errors of 1e-7 are
 // relative to velocities of 0.1 m/s, and three boxes pass them on with a condition of some ten.
 TEST_CASE("the motion at the end of the path is that of the sweeps") {
-  auto p = tower({1, 1, 1}), swept = p;
+  auto p = tower({1, 1, 1}, 0.1, 0.01), swept = p;
   REQUIRE(solve(p, path_alone).status == Status::converged);
   REQUIRE(solve(swept, AcceleratedGaussSeidel{.tolerance = 1e-10}).status == Status::converged);
   const auto& contacts = p.rows.pool<0>();
@@ -78,7 +56,7 @@ TEST_CASE("the motion at the end of the path is that of the sweeps") {
 }
 
 TEST_CASE("where the path is not let to its end, sweeps go on from its best impulses") {
-  auto p = tower({1, 1, 1});
+  auto p = tower({1, 1, 1}, 0.1, 0.01);
   const SolveReport r = solve(p, PathNewton{.tolerance = 1e-8, .max_iterations = 15});
   REQUIRE(r.status == Status::converged);
   REQUIRE(r.sweeps > 0);
@@ -87,7 +65,7 @@ TEST_CASE("where the path is not let to its end, sweeps go on from its best impu
 }
 
 TEST_CASE("what is solved already is not touched by the path, and a limit of none leaves λ as it is") {
-  auto p = tower({1, 1});
+  auto p = tower({1, 1}, 0.1, 0.01);
   REQUIRE(solve(p, AcceleratedGaussSeidel{.tolerance = 1e-9}).status == Status::converged);
   const auto before = p.rows.pool<0>().lambda;
   REQUIRE(solve(p, PathNewton{.tolerance = 1e-6}).factorizations == 0);

@@ -1,0 +1,11 @@
+// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha and FullNewton take no contacts, limits, motors and drives
+#include <delassus/bodies/rods.hpp>
+#include <delassus/delassus.hpp>
+#include <delassus/loop/full_newton.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}, Rods{}}, Constraints{Contact{Coulomb{}}}, FullNewton{}};
+  loop.step(1e-3);
+}
