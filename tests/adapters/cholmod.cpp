@@ -5,6 +5,7 @@
 #include "linear/block_graphs.hpp"
 
 #include <cmath>
+#include <limits>
 
 using namespace delassus;
 
@@ -45,4 +46,35 @@ TEST_CASE("CHOLMOD says that a matrix is not positive definite, and does not sol
   CHECK_FALSE(f.factor());
   std::vector<Vec3> x(2, Vec3::Ones());
   CHECK_THROWS_WITH(f.solve(x), Catch::Contains("there is no factor"));
+}
+
+TEST_CASE(
+    "CHOLMOD takes what is not finite for no matrix, goes on afterwards, and answers nothing to nothing") {
+  const std::vector<std::pair<Index, Index>> pairs{{0, 1}};
+  CholmodFactor<3> f;
+  CHECK_FALSE(f.factor());  // there is no pattern
+  f.analyse(2, pairs);
+  const auto fill = [&](double last) {
+    f.set_zero();
+    f.add_diagonal(0, 4 * Mat3::Identity());
+    f.add_diagonal(1, last * Mat3::Identity());
+  };
+  std::vector<Vec3> x(2, Vec3::Ones());
+  for (const double last :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    fill(last);
+    CHECK_FALSE(f.factor());
+    CHECK_THROWS_WITH(f.solve(x), Catch::Contains("there is no factor"));
+  }
+  fill(16);  // squares of powers of two: no rounding
+  REQUIRE(f.factor());
+  f.solve(x);
+  CHECK(x[0] == Vec3::Constant(0.25));
+  CHECK(x[1] == Vec3::Constant(0.0625));
+  std::vector<double> none;
+  f.compliance({}, none);
+  f.analyse(0, {});
+  CHECK(f.factor());
+  x.clear();
+  f.solve(x);
 }

@@ -155,6 +155,13 @@ TEST_CASE("a rod that cannot be one is refused, and says why") {
   refused([](Rod& r) { r.contact_radius = -1; }, "rod #0: contact_radius -1 m must be finite and >= 0");
   refused([](Rod& r) { r.contact_radius = 0.01, r.collides_with = ~0u; }, "would collide with each other");
   refused([](Rod& r) { r.density = 1e-320; }, "node 0 has a mass of");
+  // Even powers would hide the sign.
+  CHECK_THROWS_WITH(round_section(-0.01),
+                    Catch::Contains("round_section: radius -0.01 m must be finite and >= 0"));
+  CHECK_THROWS_WITH(rectangular_section(-0.01, -0.02), Catch::Contains("side along y -0.01 m"));
+  CHECK_THROWS_WITH(rectangular_section(0.01, nan), Catch::Contains("side along z nan m"));
+  CHECK_THROWS_WITH(tube_section(-0.02, 0.01), Catch::Contains("tube_section: outer radius -0.02 m"));
+  CHECK_THROWS_WITH(tube_section(0.02, -0.01), Catch::Contains("tube_section: inner radius -0.01 m"));
   CHECK_THROWS_WITH(straight_line({0, 0, 0}, {1, 0, 0}, 0), Catch::Contains("0 segments"));
   const auto rod = set.add(bent_rod());
   CHECK_THROWS_WITH(set.node(rod, 7), Catch::Contains("rod #0 has nodes 0 to 6, not 7"));
@@ -185,6 +192,19 @@ TEST_CASE("an anchor on a segment moves with the point of the rod it was put on"
     u += set.along(anchor, k, point, direction).dot(set.velocity()[set.anchor_block(anchor, k)]);
   CHECK(std::abs(u - direction.dot(turn.cross(point))) < 1e-15);
   CHECK(std::abs(u) > 0.01);
+}
+
+TEST_CASE("the frames of a rod follow the direction of `up`, however long it is written") {
+  Rod rod = bent_rod();
+  Rods set;
+  const auto reference = set.add(rod);
+  for (const double length : {1e-200, 1e-7, 1e7, 1e200}) {
+    rod.up = {0, 0, length};
+    const auto other = set.add(rod);
+    for (Index k = 0; k < set.node_count(other); ++k)
+      CHECK(set.orientation(set.node(other, k)).angularDistance(set.orientation(set.node(reference, k))) <
+            1e-7);
+  }
 }
 
 TEST_CASE("single precision keeps a rod's forces to its own rounding") {

@@ -44,4 +44,15 @@ TEST_CASE("what lands between the nodes of a bed of hexahedra rests on it, and s
   CHECK(std::abs(on_ball / (5 * 9.81) - 1) < 1e-2);
   CHECK(std::abs(between / (8 * 9.81) - 1) < 1e-2);  // 0.008 m³ of 1000 kg/m³
   CHECK(soft.position(soft.node(cube, 0))[2] > 0.4);
+  // Another world's bodies have the same places and generations. A bed of other cells, under a light ball:
+  Soft other;
+  other.add({.mesh = hexahedral_box({1, 1, 0.4}, {3, 3, 1}),
+             .elasticity = {.young = 1e5},
+             .contact_radius = radius});
+  soft = other;
+  rigid.place(ball, {0.5, 0.5, 0.4 + radius + 0.1 - 1e-4}, Quat::Identity());
+  loop.step(h);
+  REQUIRE(loop.contacts().size() > 0);
+  for (const ContactResult& c : loop.contacts())
+    CHECK((c.record.point() - Vec3(0.5, 0.5, 0.4 + radius)).norm() < 0.01);  // its cell is 0.33 m wide
 }

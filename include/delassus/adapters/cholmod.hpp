@@ -6,6 +6,7 @@
 
 #include <cholmod.h>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -64,6 +65,7 @@ class CholmodFactor {
     view_.stype = -1, view_.itype = CHOLMOD_INT, view_.xtype = CHOLMOD_REAL, view_.dtype = CHOLMOD_DOUBLE;
     view_.sorted = view_.packed = 1;
     cholmod_free_factor(&L_, &common_);
+    if (blocks == 0) return;
     L_ = cholmod_analyze(&view_, &common_);
     DELASSUS_EXPECT(L_ != nullptr,
                     "CholmodFactor: CHOLMOD could not analyse the pattern; is there memory for it?");
@@ -86,13 +88,18 @@ class CholmodFactor {
         A_[std::size_t(start_[w * column + c] + (w - c) + at + r)] += i > j ? block(r, c) : block(c, r);
   }
 
-  /// Makes the factor of A; false when A is not positive definite: then nothing may be solved.
+  /// Makes the factor of A; false when A is not positive definite, or not finite, of which CHOLMOD says
+  /// nothing: then nothing may be solved.
   bool factor() {
+    is_factored_ = std::all_of(A_.begin(), A_.end(), [](double a) { return std::isfinite(a); });
+    if (!is_factored_ || blocks() == 0) return is_factored_;
     cholmod_factorize(&view_, L_, &common_);
     return is_factored_ = common_.status == CHOLMOD_OK && L_->minor == L_->n;
   }
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w>>& x) const { answer(x[0].data(), 1, x[0].data()); }
+  void solve(std::vector<Vec<w>>& x) const {
+    if (!x.empty()) answer(x[0].data(), 1, x[0].data());
+  }
 
   /// The rows and columns of A⁻¹ of some nodes, each named once: C is (w n) × (w n) by columns.
   void compliance(std::span<const Index> nodes, std::span<double> C) const {
@@ -108,6 +115,7 @@ class CholmodFactor {
  private:
   void answer(const double* from, std::size_t columns, double* to) const {
     DELASSUS_EXPECT(is_factored_, "CholmodFactor: there is no factor to solve with");
+    if (columns == 0) return;
     cholmod_dense B{};
     B.nrow = B.d = view_.nrow, B.ncol = columns, B.nzmax = view_.nrow * columns;
     B.x = const_cast<double*>(from);  // CHOLMOD reads it

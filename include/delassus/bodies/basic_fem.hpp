@@ -93,9 +93,9 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
     assemble(scale);
     x_ = shifted_x_;
   }
-  /// f(k, generation, body, x) for every body, x by blocks.
+  /// f(k, number, body, x) for every body, x by blocks.
   void each_system(auto&& f) const {
-    for (const Index k : body_slots_.active()) f(k, body_slots_.generation(k), bodies_[k], x_);
+    for (const Index k : body_slots_.active()) f(k, bodies_[k].number(), bodies_[k], x_);
   }
 
   /// The elastic ones are those of the last `factor`.
@@ -155,9 +155,9 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   }
   void restore() { x_ = shifted_x_; }
 
-  /// f(k, generation, body) for every body, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
+  /// f(k, number, body) for every body, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
   void each_mesh(auto&& f) const {
-    for (const Index k : body_slots_.active()) f(k, body_slots_.generation(k), bodies_[k]);
+    for (const Index k : body_slots_.active()) f(k, bodies_[k].number(), bodies_[k]);
   }
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
   Shape shape(Index b) const { return Sphere{radius_[b]}; }

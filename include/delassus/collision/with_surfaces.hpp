@@ -44,14 +44,14 @@ struct WithSurfaces {
     next_.clear();
     world.each([&](const auto& set, auto s) {
       if constexpr (requires { set.each_mesh([](Index, std::uint32_t, const auto&) {}); })
-        set.each_mesh([&](Index k, std::uint32_t generation, const auto& body) {
+        set.each_mesh([&](Index k, std::uint32_t number, const auto& body) {
           if (!has_thickness(set, body)) return;
-          const auto same = [&](const inner::SoftSurface& x) { return x.is_of(s, k, generation); };
+          const auto same = [&](const inner::SoftSurface& x) { return x.is_of(s, k, number); };
           const auto known = std::find_if(surfaces_.begin(), surfaces_.end(), same);
           if (known != surfaces_.end())
             next_.push_back(std::move(*known)), surfaces_.erase(known);
           else
-            next_.emplace_back(Index(s), k, generation, body.mesh(), body.blocks());
+            next_.emplace_back(Index(s), k, number, body.mesh(), body.blocks());
           next_.back().follow(set);
         });
     });

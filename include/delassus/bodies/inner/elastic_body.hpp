@@ -4,11 +4,13 @@
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/bodies/inner/held_nodes.hpp>
 #include <delassus/bodies/inner/node_matrix.hpp>
+#include <delassus/core/handle.hpp>
 #include <delassus/math/lanes.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <type_traits>
@@ -40,6 +42,9 @@ class ElasticBody {
   }
 
   std::span<const Index> blocks() const { return blocks_; }
+  /// No other body has it, whatever world it is in, and none that a checkpoint brought back: names what is
+  /// kept of this mesh. A copy has it too.
+  std::uint32_t number() const { return number_; }
   const Mesh& mesh() const { return mesh_; }
   /// The block of corner `corner` of element e.
   Index block_of(Index e, int corner) const { return blocks_[mesh_.cells()[e][corner]]; }
@@ -139,6 +144,7 @@ class ElasticBody {
   HeldNodes held_nodes() const { return {is_held_, is_factored_}; }
   void prepare() {
     const std::size_t n = blocks_.size();
+    number_ = next_owner();
     elements_.clear();
     const Lame lame(material_.young, material_.poisson);
     for (Index e = 0; e < Index(mesh_.cells().size()); ++e) elements_.emplace_back(mesh_, e, lame);
@@ -211,8 +217,7 @@ class ElasticBody {
 
   /// Whether A is the one there was; takes over the masses.
   bool is_assembled_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
-    bool is_same =
-        has_constant_stiffness && scale_.mass == scale.mass && scale_.stiffness == scale.stiffness;
+    bool is_same = has_constant_stiffness && scale_.mass == scale.mass && scale_.stiffness == scale.stiffness;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const char is_held = inverse_mass[blocks_[k]] > T(0) ? 0 : 1;
       is_same = is_same && is_held == is_held_[k];
@@ -224,6 +229,7 @@ class ElasticBody {
 
   Mesh mesh_;
   M material_{};
+  std::uint32_t number_ = 0;
   std::vector<Index> blocks_;
   std::vector<E> elements_;
   std::vector<Velocity> force_;

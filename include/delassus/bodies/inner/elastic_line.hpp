@@ -18,7 +18,8 @@ namespace delassus::inner {
 /// more than they must.
 inline std::vector<Quat> frames_along(const std::vector<Vec3>& points, const Vec3& up) {
   std::vector<Quat> frames;
-  Vec3 x = unit_axis(0), y = up;
+  const double size = up.cwiseAbs().maxCoeff();
+  Vec3 x = unit_axis(0), y = size > 0 ? Vec3(up / size) : up;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     const Vec3 piece = points[k + 1] - points[k], next = piece / piece.norm();
     // The smallest turn from x to next takes y along: y + (x × next) × y + …, written by Rodrigues' formula.
@@ -26,7 +27,7 @@ inline std::vector<Quat> frames_along(const std::vector<Vec3>& points, const Vec
     if (k > 0) y = y + turn.cross(y) + turn.cross(turn.cross(y)) / (1 + x.dot(next));
     x = next;
     y -= x.dot(y) * x;
-    if (!(y.norm() > 1e-6 * up.norm())) {  // none was said, or it is along the rod
+    if (!(y.norm() > 1e-6)) {  // none was said, or it is along the rod
       int least = 0;
       for (int i = 1; i < 3; ++i)
         if (std::abs(x[i]) < std::abs(x[least])) least = i;

@@ -20,9 +20,8 @@ namespace delassus::inner {
 class SoftSurface {
  public:
   template <class Mesh>
-  SoftSurface(Index set, Index body, std::uint32_t generation, const Mesh& mesh,
-              std::span<const Index> blocks)
-      : set_(set), body_(body), generation_(generation) {
+  SoftSurface(Index set, Index body, std::uint32_t number, const Mesh& mesh, std::span<const Index> blocks)
+      : set_(set), body_(body), number_(number) {
     std::vector<Index> vertex(mesh.points.size(), -1);
     for (const OuterFace& face : outer_faces(mesh)) {
       std::array<Index, 3> corners{};
@@ -57,8 +56,8 @@ class SoftSurface {
     tree_.build(Index(corners_.size()), [&](Index t) { return bounds_of(t); });
   }
 
-  bool is_of(Index set, Index body, std::uint32_t generation) const {
-    return set_ == set && body_ == body && generation_ == generation;
+  bool is_of(Index set, Index body, std::uint32_t number) const {
+    return set_ == set && body_ == body && number_ == number;
   }
   Index set() const { return set_; }
   std::span<const Index> blocks() const { return block_; }
@@ -201,7 +200,7 @@ class SoftSurface {
   }
 
   Index set_, body_;
-  std::uint32_t generation_;
+  std::uint32_t number_;                       ///< of the body
   std::vector<Index> block_;                   ///< of each vertex
   std::vector<std::array<Index, 3>> corners_;  ///< vertices of each triangle
   std::vector<std::array<Vec3, 3>> places_;    ///< where they are in the element behind

@@ -139,8 +139,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
  private:
   struct Body {
     TurnedInverse<S, T> inverse;
-    std::uint32_t generation = 0;
-    bool is_analysed = false;
+    std::uint32_t number = 0;  ///< of the body that it is of
   };
 
   template <int s, class Set>
@@ -149,12 +148,11 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
     if (scale.stiffness == 0) return;
     auto& own = std::get<s>(bodies_);
     bool is_any_new = false;
-    set.each_system([&](Index k, auto generation, const auto& body, const auto&) {
+    set.each_system([&](Index k, std::uint32_t number, const auto& body, const auto&) {
       if (std::size_t(k) >= own.size()) own.resize(std::size_t(k) + 1);
-      if (!own[k].is_analysed || own[k].generation != std::uint32_t(generation)) {
+      if (own[k].number != number) {
         own[k].inverse.analyse(body);
-        own[k].generation = std::uint32_t(generation);
-        own[k].is_analysed = true;
+        own[k].number = number;
       }
       is_any_new = is_any_new || own[k].inverse.is_of_another(body);
     });
