@@ -73,7 +73,8 @@ TEST_CASE("a block on 30 degrees with friction 5 % above the tangent does not cr
     moved += set.position(block) != settled;
   }
   REQUIRE(moved == 0);
-  REQUIRE(set.orientation(block).vec().norm() < 1e-9);
+  // Contacts are 0.5 m and more from the middle, and 1e-7 m of theirs is twice as much as half the angle.
+  REQUIRE(set.orientation(block).vec().norm() <= 1e-7);
 }
 
 TEST_CASE("below the tangent a block accelerates with g (sin a - mu cos a)") {

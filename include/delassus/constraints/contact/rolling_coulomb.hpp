@@ -125,6 +125,11 @@ struct RollingCoulomb {
     static T length(const Vec<6, T>& x, int k) {
       return size[k] == 2 ? inner::length(x[first[k]], x[first[k] + 1]) : std::abs(x[first[k]]);
     }
+    /// The cones at this share of their angles.
+    Cones opened(T share) const {
+      const auto narrowed = [share](T slope) { return std::tan(share * std::atan(slope)); };
+      return {narrowed(slide), narrowed(roll), narrowed(spin)};
+    }
     bool hold(const Vec<6, T>& x) const {
       bool is_inside = x[0] >= T(0);
       for (int k = 0; k < 3; ++k) is_inside = is_inside && length(x, k) <= slope(k) * x[0];
@@ -177,18 +182,24 @@ struct RollingCoulomb {
       if (is_over) break;
     }
     if (least > enough) {
-      // Steep cones on a normal that answers to friction: from none of it to all, each answer from the one
-      // before.
-      constexpr int parts = 64;
-      Vec<6, T> ahead = Vec<6, T>::Zero();
-      ahead[0] = -b[0] / W(0, 0);
-      for (int part = 1; part <= parts; ++part) {
-        const T share = T(part) / T(parts);
-        const Cones<T> some{share * cones.slide, share * cones.roll, share * cones.spin};
-        for (int k = 0; k < 6 && newton_step(some, W, b, weight, ahead); ++k)
-          if (some.miss(ahead, W * ahead + b, weight).norm() <= enough) break;
+      // Steep cones on a normal that answers to friction: from none of it to all by the angle of the cones,
+      // each answer from the one before.
+      constexpr T rounding = std::numeric_limits<T>::epsilon();
+      const T near = std::sqrt(rounding) * b.norm();
+      T share = 0, part = T(1) / T(16);
+      Vec<6, T> here = Vec<6, T>::Zero();
+      here[0] = -b[0] / W(0, 0);
+      for (int tries = 0; tries < 1000 && share < T(1) && part > T(16) * rounding; ++tries) {
+        const T next = std::min(share + part, T(1));
+        const Cones<T> some = next < T(1) ? cones.opened(next) : cones;
+        Vec<6, T> ahead = here;
+        bool is_met = false;
+        for (int k = 0; k < 6 && !is_met && newton_step(some, W, b, weight, ahead); ++k)
+          is_met = next < T(1) ? some.miss(ahead, W * ahead + b, weight).norm() <= near : is_enough(ahead);
+        if (is_met) here = ahead, share = next;
+        part *= is_met ? T(2) : T(0.5);
       }
-      is_enough(ahead);
+      for (int k = 0; k < 6 && least > enough && newton_step(cones, W, b, weight, here); ++k) is_enough(here);
     }
     cones.clamp(best);
     return best;
@@ -208,9 +219,9 @@ struct RollingCoulomb {
         {double(cones.slide)}, Vec<3, T>(free(0, 0, 2), free(1, 0, 2), free(2, 0, 2)), memory.slide);
     for (int i = 0; i < 3; ++i) lambda[i] = slide[i];
     // The roll is friction under a normal impulse that does not answer to it: b_n = −W_nn λ_n.
-    const Vec<3, T> roll =
-        Coulomb{}.meet({double(cones.roll)},
-                       Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)), memory.roll);
+    const Vec<3, T> roll = Coulomb{}.meet(
+        {double(cones.roll)}, Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)),
+        memory.roll);
     lambda[3] = roll[1], lambda[4] = roll[2];
     const T most = cones.spin * lambda[0];
     lambda[5] = W(5, 5) > T(0) ? std::clamp(-free(5, 5, 5) / W(5, 5), -most, most) : T(0);

@@ -22,8 +22,9 @@ namespace delassus::inner {
 ///
 /// which must be `margin` times √(Σ |d_i|²/w_i), with W z known to no more than the rounding of d, since z is
 /// scaled to be as large as d. A mass ratio r needs y of r times that, so that the margin is beyond any ratio
-/// that sweeps get through. In single precision there is no such margin: nothing is proved there. Source:
-/// [Gale1960], the theorem of the alternative.
+/// that sweeps get through. Joints that contradict each other through a body that contacts hold are found
+/// without the contacts, which would let W z fall slowly. In single precision there is no such margin:
+/// nothing is proved there. Source: [Gale1960], the theorem of the alternative.
 template <class Problem>
 class Contradiction {
   using T = typename Problem::T;
@@ -46,6 +47,22 @@ class Contradiction {
       clear_bounded<p>(i, z);
       problem_.template assign<p>(i, z);
     });
+    if (moves_nothing()) return true;
+    bool has_less = false;
+    has_two_sided_alone_ = true;
+    problem_.each([&](auto p, Index i) {
+      const auto whole = problem_.rows().template pool<p>().lambda[i];
+      auto z = whole;
+      clear_bounded<p>(i, z);
+      has_less = has_less || z != whole;
+      problem_.template assign<p>(i, z);
+    });
+    return has_less && moves_nothing();
+  }
+
+ private:
+  /// Sweeps take W z to zero; whether z still does work then.
+  bool moves_nothing() {
     if (!scale_to_free()) return false;
     double last = std::numeric_limits<double>::infinity(), promise = 0;
     for (int round = 0; round < 40; ++round) {
@@ -65,7 +82,6 @@ class Contradiction {
     return false;
   }
 
- private:
   template <int p>
   static constexpr auto kinds = Problem::BookType::template kinds<p>();
 
@@ -79,9 +95,9 @@ class Contradiction {
       case RowKind::equality:
         return z;
       case RowKind::lower:
-        return std::max(z, T(0));
+        return has_two_sided_alone_ ? T(0) : std::max(z, T(0));
       case RowKind::upper:
-        return std::min(z, T(0));
+        return has_two_sided_alone_ ? T(0) : std::min(z, T(0));
       case RowKind::friction:
         break;
     }
@@ -100,7 +116,8 @@ class Contradiction {
     }
   }
 
-  /// z ← z |d|/|z|, both in energy: (d + W z) − d loses what is smaller than the rounding of d. False for z = 0.
+  /// z ← z |d|/|z|, both in energy: (d + W z) − d loses what is smaller than the rounding of d. False for
+  /// z = 0.
   bool scale_to_free() {
     const Sums s = measure();
     const double factor = std::sqrt(s.free / s.size);
@@ -155,6 +172,7 @@ class Contradiction {
   }
 
   Problem& problem_;
+  bool has_two_sided_alone_ = false;  ///< z = 0 on lower and upper rows
 };
 
 /// Whether λ runs away because the rows contradict each other: asked where sweeps have stalled. Costs sixteen
