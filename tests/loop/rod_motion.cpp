@@ -3,6 +3,7 @@
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
+#include <algorithm>
 #include <limits>
 
 #include "catch.hpp"
@@ -56,4 +57,25 @@ TEST_CASE("a rod that is given a force that is no number stays where it was, and
   loop.step(0.01);
   CHECK(loop.report().status == Status::converged);
   CHECK(rods.position(rods.node(sick, 3)) != before);
+}
+
+// Segments of 5 cm, where the weight bends over (EI/w)^(1/3) = 6 mm: they cannot follow the bend at the
+// clamp.
+TEST_CASE("a thread whose segments are much longer than its bends swings down and does not grow") {
+  AnimationLoop loop{World{Rods{}}, ImplicitEuler{}};
+  auto& set = bodies<Rods>(loop.world());
+  const auto rod = set.add(
+      {.points = straight_line({0, 0, 0}, {1, 0, 0}, 20), .section = round_section(1e-4), .young = 1e6});
+  set.fix(set.node(rod, 0));
+  double longest = 0;
+  for (int n = 0; n < 400; ++n) {
+    loop.step(0.005);
+    for (Index k = 0; k < 20; ++k)
+      longest =
+          std::max(longest, (set.position(set.node(rod, k + 1)) - set.position(set.node(rod, k))).norm());
+  }
+  // Its weight strains it by ρ g L/E = 1e-2; a bar that swings down pulls with 2.5 times that.
+  CHECK(longest / 0.05 - 1 < 2 * 2.5e-2);
+  CHECK(longest / 0.05 - 1 > 1e-3);
+  CHECK(set.position(set.node(rod, 20))[2] < -0.5);
 }

@@ -12,12 +12,16 @@ namespace delassus::inner {
 /// A beam between two nodes that carry frames p₁ and p₂, x along the beam at rest. Its own frame D is half
 /// way between them, and turns with it: whatever the turn of the whole, only
 ///
-///   Γ = Dᵀ(x₂ − x₁) − L e₁   (m: stretch, shear of y and z),   ψ = log(p₁⁻¹ p₂)   (rad: twist, bend),
+///   d = Dᵀ(x₂ − x₁),  ℓ = |d|,  g = 2ℓ/(ℓ + d_x),
+///   Γ = (ℓ − L, √g d_y, √g d_z)   (m: stretch, shear of y and z),   ψ = log(p₁⁻¹ p₂)   (rad: twist, bend),
 ///   Ψ = ½ Γ·k Γ + ½ ψ·c ψ
 ///
-/// count. c = (G J, E I_y, E I_z)/L, k = (E A/L, 1/(L/(κ G A) + L³/(12 E I)) for each side): for small Γ and
-/// ψ this is Timoshenko's beam, exact at the nodes whatever the length. Source: docs/references.md,
-/// [SimoVuQuoc1986] for the strains, [MacNeal1978] for the share of bending in k.
+/// count. Stretch is that of the line between the ends, wherever the frames look: k of shear is that of
+/// bending too, and a segment much longer than its bends, as of a thread that hangs, would grow by it without
+/// end. With √g shear is 2ℓ sin(α/2), α from D to the line, which grows up to a half turn. c = (G J, E I_y, E
+/// I_z)/L, k = (E A/L, 1/(L/(κ G A) + L³/(12 E I)) for each side): for small Γ and ψ this is Timoshenko's
+/// beam, exact at the nodes whatever the length. Source: docs/references.md, [SimoVuQuoc1986] for the
+/// strains, [MacNeal1978] for the share of bending in k.
 struct Beam {
   double length = 0;
   Vec3 k = Vec3::Zero(), c = Vec3::Zero();  ///< N/m and N·m/rad
@@ -37,7 +41,8 @@ struct Beam {
     s.psi = logarithm<double>(unit(p1.conjugate() * (q2 * from_second)));
     s.D = rotation_matrix<double>(p1 * exponential<double>(0.5 * s.psi));
     s.d = s.D.transpose() * Vec3(x2 - x1);
-    s.gamma = s.d - Vec3(length, 0, 0);
+    const double l = s.d.norm(), g = lean_factor(s.d, l);
+    s.gamma = {l - length, g * s.d[1], g * s.d[2]};
     return s;
   }
   double energy(const Strain& s) const {
@@ -63,13 +68,14 @@ struct Beam {
     const Mat3 S = stretch * Mat3(Mat3::Identity()) + along * outer(s.psi, s.psi), cross = skew<double>(s.d);
     const Mat3 mean = 0.5 * cross, difference = (0.5 * lean) * Mat3(cross * skew<double>(s.psi));
     const Mat3 B1 = mean + difference, B2 = mean - difference;
-    const Vec3 n = times(k, s.gamma), m = S * times(c, s.psi);
+    const Mat3 J = strain_by_d(s.d);
+    const Vec3 n = J.transpose() * times(k, s.gamma), m = S * times(c, s.psi);
 
     State state;
     state.force = {s.D * n, s.D * Vec3(m - B1.transpose() * n), s.D * Vec3(-n),
                    s.D * Vec3(-(B2.transpose() * n) - m)};
     if (!with_stiffness) return state;
-    Mat3 P = Mat3(k.asDiagonal());
+    Mat3 P = J.transpose() * Mat3(Mat3(k.asDiagonal()) * J);
     const Mat3 kB1 = P * B1, kB2 = P * B2, SS = S * Mat3(Mat3(c.asDiagonal()) * S);
     const double size = s.d.norm(), pull = n.dot(s.d) / std::max(size * size, 1e-300);
     if (pull > 0) P += pull * (Mat3(Mat3::Identity()) - outer(s.d, s.d) / (size * size));
@@ -88,6 +94,21 @@ struct Beam {
   }
 
  private:
+  /// √g.
+  static double lean_factor(const Vec3& d, double l) {
+    return std::sqrt(2 * l / std::max(l + d[0], 1e-12 * l + 1e-300));
+  }
+  /// ∂Γ/∂d, with t = d/ℓ and ∂√g/∂d = (d_x t − ℓ e₁)/(√g (ℓ + d_x)²).
+  static Mat3 strain_by_d(const Vec3& d) {
+    const double l = std::max(d.norm(), 1e-300), sum = std::max(l + d[0], 1e-12 * l), g = lean_factor(d, l);
+    const Vec3 t = d / l, dg = (d[0] * t - Vec3(l, 0, 0)) / (g * sum * sum);
+    Mat3 J;
+    for (int j = 0; j < 3; ++j) {
+      J(0, j) = t[j];
+      for (int i = 1; i < 3; ++i) J(i, j) = d[i] * dg[j] + (i == j ? g : 0);
+    }
+    return J;
+  }
   static Vec3 times(const Vec3& a, const Vec3& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
   static Mat3 outer(const Vec3& a, const Vec3& b) { return columns<double>(b[0] * a, b[1] * a, b[2] * a); }
 };
