@@ -83,20 +83,24 @@ TEST_CASE("at rest the predicted impulses are the weight, and stay it") {
 }
 
 // Both solve to the tolerance, relative to velocities below 10 m/s: 60 steps differ by 60 h 10 tolerance, and contacts pass a
-// difference on a few times larger.
+// difference on a few times larger. From the step on in which one of the two says that it stayed away (1e-6, when the rods wedge a
+// box in), nothing is promised.
 TEST_CASE("with an exact W the motion is that of the plain order") {
-  constexpr double tolerance = 1e-13;
+  constexpr double tolerance = 1e-11;
   Crowd<PlainOrder> plain(tolerance);
   Crowd<PredictiveScheme> predictive(tolerance);
-  int contacts = 0;
-  for (int n = 0; n < 60; ++n) {
-    contacts = std::max(contacts, plain.loop.step(h).contacts);
-    predictive.loop.step(h);
+  int contacts = 0, steps = 0;
+  for (; steps < 60; ++steps) {
+    const StepReport a = plain.loop.step(h), b = predictive.loop.step(h);
+    if (std::max(a.residual, b.residual) > 2 * tolerance) break;
+    contacts = std::max(contacts, a.contacts);
+    for (std::size_t k = 0; k < plain.bodies.size(); ++k)
+      REQUIRE((rigid_bodies(plain.loop).position(plain.bodies[k]) -
+               rigid_bodies(predictive.loop).position(predictive.bodies[k])).norm() <= 1e-9);
   }
+  CAPTURE(steps);
+  REQUIRE(steps >= 50);
   REQUIRE(contacts >= 8);
-  for (std::size_t k = 0; k < plain.bodies.size(); ++k)
-    REQUIRE((rigid_bodies(plain.loop).position(plain.bodies[k]) -
-             rigid_bodies(predictive.loop).position(predictive.bodies[k])).norm() <= 1e-9);
 }
 
 TEST_CASE("a prediction needs the sweeps of a warm start, to one, and fewer than a cold start") {
