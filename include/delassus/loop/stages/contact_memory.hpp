@@ -28,6 +28,7 @@ class ContactMemory {
   /// Entries to be filled with the contacts of the step, then `sort`.
   std::span<Entry> renew(std::size_t count) {
     entries_.resize(count);
+    order_.reserve(entries_.capacity());  // now, with more contacts than ever, and not when one has lost its name
     return entries_;
   }
   void sort() {
