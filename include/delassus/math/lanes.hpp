@@ -21,9 +21,9 @@ inline Lanes load_lanes(const double* from) {
   return x;
 }
 inline void store_lanes(double* to, const Lanes& x) { std::memcpy(to, &x, sizeof x); }
-inline Lanes root(const Lanes& x) { return Eigen::internal::psqrt(x); }
-inline Lanes size(const Lanes& x) { return Eigen::internal::pabs(x); }
-inline Lanes larger(const Lanes& x, const Lanes& y) { return x > y ? x : y; }
+inline Lanes root_of_lanes(const Lanes& x) { return Eigen::internal::psqrt(x); }
+inline Lanes size_of_lanes(const Lanes& x) { return Eigen::internal::pabs(x); }
+inline Lanes larger_lanes(const Lanes& x, const Lanes& y) { return x > y ? x : y; }
 
 /// By columns.
 struct LaneVector {
@@ -93,17 +93,17 @@ namespace inner {
 inline bool turn_columns(LaneMatrix& B, LaneMatrix& V, int p, int q) {
   LaneVector &x = B.column[p], &y = B.column[q];
   const Lanes a = dot(x, x), b = dot(y, y), g = dot(x, y), zero = all_lanes(0), one = all_lanes(1);
-  const auto turns = size(g) > larger(4e-16 * root(a * b), all_lanes(1e-300));
+  const auto turns = size_of_lanes(g) > larger_lanes(4e-16 * root_of_lanes(a * b), all_lanes(1e-300));
   const Lanes zeta = turns ? (b - a) / (2 * g) : zero;
-  const Lanes t = turns ? (zeta < zero ? -one : one) / (size(zeta) + root(1 + zeta * zeta)) : zero;
-  const Lanes c = 1 / root(1 + t * t), s = c * t;
+  const Lanes t = turns ? (zeta < zero ? -one : one) / (size_of_lanes(zeta) + root_of_lanes(1 + zeta * zeta)) : zero;
+  const Lanes c = 1 / root_of_lanes(1 + t * t), s = c * t;
   for (LaneMatrix* A : {&B, &V})
     for (int i = 0; i < 3; ++i) {
       const Lanes u = (*A)(i, p), v = (*A)(i, q);
       (*A)(i, p) = c * u - s * v;
       (*A)(i, q) = s * u + c * v;
     }
-  return Eigen::internal::predux_max(size(t)) > 0;
+  return Eigen::internal::predux_max(size_of_lanes(t)) > 0;
 }
 
 /// Exchanges columns p and q, one of them turned round, where q is the longer one.
@@ -147,7 +147,7 @@ inline LaneSingularValues singular_values(const LaneMatrix& F) {
       is_turning = inner::turn_columns(B, V, p, q) || is_turning;
   }
   for (const auto& [p, q] : inner::pairs_of_three) inner::order_columns(B, V, p, q);
-  const Lanes longest = root(dot(B.column[0], B.column[0])), one = all_lanes(1), zero = all_lanes(0);
+  const Lanes longest = root_of_lanes(dot(B.column[0], B.column[0])), one = all_lanes(1), zero = all_lanes(0);
   LaneSingularValues f;
   f.V = V;
   LaneVector& u0 = f.U.column[0];
@@ -155,7 +155,7 @@ inline LaneSingularValues singular_values(const LaneMatrix& F) {
   u0 = times(1 / longest, B.column[0]);
   const Lanes along = dot(u0, B.column[1]);
   for (int i = 0; i < 3; ++i) u1[i] = B(i, 1) - along * u0[i];
-  const Lanes length = root(dot(u1, u1));
+  const Lanes length = root_of_lanes(dot(u1, u1));
   u1 = times(1 / length, u1);
   f.U.column[2] = cross(u0, u1);
   for (int k = 0; k < 3; ++k) f.sigma[k] = dot(f.U.column[k], B.column[k]);

@@ -41,8 +41,8 @@ struct Corotational {
     for (int k = 0; k < 3; ++k) {
       point.stress[k] = 2 * lame.mu * (f.sigma[k] - 1) + pressure;
       for (int i = 0; i < 3; ++i) point.hessian(i, k) = all_lanes(lame.lambda + (i == k ? 2 * lame.mu : 0));
-      const Lanes sum = larger(f.sigma[(k + 1) % 3] + f.sigma[(k + 2) % 3], all_lanes(1e-3));
-      const Lanes twist = larger(2 * lame.mu + 2 * (pressure - 2 * lame.mu) / sum, all_lanes(0));
+      const Lanes sum = larger_lanes(f.sigma[(k + 1) % 3] + f.sigma[(k + 2) % 3], all_lanes(1e-3));
+      const Lanes twist = larger_lanes(2 * lame.mu + 2 * (pressure - 2 * lame.mu) / sum, all_lanes(0));
       point.half_sum[k] = 0.5 * (2 * lame.mu + twist);
       point.half_difference[k] = 0.5 * (2 * lame.mu - twist);
     }
