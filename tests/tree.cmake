@@ -29,7 +29,7 @@ endforeach()
 
 function(delassus_tree_test name)
   add_test(NAME ${name} COMMAND ${ARGN} COMMAND_EXPAND_LISTS)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS tree)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 1500 LABELS tree)
 endfunction()
 
 # --- rooms and levels -----------------------------------------------------------------------------------------------

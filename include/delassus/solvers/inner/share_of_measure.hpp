@@ -1,6 +1,7 @@
 /// What one constraint adds to the measure of an island.
 #pragma once
 
+#include <delassus/core/index.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/solvers/measure.hpp>
 
