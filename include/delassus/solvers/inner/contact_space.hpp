@@ -6,6 +6,7 @@
 #include <delassus/linear/dense_elimination.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/island_problem.hpp>
 
 #include <cmath>
@@ -122,13 +123,6 @@ class ContactSpace {
   std::vector<double> lambda;
 
  private:
-  template <class Problem, int p>
-  static constexpr bool has_rows_alone() {
-    for (const RowKind kind : Problem::BookType::template kinds<p>())
-      if (kind != RowKind::equality && kind != RowKind::lower) return false;
-    return true;
-  }
-
   /// W column by column, from the answer to an impulse on each row; d with it.
   template <class Problem>
   void read_W(Problem& problem) {

@@ -5,6 +5,7 @@
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/inner/path_item.hpp>
 #include <delassus/solvers/inner/path_systems.hpp>
+#include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/island_problem.hpp>
 
 #include <algorithm>
@@ -136,13 +137,6 @@ class PathLaws {
  private:
   template <class Problem, int p>
   static constexpr bool is_cone = Problem::BookType::template has_cone<p>();
-
-  template <class Problem, int p>
-  static constexpr bool has_rows_alone() {
-    for (const RowKind kind : Problem::BookType::template kinds<p>())
-      if (kind != RowKind::equality && kind != RowKind::lower) return false;
-    return true;
-  }
 
   template <class F>
   void each(F&& f) {

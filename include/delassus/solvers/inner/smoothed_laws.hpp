@@ -3,6 +3,7 @@
 
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/inner/smoothed_rows.hpp>
 #include <delassus/solvers/island_problem.hpp>
 
@@ -74,13 +75,6 @@ class SmoothedLaws {
  private:
   template <class Problem, int p>
   static constexpr bool is_cone = Problem::BookType::template has_cone<p>();
-
-  template <class Problem, int p>
-  static constexpr bool has_rows_alone() {
-    for (const RowKind kind : Problem::BookType::template kinds<p>())
-      if (kind != RowKind::equality && kind != RowKind::lower) return false;
-    return true;
-  }
 
   /// f(p, i, its first row) for every constraint.
   template <class Problem, class F>
