@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace deep_meshes_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -142,3 +144,5 @@ TEST_CASE("two height fields meet: a slab of hills upside down rests on hills") 
     }
   }
 }
+
+}  // namespace deep_meshes_tests

@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+namespace engine_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -249,3 +251,5 @@ TEST_CASE("far from the origin contacts keep the digits the coordinates have") {
     }
   }
 }
+
+}  // namespace engine_tests

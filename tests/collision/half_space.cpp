@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+namespace half_space_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -94,3 +96,5 @@ TEST_CASE("a half-space moves with its body") {
   CHECK(scene.contacts[0].normal[2] == Approx(-1));
   CHECK(std::abs(scene.contacts[0].gap) < 1e-14);
 }
+
+}  // namespace half_space_tests

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+namespace manifold_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -187,3 +189,5 @@ TEST_CASE("contacts do not jump for tiny tilts") {
           }
         }
 }
+
+}  // namespace manifold_tests

@@ -6,6 +6,8 @@
 #include <random>
 #include <set>
 
+namespace mesh_meshes_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -211,3 +213,5 @@ TEST_CASE("a mesh meets a height field, and groups, masks and what does not move
   CHECK(contacts(2, true) == 0);
   CHECK(contacts(1, false) == 0);
 }
+
+}  // namespace mesh_meshes_tests

@@ -5,6 +5,8 @@
 #include <random>
 #include <vector>
 
+namespace resting_pair_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -165,3 +167,5 @@ TEST_CASE("another hull in the place of one that was rested on is noticed, and s
   fewer.detect();
   CHECK(fewer.contacts.size() == 1);
 }
+
+}  // namespace resting_pair_tests
