@@ -14,10 +14,6 @@ using namespace scenes;
 
 namespace {
 
-Mat3 turned(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
-
 /// Both in one scene; b may move.
 MeshScene together(TriangleMesh a, TriangleMesh b, const Vec3& at, const Mat3& R = Mat3::Identity()) {
   MeshScene scene;

@@ -13,10 +13,6 @@ using namespace scenes;
 
 namespace {
 
-Mat3 turned(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
-
 /// Two surfaces, the second posed at x; contacts run from the first to the second.
 MeshScene pair_of(TriangleMesh a, TriangleMesh b, const Vec3& x, const Mat3& R = Mat3::Identity(),
                   double margin = -1) {
