@@ -5,11 +5,13 @@
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
+#include <numbers>
+
 namespace ladders {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// λ of a contact in a plane, normal and along x, from its W and the velocity without it: open, stick or one
 /// of two ways of slip, by trying.

@@ -6,11 +6,13 @@
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
+#include <numbers>
+
 namespace ladders {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// φ¨ = Ω² sin φ by the classical Runge-Kutta method in steps of 1e-5 s: what n four-bars of equal rods do, φ
 /// from the upright. Source: verification by reduction; Ω² = g ((n + 1)/2 + n)/((n + 1)/3 + n).

@@ -40,7 +40,7 @@ struct Hexahedra {
 ///   w = −Σ g φ_n(1) ∫φ_n/ω_n² (1 − cos ω_n t),   φ_n(1) = ±2,  ∫φ_n = 2 σ_n/β_n,  ω_n = β_n² √(E I/ρ A).
 ///
 /// Shear and the section's turning, left out, are 0.2 % of it at a twentieth of thickness.
-double tip(double t) {
+double tip_height(double t) {
   const double rate = std::sqrt(young / density) * thick / std::sqrt(12.);
   double w = 0, sign = 2;
   for (const double b : {1.87510406871196, 4.69409113297417, 7.85475743823761, 10.9955407348755}) {
@@ -83,7 +83,7 @@ bool soft_bar(const Options& options) {
                    Choices{ImplicitEuler{}, ImplicitMidpoint{}, GeneralizedAlpha{}}},
       {.name = "Soft bar", .duration = 4, .steps = {0.2, 0.1, 0.05, 0.02, 0.01}, .outputs = 10, .repeats = 3},
       Measures{
-          Compared{"height of the tip", "m", [](const auto& loop) { return height_of_tip(loop); }, tip}});
+          Compared{"height of the tip", "m", [](const auto& loop) { return height_of_tip(loop); }, tip_height}});
 }
 
 }  // namespace study_program

@@ -6,6 +6,8 @@
 #include "catch.hpp"
 #include "hexahedral_scenes.hpp"
 
+namespace hexahedral_fem_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -202,3 +204,5 @@ TEST_CASE("an anchor in a hexahedron moves with the point of the body it was put
   for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
   CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-14);
 }
+
+}  // namespace hexahedral_fem_tests

@@ -7,6 +7,8 @@
 #include "catch.hpp"
 #include "soft_scenes.hpp"
 
+namespace tetrahedral_fem_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -225,3 +227,5 @@ TEST_CASE("an anchor in an element moves with the point of the body it was put o
   for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
   CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-15);
 }
+
+}  // namespace tetrahedral_fem_tests

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+namespace acceptance_tests {
+
 using namespace delassus;
 using namespace samples;
 
@@ -41,3 +43,5 @@ TEST_CASE("needles, plates and giants are bodies like any other, apart, touching
     CHECK(f.excess < 1e-4);
   }
 }
+
+}  // namespace acceptance_tests

@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+namespace body_tree_tests {
+
 using namespace delassus;
 using namespace samples;
 
@@ -104,3 +106,5 @@ TEST_CASE("an empty world, and bodies that are not finite, answer nothing") {
   CHECK_FALSE(closest_point(world, tree, Vec3::Zero()));
   CHECK_THROWS(ray_cast(world, tree, Vec3::Zero(), Vec3::Zero()));
 }
+
+}  // namespace body_tree_tests

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace box_tree_tests {
+
 using namespace delassus;
 using namespace samples;
 
@@ -117,3 +119,5 @@ TEST_CASE("a step after a long history gives the pairs of a fresh tree") {
   CHECK(ask(old, boxes) == ask(fresh, boxes));
   CHECK(ask(copy, boxes) == ask(fresh, boxes));
 }
+
+}  // namespace box_tree_tests

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+namespace broken_kernels_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -90,3 +92,5 @@ TEST_CASE("a kernel that throws, or answers with what is no number, changes no b
     for (std::size_t i = 0; i < truth.size(); ++i) CHECK(seen[i] == truth[i]);
   }
 }
+
+}  // namespace broken_kernels_tests

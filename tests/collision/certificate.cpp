@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+namespace certificate_tests {
+
 using namespace delassus;
 using namespace samples;
 
@@ -90,3 +92,5 @@ TEST_CASE("the answer of last resort always separates") {
       CHECK(GjkEpa{}.pair(s.a, s.b, s.b_in_a, 10, cache).distance > -1e-7);
     }
 }
+
+}  // namespace certificate_tests

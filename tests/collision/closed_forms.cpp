@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace closed_forms_tests {
+
 using namespace delassus;
 using namespace samples;
 
@@ -90,3 +92,5 @@ TEST_CASE("an ellipsoid of any proportions has its nearest point on it, right ab
     CHECK((support(Ellipsoid{axes[0], axes[1], axes[2]}, s.normal) - foot).norm() < 1e-13 * size);
   }
 }
+
+}  // namespace closed_forms_tests

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace continuous_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -102,3 +104,5 @@ TEST_CASE("slow scenes are the backend's to the bit") {
     CHECK(plain.contacts[i].gap == fast.contacts[i].gap);
   CHECK(plain.report.queries == fast.report.queries);
 }
+
+}  // namespace continuous_tests

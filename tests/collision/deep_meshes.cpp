@@ -7,14 +7,12 @@
 #include <random>
 #include <vector>
 
+namespace deep_meshes_tests {
+
 using namespace delassus;
 using namespace scenes;
 
 namespace {
-
-Mat3 turned(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
 
 /// Both in one scene; b may move.
 MeshScene together(TriangleMesh a, TriangleMesh b, const Vec3& at, const Mat3& R = Mat3::Identity()) {
@@ -142,3 +140,5 @@ TEST_CASE("two height fields meet: a slab of hills upside down rests on hills") 
     }
   }
 }
+
+}  // namespace deep_meshes_tests

@@ -9,14 +9,12 @@
 #include <set>
 #include <vector>
 
+namespace engine_tests {
+
 using namespace delassus;
 using namespace scenes;
 
 namespace {
-
-Mat3 turn(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
 
 /// Bodies of all kinds thrown together.
 void fill(Scene& scene, const ConvexHull& hull, int count, unsigned seed) {
@@ -180,7 +178,7 @@ TEST_CASE("points keep their names while a box slides, and a new box does not ta
     for (const Shape& body : {Shape(Box{1, 1, 1}), Shape(cube), Shape(Cylinder{0.5, 1})}) {
       Scene scene;
       scene.add(floor, {0, 0, 0}, Mat3::Identity(), false);
-      scene.add(body, {-0.2, 0, 1}, turn(0.2, Vec3::UnitZ()));
+      scene.add(body, {-0.2, 0, 1}, turned(0.2, Vec3::UnitZ()));
       std::set<std::uint32_t> before;
       int kept = 0, total = 0;
       for (int step = 0; step < 200; ++step) {
@@ -188,7 +186,7 @@ TEST_CASE("points keep their names while a box slides, and a new box does not ta
         scene.colliders[1].pose.position += Vec3(1e-3, 3e-4, 0);
         scene.colliders[1].pose.position[2] = 1 + 1e-5 * std::sin(7.0 * step);
         scene.colliders[1].pose.rotation =
-            turn(1e-6 * std::sin(5.0 * step), Vec3(1, 0.3, 0)) * turn(0.2, Vec3::UnitZ());
+            turned(1e-6 * std::sin(5.0 * step), Vec3(1, 0.3, 0)) * turned(0.2, Vec3::UnitZ());
         scene.detect();
         std::set<std::uint32_t> now;
         for (const ContactPoint& c : scene.contacts) now.insert(c.feature);
@@ -249,3 +247,5 @@ TEST_CASE("far from the origin contacts keep the digits the coordinates have") {
     }
   }
 }
+
+}  // namespace engine_tests

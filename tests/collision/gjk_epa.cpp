@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+namespace gjk_epa_tests {
+
 using namespace delassus;
 using namespace samples;
 
@@ -126,3 +128,5 @@ TEST_CASE("a pair beyond the margin is far, whatever its distance") {
     CHECK(certify(s.a, s.b, s.b_in_a, 0.5 * apart, scale_of(s), r));
   });
 }
+
+}  // namespace gjk_epa_tests

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+namespace manifold_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -20,15 +22,11 @@ Scene on_floor(const Shape& body, const Mat3& rotation, double gap) {
   return scene;
 }
 
-Mat3 turn(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
-
 }  // namespace
 
 TEST_CASE("each way of resting has its number of contacts, touching, sunk in and hovering") {
   const ConvexHull cube = cube_hull();
-  const Mat3 upright = Mat3::Identity(), lying = turn(half_turn / 2, Vec3::UnitX());
+  const Mat3 upright = Mat3::Identity(), lying = turned(half_turn / 2, Vec3::UnitX());
   struct Row {
     const char* what;
     Shape body;
@@ -38,21 +36,21 @@ TEST_CASE("each way of resting has its number of contacts, touching, sunk in and
   const std::vector<Row> rows{
       {"sphere", Sphere{0.5}, upright, 1},
       {"box on its face", Box{1, 1, 1}, upright, 4},
-      {"box on its face, turned", Box{1, 1, 1}, turn(0.5, Vec3::UnitZ()), 4},
-      {"box on an edge", Box{1, 1, 1}, turn(half_turn / 4, Vec3::UnitX()), 2},
-      {"box on an edge, not balanced", Box{1, 1, 1}, turn(0.5, Vec3::UnitX()), 2},
-      {"box on a corner", Box{1, 1, 1}, turn(0.5, Vec3::UnitX()) * turn(0.6, Vec3::UnitY()), 1},
+      {"box on its face, turned", Box{1, 1, 1}, turned(0.5, Vec3::UnitZ()), 4},
+      {"box on an edge", Box{1, 1, 1}, turned(half_turn / 4, Vec3::UnitX()), 2},
+      {"box on an edge, not balanced", Box{1, 1, 1}, turned(0.5, Vec3::UnitX()), 2},
+      {"box on a corner", Box{1, 1, 1}, turned(0.5, Vec3::UnitX()) * turned(0.6, Vec3::UnitY()), 1},
       {"cube hull on its face", cube, upright, 4},
-      {"cube hull on an edge", cube, turn(half_turn / 4, Vec3::UnitX()), 2},
+      {"cube hull on an edge", cube, turned(half_turn / 4, Vec3::UnitX()), 2},
       {"standing cylinder", Cylinder{0.4, 1}, upright, 8},
       {"lying cylinder", Cylinder{0.4, 1}, lying, 2},
-      {"cylinder on its rim", Cylinder{0.4, 1}, turn(0.5, Vec3::UnitX()), 1},
+      {"cylinder on its rim", Cylinder{0.4, 1}, turned(0.5, Vec3::UnitX()), 1},
       {"lying capsule", Capsule{0.3, 1}, lying, 2},
       {"standing capsule", Capsule{0.3, 1}, upright, 1},
       {"standing cone", Cone{0.3, 0.4}, upright, 8},
-      {"cone on its tip", Cone{0.3, 0.4}, turn(half_turn, Vec3::UnitX()), 1},
-      {"lying cone", Cone{0.3, 0.4}, turn(half_turn / 2 + std::atan2(0.3, 0.4), Vec3::UnitX()), 2},
-      {"ellipsoid", Ellipsoid{0.5, 0.3, 0.4}, turn(0.7, Vec3(1, 2, 3)), 1},
+      {"cone on its tip", Cone{0.3, 0.4}, turned(half_turn, Vec3::UnitX()), 1},
+      {"lying cone", Cone{0.3, 0.4}, turned(half_turn / 2 + std::atan2(0.3, 0.4), Vec3::UnitX()), 2},
+      {"ellipsoid", Ellipsoid{0.5, 0.3, 0.4}, turned(0.7, Vec3(1, 2, 3)), 1},
   };
   for (const Row& row : rows)
     for (const double gap : {0.0, -1e-4, 1e-4, 1e-12, -1e-12}) {
@@ -89,7 +87,7 @@ TEST_CASE("an octagon of eight corners is reduced to four that span half of it")
     Scene scene;
     scene.collision.max_points = limit;
     scene.add(Box{1, 1, 1}, {0, 0, 0}, Mat3::Identity(), false);
-    scene.add(Box{1, 1, 1}, {0, 0, 1}, turn(half_turn / 4, Vec3::UnitZ()));
+    scene.add(Box{1, 1, 1}, {0, 0, 1}, turned(half_turn / 4, Vec3::UnitZ()));
     scene.detect();
     CHECK(scene.contacts.size() == std::size_t(limit));
     if (limit == 4) {
@@ -105,9 +103,9 @@ TEST_CASE("lines that are parallel meet in a stretch, crossing ones in a point")
   for (const Shape& rod : {Shape(Capsule{0.2, 1}), Shape(Cylinder{0.2, 1})})
     for (const double angle : {0.0, 1e-9, 1e-3, 0.5, half_turn / 2}) {
       Scene scene;
-      const Mat3 lying = turn(half_turn / 2, Vec3::UnitX());
+      const Mat3 lying = turned(half_turn / 2, Vec3::UnitX());
       scene.add(rod, {0, 0, 0}, lying, false);
-      scene.add(rod, {0, 0.3, 0.4}, turn(angle, Vec3::UnitZ()) * lying);
+      scene.add(rod, {0, 0.3, 0.4}, turned(angle, Vec3::UnitZ()) * lying);
       if (angle > 0.1) scene.colliders[1].pose.position[1] = 0;
       scene.detect();
       CAPTURE(angle, name(rod.kind));
@@ -119,7 +117,7 @@ TEST_CASE("lines that are parallel meet in a stretch, crossing ones in a point")
 }
 
 TEST_CASE("an edge on a face makes two contacts whichever body carries the edge") {
-  const Mat3 on_edge = turn(half_turn / 4, Vec3::UnitX());
+  const Mat3 on_edge = turned(half_turn / 4, Vec3::UnitX());
   const double reach = std::sqrt(0.5);
   for (const bool edge_is_first : {true, false}) {
     Scene scene;
@@ -144,9 +142,9 @@ TEST_CASE("an edge on a face makes two contacts whichever body carries the edge"
 
 TEST_CASE("crossing edges meet in one point near the crossing") {
   Scene scene;
-  const Mat3 roof = turn(half_turn / 4, Vec3::UnitX());
+  const Mat3 roof = turned(half_turn / 4, Vec3::UnitX());
   scene.add(Box{2, 1, 1}, {0, 0, 0}, roof, false);
-  scene.add(Box{1, 2, 1}, {0.1, 0.2, 2 * std::sqrt(0.5) - 1e-4}, turn(half_turn / 4, Vec3::UnitY()));
+  scene.add(Box{1, 2, 1}, {0.1, 0.2, 2 * std::sqrt(0.5) - 1e-4}, turned(half_turn / 4, Vec3::UnitY()));
   scene.detect();
   REQUIRE(!scene.contacts.empty());
   double deepest = 1;
@@ -172,7 +170,7 @@ TEST_CASE("contacts do not jump for tiny tilts") {
             scene.collision.max_points = 8;
             scene.collision.margin = 0.01;
             scene.add(base, {0, 0, 0}, Mat3::Identity(), false);
-            scene.add(body, {0, 0, 1 + gap}, turn(tilt, axis));
+            scene.add(body, {0, 0, 1 + gap}, turned(tilt, axis));
             scene.detect();
             CAPTURE(name(body.kind), name(base.kind), gap, tilt, axis.transpose());
             REQUIRE(scene.contacts.size() >= 4);
@@ -187,3 +185,5 @@ TEST_CASE("contacts do not jump for tiny tilts") {
           }
         }
 }
+
+}  // namespace manifold_tests

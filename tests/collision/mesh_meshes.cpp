@@ -6,14 +6,12 @@
 #include <random>
 #include <set>
 
+namespace mesh_meshes_tests {
+
 using namespace delassus;
 using namespace scenes;
 
 namespace {
-
-Mat3 turned(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
 
 /// Two surfaces, the second posed at x; contacts run from the first to the second.
 MeshScene pair_of(TriangleMesh a, TriangleMesh b, const Vec3& x, const Mat3& R = Mat3::Identity(),
@@ -211,3 +209,5 @@ TEST_CASE("a mesh meets a height field, and groups, masks and what does not move
   CHECK(contacts(2, true) == 0);
   CHECK(contacts(1, false) == 0);
 }
+
+}  // namespace mesh_meshes_tests

@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace mesh_queries_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -83,3 +85,5 @@ TEST_CASE("who asks without the backend is told so; groups leave meshes out") {
                     Catch::Matchers::Contains("a mesh is known to its backend alone"));
   CHECK_FALSE(ray_cast(w.meshed, {0, 0, 5}, {0, 0, -1}, 10., 2u));
 }
+
+}  // namespace mesh_queries_tests

@@ -53,11 +53,11 @@ inline TriangleMesh fine_box(double x, double y, double z, int cells) {
       for (int j = 0; j < cells; ++j)
         for (int i = 0; i < cells; ++i) {
           const auto at = [&](int u, int v) {
-            std::array<int, 3> g{};
-            g[axis] = end * cells;
-            g[(axis + 1) % 3] = u;
-            g[(axis + 2) % 3] = v;
-            return place(g[0], g[1], g[2]);
+            std::array<int, 3> node{};
+            node[axis] = end * cells;
+            node[(axis + 1) % 3] = u;
+            node[(axis + 2) % 3] = v;
+            return place(node[0], node[1], node[2]);
           };
           const Index a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
           triangles.push_back(end == 1 ? Corners{a, b, c} : Corners{a, c, b});

@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+namespace queries_tests {
+
 using namespace delassus;
 using namespace samples;
 using Catch::Matchers::Contains;
@@ -149,3 +151,5 @@ TEST_CASE("groups choose who is asked, and questions that make no sense are refu
   std::vector<SurfacePoint> found;
   CHECK_THROWS_WITH(overlaps(world, HalfSpace{}, Pose{}, found), Contains("a half-space has no volume"));
 }
+
+}  // namespace queries_tests

@@ -5,21 +5,19 @@
 #include <random>
 #include <vector>
 
+namespace resting_pair_tests {
+
 using namespace delassus;
 using namespace scenes;
 
 namespace {
 
-Mat3 turn(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
-
 /// One body on another, sunk in by 1e-5 m. Both are about 1 m: ε L = 5e-7 m or a little more.
 Scene resting(const Shape& below, const Shape& above, bool ground_is_a = true) {
   Scene scene;
   const bool is_plane = below.kind == ShapeKind::half_space;
-  scene.add(below, {0, 0, is_plane ? 0 : -0.5}, turn(0.4, Vec3::UnitZ()), false);
-  scene.add(above, {0.1, 0.05, 0.5 - 1e-5}, turn(0.1, Vec3::UnitZ()));
+  scene.add(below, {0, 0, is_plane ? 0 : -0.5}, turned(0.4, Vec3::UnitZ()), false);
+  scene.add(above, {0.1, 0.05, 0.5 - 1e-5}, turned(0.1, Vec3::UnitZ()));
   if (!ground_is_a) std::swap(scene.colliders[0].key, scene.colliders[1].key);
   for (int step = 0; step < 3; ++step) scene.detect();
   return scene;
@@ -30,7 +28,7 @@ void nudge(Collider& body, double size, std::mt19937& random) {
   const double x = uniform(random), y = uniform(random), z = uniform(random), u = uniform(random),
                v = uniform(random), w = uniform(random);
   body.pose.position += size * Vec3(x, y, z);
-  body.pose.rotation = turn(size, Vec3(u, v, w)) * body.pose.rotation;
+  body.pose.rotation = turned(size, Vec3(u, v, w)) * body.pose.rotation;
 }
 
 /// The same step in full: a body that comes fast has a wider margin, and is asked again with all that is
@@ -99,10 +97,10 @@ TEST_CASE(
     CHECK(asked <= 20);
     CHECK(farthest < 6e-7);
   }
-  Scene turned = resting(Box{1, 1, 1}, Box{1, 1, 1});
-  turned.colliders[1].pose.rotation = turn(3e-6, Vec3::UnitX()) * turned.colliders[1].pose.rotation;
-  turned.detect();
-  CHECK(turned.report.queries == 1);
+  Scene tilted = resting(Box{1, 1, 1}, Box{1, 1, 1});
+  tilted.colliders[1].pose.rotation = turned(3e-6, Vec3::UnitX()) * tilted.colliders[1].pose.rotation;
+  tilted.detect();
+  CHECK(tilted.report.queries == 1);
 }
 
 TEST_CASE("another body under the same name, or one that comes faster, is asked anew") {
@@ -165,3 +163,5 @@ TEST_CASE("another hull in the place of one that was rested on is noticed, and s
   fewer.detect();
   CHECK(fewer.contacts.size() == 1);
 }
+
+}  // namespace resting_pair_tests

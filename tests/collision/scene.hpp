@@ -28,6 +28,10 @@ struct SceneOf {
 };
 using Scene = SceneOf<NativeCollision>;
 
+inline Mat3 turned(double angle, const Vec3& axis) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
 inline ConvexHull cube_hull(double edge = 1) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i)

@@ -4,6 +4,8 @@
 #include "catch.hpp"
 #include "collision/scene.hpp"
 
+namespace seamless_tests {
+
 using namespace scenes;
 
 namespace {
@@ -104,3 +106,5 @@ TEST_CASE("a level that is no length is refused") {
     CHECK_THROWS_WITH((AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, Seamless{NativeCollision{}, level}}),
                       Catch::Contains("Seamless: level"));
 }
+
+}  // namespace seamless_tests

@@ -5,6 +5,8 @@
 
 #include "catch.hpp"
 
+namespace single_precision_tests {
+
 using namespace delassus;
 
 // |Rᵀ R − 1| ≤ a few 2^-24 here, so a normal that is only turned is 1e-7 too long or short; one that is
@@ -47,3 +49,5 @@ TEST_CASE("a ball in single precision rests on a turned box") {
   REQUIRE(std::abs(loop.contacts()[0].impulse.z()) / h == Approx(9.81).epsilon(1e-5));
   REQUIRE(set.position(ball).z() == Approx(0.7).margin(1e-4));
 }
+
+}  // namespace single_precision_tests

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace sweep_and_prune_tests {
+
 using namespace delassus;
 using samples::brute_force;
 
@@ -53,3 +55,5 @@ TEST_CASE("boxes that only touch are a pair") {
   SweepAndPrune{}.find(boxes, pairs);
   CHECK(pairs == std::vector<CandidatePair>{{0, 1}});
 }
+
+}  // namespace sweep_and_prune_tests

@@ -1,5 +1,7 @@
 #include "collision/table_of_contacts.hpp"
 
+namespace table_tests {
+
 using namespace scenes;
 
 // Two answers that are each 3e-10 of the smaller body's box above the least one.
@@ -22,3 +24,5 @@ TEST_CASE("native: the pairs of ten thousand boxes are those of brute force, run
 TEST_CASE("native: no bullet passes a plate at any phase of the step", "[table]") {
   check_bullets<NativeCollision>();
 }
+
+}  // namespace table_tests

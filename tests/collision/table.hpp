@@ -14,10 +14,6 @@ namespace scenes {
 
 using namespace samples;
 
-inline Mat3 turned(double angle, const Vec3& axis) {
-  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
-
 inline double deepest_gap(const std::vector<ContactPoint>& contacts) {
   double deepest = std::numeric_limits<double>::infinity();
   for (const ContactPoint& c : contacts) deepest = c.gap < deepest || std::isnan(c.gap) ? c.gap : deepest;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+namespace with_compounds_tests {
+
 using namespace delassus;
 using namespace scenes;
 using Catch::Matchers::Contains;
@@ -112,3 +114,5 @@ TEST_CASE("a part's velocity is that of the body there: a turning bar is met ear
   scene.detect(1e-3);
   CHECK(scene.contacts.empty());
 }
+
+}  // namespace with_compounds_tests

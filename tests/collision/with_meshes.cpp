@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <set>
 
+namespace with_meshes_tests {
+
 using namespace delassus;
 using namespace scenes;
 
@@ -260,3 +262,5 @@ TEST_CASE("contacts with meshes come sorted by pair and feature, from the lower 
     }
   }
 }
+
+}  // namespace with_meshes_tests

@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace with_surfaces_tests {
+
 using namespace delassus;
 using namespace scenes;
 using inner::SoftPairs, inner::SoftSurface, inner::FeatureContact;
@@ -282,3 +284,5 @@ TEST_CASE("surfaces that lose their shape give finite unit normals or nothing") 
     }
   CHECK(contacts > 100);
 }
+
+}  // namespace with_surfaces_tests

@@ -1,6 +1,8 @@
 # Compiles one wrong program and checks that it fails with exactly one error, which says the sentence it announces.
-#   cmake -DSOURCE=x.cpp -DCOMPILER=g++ -DINCLUDE=<dir> -DSYSTEM=<dirs> -P expect_error.cmake
+#   cmake -DSOURCE=x.cpp -DCOMPILER=g++ -DINCLUDE=<dir> -DSYSTEM=<dirs> [-DPRECOMPILED=<dir>] -P expect_error.cmake
 # The first line of the program reads `// expect: <sentence>`; the sentence is plain text, found as it stands.
+#
+# A program whose first include is the umbrella starts from it precompiled, as precompile.cmake left it: nearly all of its time.
 cmake_minimum_required(VERSION 3.25)
 
 # A NOTICE keeps its lines as they are; FATAL_ERROR would wrap them.
@@ -16,8 +18,17 @@ endif()
 string(REPLACE "\\;" ";" sentence "${CMAKE_MATCH_1}")  # file(STRINGS) makes a list, and escapes for it
 
 list(TRANSFORM SYSTEM PREPEND "-isystem")
+set(head_start "")
+file(STRINGS ${SOURCE} includes REGEX "^#include ")
+if(PRECOMPILED AND includes MATCHES "^#include <delassus/delassus.hpp>")
+  if(EXISTS ${PRECOMPILED}/umbrella.hpp.pch)
+    set(head_start -include-pch ${PRECOMPILED}/umbrella.hpp.pch)
+  else()
+    set(head_start -include ${PRECOMPILED}/umbrella.hpp -Winvalid-pch)
+  endif()
+endif()
 set(ENV{LC_ALL} C)
-execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I${INCLUDE} ${SYSTEM} ${SOURCE}
+execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I${INCLUDE} ${SYSTEM} ${head_start} ${SOURCE}
   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(status EQUAL 0)
   complain("it compiles, but should say: ${sentence}")

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+namespace assembled_tests {
+
 using namespace scenes;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("the assembled W is symmetric and positive semidefinite") {
     REQUIRE(Eigen::LLT<Eigen::MatrixXd>(W - rounding * one).info() != Eigen::Success);
   }
 }
+
+}  // namespace assembled_tests

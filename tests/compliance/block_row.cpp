@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace block_row_tests {
+
 using namespace delassus;
 
 // Sums of at most 3 · 13 + 1 products, each of them and each sum rounded once: 80 ε of the sum of their sizes.
@@ -39,3 +41,5 @@ TEST_CASE("a row of 3 x 3 blocks is the sum of its products, and its first entry
     REQUIRE(std::abs(first - expected[0]) <= 80 * 2.3e-16 * size[0]);
   }
 }
+
+}  // namespace block_row_tests

@@ -5,6 +5,8 @@
 #include "catch.hpp"
 #include "compliance/builder_scenes.hpp"
 
+namespace builders_tests {
+
 using namespace builder_scenes;
 
 // cond A < 1e4 here (the beam's fastest mode against its slowest, times h²), so both inverses are right to
@@ -40,3 +42,5 @@ TEST_CASE("the uncoupled builder yields too much, and the rows miss (W - W~) lam
   CHECK(most > 4.4);
   CHECK(most < 4.6);
 }
+
+}  // namespace builders_tests

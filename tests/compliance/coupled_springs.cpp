@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+namespace coupled_springs_tests {
+
 using namespace scenes;
 
 TEST_CASE("compliance of soft rows stands on the diagonal of W, 1/(h^2 k + h c)") {
@@ -87,3 +89,5 @@ TEST_CASE("the matrix-free operator takes the same springs under an explicit int
   loop.add(DistanceJoint::Item{anchor(set, a), world_anchor({0, 0, 1}), 1.0});
   REQUIRE(loop.step(0.01).status == Status::converged);
 }
+
+}  // namespace coupled_springs_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace matrix_free_tests {
+
 using namespace scenes;
 
 namespace {
@@ -51,3 +53,5 @@ TEST_CASE("the matrix-free residual is the assembled one at any impulse") {
     REQUIRE((p.W.diagonal<0>(i) - q.W.diagonal<0>(i)).norm() <= 1e-14 * p.W.diagonal<0>(i).norm());
   }
 }
+
+}  // namespace matrix_free_tests

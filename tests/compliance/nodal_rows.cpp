@@ -9,6 +9,8 @@
 #include "catch.hpp"
 #include "compliance/coupled_grid.hpp"
 
+namespace nodal_rows_tests {
+
 using namespace coupled_grid;
 
 static_assert(NodeCompliantSet<CompliantGrids>);
@@ -146,3 +148,5 @@ TEST_CASE("rows without entries, and no rows at all, have no W") {
   op.build(world, rows);
   CHECK(op.blocks<0, 0>().column.empty());
 }
+
+}  // namespace nodal_rows_tests

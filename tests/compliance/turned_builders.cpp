@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <type_traits>
 
+namespace turned_builders_tests {
+
 using namespace builder_scenes;
 
 // Turned as a whole, the factor of before is that of now: W̃ is W up to the rounding of the factor's scalar,
@@ -110,3 +112,5 @@ TEST_CASE(
   CHECK_THROWS_WITH(elsewhere.build(scene, {.file = "no/such/folder/x"}),
                     Contains("'no/such/folder/x' cannot be written"));
 }
+
+}  // namespace turned_builders_tests

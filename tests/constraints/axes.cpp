@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace axes_tests {
+
 using namespace delassus;
 
 namespace {
@@ -254,3 +256,5 @@ TEST_CASE(
     CHECK(gained <= 0);
   }
 }
+
+}  // namespace axes_tests

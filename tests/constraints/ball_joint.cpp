@@ -10,6 +10,8 @@
 
 #include "catch.hpp"
 
+namespace ball_joint_tests {
+
 using namespace delassus;
 
 namespace {
@@ -154,3 +156,5 @@ TEST_CASE("a chain of rigid links keeps its joints closed to the square of the s
   CHECK(std::log2(worst[0] / worst[1]) >= 1.85);
   CHECK(std::log2(worst[1] / worst[2]) >= 1.85);
 }
+
+}  // namespace ball_joint_tests

@@ -5,6 +5,8 @@
 
 #include "catch.hpp"
 
+namespace breakable_tests {
+
 using namespace delassus;
 
 namespace {
@@ -103,3 +105,5 @@ TEST_CASE("a breakable joint refuses bounds that are not positive") {
                         {bracket.wall(Quat::Identity()), bracket.end(Quat::Identity())}, 0, 1}),
                     "delassus: Breakable: max_force 0 N and max_moment 1 N·m must be > 0");
 }
+
+}  // namespace breakable_tests

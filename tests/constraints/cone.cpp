@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace cone_tests {
+
 using namespace delassus;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("without friction the cone is a ray, and an open contact meets its law
   REQUIRE(project_on_cone<double>({2, 3, -1}, 0.0) == Vec3(2, 0, 0));
   REQUIRE(coulomb_natural_map<double>({0, 0, 0}, {1, 0, 0}, 0.0, 1.0).norm() == 0);
 }
+
+}  // namespace cone_tests

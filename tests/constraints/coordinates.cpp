@@ -7,6 +7,8 @@
 #include "catch.hpp"
 #include "constraints/poses.hpp"
 
+namespace coordinates_tests {
+
 using namespace delassus;
 using namespace poses;
 
@@ -69,3 +71,5 @@ TEST_CASE("a wheel's angle is counted over its turns") {
     CHECK(std::abs(loop.item(idle).position) > 9 * 2 * std::numbers::pi);
   }
 }
+
+}  // namespace coordinates_tests

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+namespace coulomb_tests {
+
 using namespace delassus;
 
 namespace {
@@ -190,3 +192,5 @@ TEST_CASE("in single precision the law holds to single precision") {
     REQUIRE(error.norm() <= 5e-4 * std::max(double(b.norm()), double(W.norm()) * lambda.norm()));
   }
 }
+
+}  // namespace coulomb_tests

@@ -9,6 +9,8 @@
 #include "catch.hpp"
 #include "constraints/poses.hpp"
 
+namespace couplings_tests {
+
 using namespace delassus;
 using namespace poses;
 
@@ -201,3 +203,5 @@ TEST_CASE("a coupling goes when one of its carriers does, and refuses an end wit
                           .d = world_anchor({1, 0, 0})}),
       "delassus: Coupling, first joint: its second end needs an orientation; a particle has none");
 }
+
+}  // namespace couplings_tests

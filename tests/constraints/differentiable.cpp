@@ -9,6 +9,8 @@
 
 #include "catch.hpp"
 
+namespace differentiable_tests {
+
 using namespace delassus;
 
 static_assert(Differentiable<Contact<Coulomb>> && Differentiable<Contact<Frictionless>>);
@@ -37,3 +39,5 @@ TEST_CASE("a wrapped law answers with the tangent of what it wraps") {
   REQUIRE(law.tangent({0.5}, a) == wrapped.tangent(item, b));
   REQUIRE(a.lambda == b.lambda);
 }
+
+}  // namespace differentiable_tests

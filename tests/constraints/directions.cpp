@@ -4,6 +4,8 @@
 #include "catch.hpp"
 #include "constraints/poses.hpp"
 
+namespace directions_tests {
+
 using namespace delassus;
 using namespace poses;
 
@@ -93,3 +95,5 @@ TEST_CASE("a distance joint between coinciding points acts along z") {
   CHECK(rows.phi[0] == 0);
   CHECK(rows.H.middleCols<3>(12) == Vec3::UnitZ().transpose());
 }
+
+}  // namespace directions_tests

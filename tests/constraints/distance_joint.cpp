@@ -10,6 +10,8 @@
 
 #include "catch.hpp"
 
+namespace distance_joint_tests {
+
 using namespace delassus;
 
 namespace {
@@ -171,3 +173,5 @@ TEST_CASE("a chain of particles keeps its lengths to the square of the step") {
   CHECK(std::log2(worst[0] / worst[1]) >= 1.85);
   CHECK(std::log2(worst[1] / worst[2]) >= 1.85);
 }
+
+}  // namespace distance_joint_tests

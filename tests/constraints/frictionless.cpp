@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace frictionless_tests {
+
 using namespace delassus;
 
 TEST_CASE("a frictionless contact opens or stops, whatever impulse it started from") {
@@ -19,3 +21,5 @@ TEST_CASE("a frictionless contact opens or stops, whatever impulse it started fr
     REQUIRE(std::abs(Frictionless{}.natural_map<double>({}, c.lambda, u, W)[0]) <= 1e-14);
   }
 }
+
+}  // namespace frictionless_tests

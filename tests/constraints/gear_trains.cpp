@@ -10,6 +10,8 @@
 
 #include "catch.hpp"
 
+namespace gear_trains_tests {
+
 using namespace delassus;
 
 namespace {
@@ -65,3 +67,5 @@ TEST_CASE("trains of two to ten gears mesh to 1e-9 for a thousand turns, at rati
     CHECK(worst <= 1e-9);
   }
 }
+
+}  // namespace gear_trains_tests

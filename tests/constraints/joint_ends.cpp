@@ -11,6 +11,8 @@
 
 #include "catch.hpp"
 
+namespace joint_ends_tests {
+
 using namespace delassus;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_CASE("a joint in a singular pose leaves finite motion") {
       }
   });
 }
+
+}  // namespace joint_ends_tests

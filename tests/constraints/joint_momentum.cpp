@@ -7,6 +7,8 @@
 #include "catch.hpp"
 #include "stages.hpp"
 
+namespace joint_momentum_tests {
+
 using namespace delassus;
 
 namespace {
@@ -146,3 +148,5 @@ TEST_CASE("bodies in a ring of joints keep momentum and angular momentum for a s
     CHECK(angular <= 1e-12);
   }
 }
+
+}  // namespace joint_momentum_tests

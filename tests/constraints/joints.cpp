@@ -9,6 +9,8 @@
 #include "catch.hpp"
 #include "constraints/poses.hpp"
 
+namespace joints_tests {
+
 using namespace delassus;
 using namespace poses;
 
@@ -131,3 +133,5 @@ TEST_CASE("the free axes of a joint are those it names") {
   check(Planar{}, {0, 1}, {2});
   check(PointOnLine{}, {2}, {0, 1, 2});
 }
+
+}  // namespace joints_tests

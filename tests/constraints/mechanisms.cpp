@@ -10,6 +10,8 @@
 #include "catch.hpp"
 #include "convergence_order.hpp"
 
+namespace mechanisms_tests {
+
 using namespace delassus;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("a slider-crank keeps its closed form over ten turns") {
   // over l − r.
   CHECK(worst <= 3 * 5 * 4e-6 * (l + r) / (l - r));
 }
+
+}  // namespace mechanisms_tests

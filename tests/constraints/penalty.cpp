@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace penalty_tests {
+
 using namespace scenes;
 
 namespace {
@@ -186,3 +188,5 @@ TEST_CASE("a stiffness that is not above zero and a damping below zero are refus
   REQUIRE_THROWS_WITH(loop_with(std::nan(""), 1), Catch::Contains("Penalty: stiffness"));
   REQUIRE_THROWS_WITH(loop_with(1, -2), Catch::Contains("Penalty: damping -2"));
 }
+
+}  // namespace penalty_tests

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace pyramid_tests {
+
 using namespace scenes;
 
 namespace {
@@ -89,3 +91,5 @@ TEST_CASE("one visit of a pyramid meets its law, whatever sticks or slips") {
   for (const int seen : {open, slipping[0], slipping[1], slipping[2]})
     REQUIRE(seen > 50);  // every case was met
 }
+
+}  // namespace pyramid_tests

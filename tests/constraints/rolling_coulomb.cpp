@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+namespace rolling_coulomb_tests {
+
 using namespace scenes;
 
 namespace {
@@ -162,3 +164,5 @@ TEST_CASE("what no rolling friction can be is refused by its name") {
   CHECK_THROWS_WITH(RollingCoulomb{.torsional_friction = std::nan("")}.check(),
                     Catch::Contains("torsional_friction"));
 }
+
+}  // namespace rolling_coulomb_tests

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <random>
 
+namespace tangents_tests {
+
 using namespace delassus;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("the tangents of limits and motors are the slopes of their impulses") 
     CHECK(slope(0, 0) == (std::abs(low) <= 0.4 ? 1 / w : 0));
   }
 }
+
+}  // namespace tangents_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace virtual_coupling_tests {
+
 using namespace delassus;
 
 namespace {
@@ -65,3 +67,5 @@ TEST_CASE("a virtual coupling refuses what cannot be a spring") {
   REQUIRE_THROWS_WITH(with(1, 0, 0, 0), "delassus: VirtualCoupling: angular_stiffness 0 must be finite and > 0 N·m/rad");
   REQUIRE_THROWS_WITH(with(1, 0, 1, -2), "delassus: VirtualCoupling: angular_damping -2 must be finite and >= 0 N·m·s/rad");
 }
+
+}  // namespace virtual_coupling_tests

@@ -7,6 +7,8 @@
 
 #include "catch.hpp"
 
+namespace welded_tests {
+
 using namespace delassus;
 
 namespace {
@@ -80,3 +82,5 @@ TEST_CASE("joints, a motor and a limit work in single precision") {
   CHECK(gap <= 5 * 0.5 * 1e-4 * 0.5 + 1e-4);
   CHECK(std::abs(loop.item(motor).position - 1.5) <= 1e-3);
 }
+
+}  // namespace welded_tests

@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace block_chain_tests {
+
 using namespace delassus;
 
 static_assert(Factorization<BlockChain<6, double>, 6, double>);
@@ -86,3 +88,5 @@ TEST_CASE("a chain that is not positive has no factor") {
   chain.add_pair(0, 1, Mat<4, 4>::Identity());
   CHECK(!chain.factor());
 }
+
+}  // namespace block_chain_tests

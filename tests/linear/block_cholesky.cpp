@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace block_cholesky_tests {
+
 using namespace delassus;
 
 namespace {
@@ -111,3 +113,5 @@ TEST_CASE("one analysed pattern serves many factorizations") {
     REQUIRE(((1 + 2 * stiffness) * x[1] - stiffness * (x[0] + x[2]) - Vec3::Ones()).norm() <= 1e-13);
   }
 }
+
+}  // namespace block_cholesky_tests

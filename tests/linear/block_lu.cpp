@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace block_lu_tests {
+
 using namespace delassus;
 
 namespace {
@@ -113,3 +115,5 @@ TEST_CASE("a chain and a star are eliminated without fill") {
   pattern.analyse(50, star);
   REQUIRE(pattern.entries() == 49);
 }
+
+}  // namespace block_lu_tests

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace dense_elimination_tests {
+
 using namespace delassus;
 
 namespace {
@@ -55,3 +57,5 @@ TEST_CASE("a dense matrix with a column of zeros, or one that is no number, has 
   lu.at(0, 0) = std::nan("");
   REQUIRE_FALSE(lu.factor());
 }
+
+}  // namespace dense_elimination_tests

@@ -13,6 +13,8 @@
 #include "catch.hpp"
 #include "linear/block_graphs.hpp"
 
+namespace multifrontal_cholesky_tests {
+
 using namespace delassus;
 using namespace block_graphs;
 
@@ -148,3 +150,5 @@ TEST_CASE("nested dissection fills less than the order of numbering") {
   CHECK(f.size() < std::size_t(9) * (1728 - 144) * 144);
   CHECK(f.size() > std::size_t(9) * 1728);
 }
+
+}  // namespace multifrontal_cholesky_tests

@@ -10,6 +10,8 @@
 #include "catch.hpp"
 #include "linear/block_graphs.hpp"
 
+namespace node_compliance_tests {
+
 using namespace delassus;
 using namespace block_graphs;
 
@@ -97,3 +99,5 @@ TEST_CASE(
     for (int b = 0; b < 4; ++b) CHECK(D.block<3, 3>(3 * a, 3 * b) == C.block<3, 3>(9 - 3 * a, 9 - 3 * b));
   CHECK((compliance(factored<3, double>(g, nodes), nodes) - C).cwiseAbs().maxCoeff() < 1e-12);
 }
+
+}  // namespace node_compliance_tests

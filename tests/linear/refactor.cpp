@@ -8,6 +8,8 @@
 #include "catch.hpp"
 #include "linear/block_graphs.hpp"
 
+namespace refactor_tests {
+
 using namespace delassus;
 using namespace block_graphs;
 
@@ -182,3 +184,5 @@ TEST_CASE("a node outside of the region is refused by name") {
   REQUIRE(plain.factor());
   CHECK_THROWS_WITH(plain.refactor(std::vector<Index>{0}), Catch::Contains("not in the region"));
 }
+
+}  // namespace refactor_tests

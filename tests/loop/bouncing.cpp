@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace bouncing_tests {
+
 using namespace scenes;
 
 namespace {
@@ -133,3 +135,5 @@ TEST_CASE("balls with a gap that outlasts the step pass the impact on, the last 
     REQUIRE(v[count - 1] == Approx(1).epsilon(0).margin(1e-10));
   }
 }
+
+}  // namespace bouncing_tests

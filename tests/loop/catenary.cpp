@@ -5,6 +5,8 @@
 
 #include "catch.hpp"
 
+namespace catenary_tests {
+
 using namespace chains;
 
 namespace {
@@ -66,3 +68,5 @@ TEST_CASE("a chain at rest pulls at its ends with the tensions of its statics, a
     CHECK(chain.sag == Approx(sag).epsilon(1e-6));
   }
 }
+
+}  // namespace catenary_tests

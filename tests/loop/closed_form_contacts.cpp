@@ -5,6 +5,8 @@
 
 #include <initializer_list>
 
+namespace closed_form_contacts_tests {
+
 using namespace scenes;
 
 namespace {
@@ -280,3 +282,5 @@ TEST_CASE(
       CHECK(set.velocity(wedge).norm() <= 1e-9);
   }
 }
+
+}  // namespace closed_form_contacts_tests

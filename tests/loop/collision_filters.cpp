@@ -7,6 +7,8 @@
 
 #include <vector>
 
+namespace collision_filters_tests {
+
 using namespace scenes;
 using Catch::Matchers::Contains;
 
@@ -124,3 +126,5 @@ TEST_CASE("a filter refuses what is no pair of bodies") {
   CHECK_THROWS_WITH(filter.ignore(loop.world(), a, world_anchor(Vec3::Zero())),
                     Contains("the world has no shape"));
 }
+
+}  // namespace collision_filters_tests

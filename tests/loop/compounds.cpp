@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+namespace compounds_tests {
+
 using namespace delassus;
 
 TEST_CASE("a table of five parts falls on a height field, stands on its legs, falls asleep and is woken") {
@@ -38,3 +40,5 @@ TEST_CASE("a table of five parts falls on a height field, stands on its legs, fa
   CHECK(rigid.is_awake(body.index));
   CHECK(std::abs(rigid.position(ball).z() - 0.6) < 1e-3);
 }
+
+}  // namespace compounds_tests

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+namespace contact_memory_tests {
+
 using namespace delassus;
 
 namespace {
@@ -73,3 +75,5 @@ TEST_CASE(
       CHECK(is_zero(memory.take(77, 0, Vec3::Zero(), reach)));  // a pair that is new
     }
 }
+
+}  // namespace contact_memory_tests

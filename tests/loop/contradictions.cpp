@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace contradictions_tests {
+
 using namespace scenes;
 
 namespace {
@@ -257,3 +259,5 @@ TEST_CASE("nothing is called a contradiction in single precision") {
   set.add({.position = {0, 0, 1.5}, .mass = 1e6, .shape = Box{1, 1, 1}});
   for (int n = 0; n < 20; ++n) REQUIRE(loop.step(h).status != Status::infeasible);
 }
+
+}  // namespace contradictions_tests

@@ -3,6 +3,8 @@
 #include "catch.hpp"
 #include "stages.hpp"
 
+namespace determinism_tests {
+
 using namespace scenes;
 
 namespace {
@@ -116,3 +118,5 @@ TEST_CASE("the problem of a step, solved apart from the loop, gives the loop's i
   REQUIRE(fresh.rows.pool<0>().items() == 20);
   for (Index i = 0; i < 20; ++i) REQUIRE(fresh.rows.pool<0>().lambda[i] == solved.rows.pool<0>().lambda[i]);
 }
+
+}  // namespace determinism_tests

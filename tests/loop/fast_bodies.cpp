@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <random>
 
+namespace fast_bodies_tests {
+
 using namespace delassus;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("a rod that turns by a radian a step does not pass a pin") {
   CHECK(farthest > 2 - std::asin(0.007 / 0.8) - 2e-3);
   CHECK(farthest < 2 - std::asin(0.007 / 0.8) + 1e-4);
 }
+
+}  // namespace fast_bodies_tests

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <vector>
 
+namespace four_bars_tests {
+
 using namespace smooth;
 
 namespace {
@@ -117,3 +119,5 @@ TEST_CASE("four-bars turn for twenty seconds through their singular poses on the
     CHECK(ran.gap <= 1e-9);
   }
 }
+
+}  // namespace four_bars_tests

@@ -8,6 +8,8 @@
 #include <set>
 #include <string>
 
+namespace friction_problem_tests {
+
 using namespace delassus;
 
 namespace {
@@ -201,3 +203,5 @@ TEST_CASE("sweeps that run away to where there are no numbers say so, and their 
   CHECK(std::isfinite(kept.measure.residual));  // the best it measured
   for (const Vec3& lambda : again.rows.pool<0>().lambda) CHECK(is_finite(lambda));
 }
+
+}  // namespace friction_problem_tests

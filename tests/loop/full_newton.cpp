@@ -8,6 +8,8 @@
 #include "rod_scenes.hpp"
 #include "soft_scenes.hpp"
 
+namespace full_newton_tests {
+
 using namespace delassus;
 using namespace rod_scenes;
 
@@ -89,3 +91,5 @@ TEST_CASE("what is no number stays where it was, and impossible settings are ref
   CHECK_THROWS_WITH((AnimationLoop{World{Rods{}}, FullNewton{.theta = 0.7}}),
                     Catch::Contains("theta 0.7 must be 1"));
 }
+
+}  // namespace full_newton_tests

@@ -11,6 +11,8 @@
 
 #include <limits>
 
+namespace generalized_alpha_tests {
+
 using namespace delassus;
 
 TEST_CASE("an oscillator is met by the generalised-alpha method with second order, whatever its damping") {
@@ -135,3 +137,5 @@ TEST_CASE("a body that is placed anew and stopped begins without its old acceler
     }
   }
 }
+
+}  // namespace generalized_alpha_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace hand_picked_tests {
+
 using namespace scenes;
 
 namespace {
@@ -88,3 +90,5 @@ TEST_CASE("a body taken out while it is off is gone, and a stale handle is refus
   loop.step(h);
   REQUIRE(set.velocity(next).z() < 0);
 }
+
+}  // namespace hand_picked_tests

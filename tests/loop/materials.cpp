@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace materials_tests {
+
 using namespace scenes;
 
 namespace {
@@ -132,3 +134,5 @@ TEST_CASE("bodies meet when each one's group is in the other's mask") {
     REQUIRE((set.position(box).z() > 0.49) == meets);
   }
 }
+
+}  // namespace materials_tests

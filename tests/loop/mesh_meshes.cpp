@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace mesh_meshes_tests {
+
 using namespace delassus;
 
 namespace {
@@ -89,3 +91,5 @@ TEST_CASE("a ball that rolls over a hundred coplanar triangles has no vertical v
   CHECK(rigid.position(ball).x() > 0.55);
   CHECK(noise < 1e-9);  // the solver's tolerance, 1e-9 of h g; an edge that acts tilts the normal by degrees
 }
+
+}  // namespace mesh_meshes_tests

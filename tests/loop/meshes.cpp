@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+namespace meshes_tests {
+
 using namespace delassus;
 
 namespace {
@@ -100,3 +102,5 @@ TEST_CASE("a loop whose backend keeps no meshes refuses the shape of one that do
   rigid.add({.position = {0.2, 0.2, 1}, .mass = 1.0, .shape = Sphere{0.1}});
   CHECK_THROWS_WITH(loop.step(0.01), Catch::Matchers::Contains("put the WithMeshes{...} or WithCompounds{...}"));
 }
+
+}  // namespace meshes_tests

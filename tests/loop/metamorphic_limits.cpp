@@ -2,7 +2,10 @@
 
 #include "catch.hpp"
 
+namespace metamorphic_limits_tests {
+
 using namespace metamorphic;
+using metamorphic::Scene;  // scenes has one too
 
 namespace {
 
@@ -55,3 +58,5 @@ TEST_CASE("restitution 0 changes no bit of a scene") {
                        tumble(scene, Restitution{Coulomb{.friction = 0.5}, 0})) == 0);
   }
 }
+
+}  // namespace metamorphic_limits_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace metamorphic_motion_tests {
+
 using namespace metamorphic;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_CASE("a particle swings on a rod as a rigid body held at its centre does") 
     REQUIRE((rigid.position(body) - x).norm() > 0.1);
   }
 }
+
+}  // namespace metamorphic_motion_tests

@@ -2,7 +2,10 @@
 
 #include "catch.hpp"
 
+namespace metamorphic_told_anew_tests {
+
 using namespace metamorphic;
+using metamorphic::Scene;  // scenes has one too
 
 namespace {
 
@@ -202,3 +205,5 @@ TEST_CASE("a quaternion of the other sign changes no bit") {
     REQUIRE(difference(run(scene, steps), run(other, steps)) == 0);
   }
 }
+
+}  // namespace metamorphic_told_anew_tests

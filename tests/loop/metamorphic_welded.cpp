@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace metamorphic_welded_tests {
+
 using namespace metamorphic;
 
 // Two halves of a box, welded, spun about an axis that is principal for each of them: no gyroscopic term
@@ -45,3 +47,5 @@ TEST_CASE("two halves that are welded move as the whole") {
     REQUIRE(set.angular_velocity(whole).z() > spin);
   }
 }
+
+}  // namespace metamorphic_welded_tests

@@ -3,6 +3,8 @@
 #include "catch.hpp"
 #include "stages.hpp"
 
+namespace momentum_tests {
+
 using namespace scenes;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_CASE("a cluster of bodies that collide with real geometry keeps momentum ov
   REQUIRE((momentum(set) - p).norm() <= 1e-13 * size);
   REQUIRE((angular_momentum(set) - l).norm() <= 1e-12 * size);
 }
+
+}  // namespace momentum_tests

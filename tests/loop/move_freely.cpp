@@ -3,6 +3,8 @@
 
 #include <delassus/delassus.hpp>
 
+namespace move_freely_tests {
+
 using namespace delassus;
 
 namespace {
@@ -105,3 +107,5 @@ TEST_CASE("a loop whose listener hears a stage is stepped stage by stage") {
   loop.step(0.1);
   REQUIRE(loop.get<Ear>().heard == 1);
 }
+
+}  // namespace move_freely_tests

@@ -10,6 +10,8 @@
 
 #include "catch.hpp"
 
+namespace newton_midpoint_tests {
+
 using namespace chains;
 
 namespace {
@@ -230,3 +232,5 @@ TEST_CASE("a force that is no number leaves the bodies where they were, and the 
   CHECK((end_of(loop) - before).norm() == 0);
   CHECK(loop.step(0.01).status == Status::converged);
 }
+
+}  // namespace newton_midpoint_tests

@@ -9,6 +9,8 @@
 
 #include <array>
 
+namespace newton_midpoint_mechanisms_tests {
+
 using namespace chains;
 
 namespace {
@@ -116,3 +118,5 @@ TEST_CASE("two free bodies on a joint keep energy, momentum and their joint") {
   keeps_energy<Slider>("slider");
   keeps_energy<Universal>("universal");
 }
+
+}  // namespace newton_midpoint_mechanisms_tests

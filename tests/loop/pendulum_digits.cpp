@@ -11,6 +11,8 @@
 
 #include "catch.hpp"
 
+namespace pendulum_digits_tests {
+
 using namespace smooth;
 
 namespace {
@@ -142,3 +144,5 @@ TEST_CASE("a conical pendulum at thirty degrees turns with the rate of its close
   }
   CHECK((points.position(bob) - Vec3(radius, 0, -depth)).norm() <= 1e-9);
 }
+
+}  // namespace pendulum_digits_tests

@@ -7,6 +7,8 @@
 
 #include "catch.hpp"
 
+namespace pendulum_orders_tests {
+
 using namespace smooth;
 
 namespace {
@@ -50,3 +52,5 @@ TEST_CASE(
   CHECK(are_of_order(orders, 2));
   CHECK(error(0.01) <= 1.5 * 4.8e-3);
 }
+
+}  // namespace pendulum_orders_tests

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+namespace persistent_contacts_tests {
+
 using namespace scenes;
 
 namespace {
@@ -87,3 +89,5 @@ TEST_CASE("the frame of friction turns no more than its normal does, on floors, 
       CHECK(turned.determinant() == Approx(1).epsilon(1e-14));
     }
 }
+
+}  // namespace persistent_contacts_tests

@@ -4,6 +4,8 @@
 
 #include "catch.hpp"
 
+namespace prediction_tests {
+
 using namespace scenes;
 
 namespace {
@@ -168,3 +170,5 @@ TEST_CASE("soft rows are predicted as stiff ones are: the spring of a joint sags
   for (int n = 0; n < 2000; ++n) loop.step(0.01);
   REQUIRE(-set.position(a).z() - 1 == Approx(m * g / k).epsilon(1e-9));
 }
+
+}  // namespace prediction_tests

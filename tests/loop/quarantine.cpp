@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace quarantine_tests {
+
 using namespace scenes;
 
 namespace {
@@ -153,3 +155,5 @@ TEST_CASE("a policy whose number was made invalid is refused at the next step, a
   loop.part<role::Stabilisation>().rate = 0.2;
   REQUIRE(loop.step(0.01).status == Status::converged);
 }
+
+}  // namespace quarantine_tests

@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace rattle_tests {
+
 using namespace smooth;
 
 // AC-08 at 10 s: 6.0e-3 m at h = 0.01.
@@ -142,3 +144,5 @@ TEST_CASE("joints that contradict each other are told, and leave all bodies as t
 TEST_CASE("a force that is no number leaves all bodies where they were under Rattle") {
   CHECK(leaves_what_is_no_number(Rattle{}));
 }
+
+}  // namespace rattle_tests

@@ -5,6 +5,8 @@
 
 #include "../examples/demonstration/stack_of_boxes.hpp"
 
+namespace reference_check_tests {
+
 using namespace reference_tests;
 
 TEST_CASE("a falling box has nothing to compare") {
@@ -74,3 +76,5 @@ TEST_CASE("a reference that did not get there says so") {
   CHECK(check.reference.measure.residual < 1e-9);
   CHECK_THAT(check.text(), Catch::Contains("did not reach its tolerance"));
 }
+
+}  // namespace reference_check_tests

@@ -5,6 +5,8 @@
 #include "../examples/demonstration/pile_of_shapes.hpp"
 #include "../examples/demonstration/wall_of_boxes.hpp"
 
+namespace reference_impacts_tests {
+
 using namespace reference_tests;
 
 TEST_CASE("a wall of a hundred boxes agrees with the reference") {
@@ -20,3 +22,5 @@ TEST_CASE("the reference gets there in a pile of two hundred, while it lands and
   compare_at(loop, 1.0 / 240, {48});
   compare_at(loop, 1.0 / 240, {12, 24, 36, 52, 72, 102}, false);
 }
+
+}  // namespace reference_impacts_tests

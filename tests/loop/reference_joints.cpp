@@ -3,6 +3,8 @@
 
 #include "../examples/demonstration/hanging_chain.hpp"
 
+namespace reference_joints_tests {
+
 using namespace reference_tests;
 
 TEST_CASE("a hanging chain agrees with the reference, and a wrong joint impulse in it is found and named") {
@@ -53,3 +55,5 @@ TEST_CASE("frictionless and penalty contacts agree with the reference") {
   check(Frictionless{});
   check(Penalty{Coulomb{.friction = 0.5}, 1e5, 50});
 }
+
+}  // namespace reference_joints_tests

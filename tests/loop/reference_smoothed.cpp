@@ -3,6 +3,8 @@
 
 #include "reference_tests.hpp"
 
+namespace reference_smoothed_tests {
+
 using namespace reference_tests;
 using inner::SmoothedNewton;
 
@@ -78,3 +80,5 @@ TEST_CASE("smoothed laws: an island that is too large is left as it was") {
   CHECK(report.measure.residual > 1e-3);
   CHECK(problem.rows.template pool<1>().lambda[0] == before);
 }
+
+}  // namespace reference_smoothed_tests

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace refine_tests {
+
 using namespace delassus;
 
 namespace {
@@ -116,3 +118,5 @@ TEST_CASE("a lazy compliance refuses numbers that cannot be") {
   refuses({.max_iterations = -1}, "max_iterations");
   refuses({.contraction = 1.5}, "contraction");
 }
+
+}  // namespace refine_tests

@@ -3,6 +3,8 @@
 #include "catch.hpp"
 #include "stages.hpp"
 
+namespace restitution_energy_tests {
+
 using namespace scenes;
 
 namespace {
@@ -55,3 +57,5 @@ TEST_CASE("no impact adds energy: a thousand random problems, friction to 2, res
   }
   REQUIRE(lossless < 900);  // the problems do something
 }
+
+}  // namespace restitution_energy_tests

@@ -11,6 +11,8 @@
 #include "catch.hpp"
 #include "rod_scenes.hpp"
 
+namespace rod_joints_tests {
+
 using namespace delassus;
 using namespace rod_scenes;
 
@@ -86,3 +88,5 @@ TEST_CASE("W of a rod's joints is H A^-1 H^T of a dense A, and the corrective mo
   CHECK(worst < 1e-10 * size);
   CHECK(W.block.size() == 2);  // A couples the two
 }
+
+}  // namespace rod_joints_tests

@@ -10,6 +10,8 @@
 #include "energy_watch.hpp"
 #include "rod_scenes.hpp"
 
+namespace rod_motion_tests {
+
 using namespace delassus;
 using namespace rod_scenes;
 
@@ -79,3 +81,5 @@ TEST_CASE("a thread whose segments are much longer than its bends swings down an
   CHECK(longest / 0.05 - 1 > 1e-3);
   CHECK(set.position(set.node(rod, 20))[2] < -0.5);
 }
+
+}  // namespace rod_motion_tests

@@ -12,6 +12,8 @@
 #include "catch.hpp"
 #include "rod_scenes.hpp"
 
+namespace rods_tests {
+
 using namespace delassus;
 using namespace rod_scenes;
 
@@ -125,3 +127,5 @@ TEST_CASE("rods go on bit for bit from a checkpoint, with the same hash of their
   CHECK(state_hash(loop) != before);
   CHECK(loop.report().contacts > 0);
 }
+
+}  // namespace rods_tests

@@ -7,6 +7,8 @@
 
 #include "catch.hpp"
 
+namespace runge_kutta4_tests {
+
 using namespace smooth;
 
 // AC-08 at 10 s: 4.1e-7 m at h = 0.01. The order is read where the next one, of the leak of energy, has gone.
@@ -63,3 +65,5 @@ TEST_CASE("joints that contradict each other are told, and leave all bodies as t
 TEST_CASE("a force that is no number leaves all bodies where they were under Runge-Kutta") {
   CHECK(leaves_what_is_no_number(RungeKutta4{}));
 }
+
+}  // namespace runge_kutta4_tests

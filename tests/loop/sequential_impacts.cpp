@@ -3,6 +3,8 @@
 
 #include "catch.hpp"
 
+namespace sequential_impacts_tests {
+
 using namespace scenes;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("a ball that bounces under the sequential law comes to rest") {
   CHECK(set.velocity(ball).norm() <= g * 1e-3);
   CHECK(set.position(ball).z() == Approx(radius).margin(1e-4));
 }
+
+}  // namespace sequential_impacts_tests

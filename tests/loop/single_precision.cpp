@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace single_precision_tests {
+
 using namespace scenes;
 
 namespace {
@@ -66,3 +68,5 @@ TEST_CASE("ten boxes stand for ten seconds in single precision") {
   CHECK(seen.drift < 2e-3);
   CHECK(seen.penetration < 5e-4);
 }
+
+}  // namespace single_precision_tests

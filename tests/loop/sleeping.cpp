@@ -4,6 +4,8 @@
 
 #include "catch.hpp"
 
+namespace sleeping_tests {
+
 using namespace scenes;
 
 namespace {
@@ -257,3 +259,5 @@ TEST_CASE("limits of sleep that make no sense are refused") {
   REQUIRE_THROWS_WITH(loop_with(Sleeping{.speed = -1}), Catch::Contains("Sleeping: speed -1 m/s"));
   REQUIRE_THROWS_WITH(loop_with(Sleeping{.after = 0}), Catch::Contains("Sleeping: after 0 s"));
 }
+
+}  // namespace sleeping_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace sliding_tests {
+
 using namespace scenes;
 
 namespace {
@@ -130,3 +132,5 @@ TEST_CASE("the way a block slides does not depend on its heading, runs straight 
   }
   REQUIRE(longest - shortest <= 1e-6 * longest);
 }
+
+}  // namespace sliding_tests

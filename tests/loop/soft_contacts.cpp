@@ -7,6 +7,8 @@
 #include "catch.hpp"
 #include "soft_scenes.hpp"
 
+namespace soft_contacts_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -112,3 +114,5 @@ TEST_CASE("a rigid ball and a box that fall on soft cubes stay on them, and all 
   CHECK(std::abs(s.force_from(box)[2] + 20 * 9.81) < 1);
   CHECK(std::abs(s.force_from(ball)[2] + 30 * 9.81) < 1);
 }
+
+}  // namespace soft_contacts_tests

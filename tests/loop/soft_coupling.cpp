@@ -13,6 +13,8 @@
 #include "catch.hpp"
 #include "hexahedral_scenes.hpp"
 
+namespace soft_coupling_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -147,3 +149,5 @@ TEST_CASE("a rigid ball pressed into a bonded block meets Hertz's force through 
       touched = std::max(touched, c.record.point().head<2>().norm());
   CHECK(std::abs(touched - std::sqrt(R * depth)) < 0.12);
 }
+
+}  // namespace soft_coupling_tests

@@ -4,6 +4,8 @@
 #include "hexahedral_scenes.hpp"
 #include "soft_recovery.hpp"
 
+namespace soft_hexahedra_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -41,3 +43,5 @@ TEST_CASE("hexahedra go on bit for bit from a checkpoint") {
   }
   CHECK(soft.pose(19).position[2] < 0.19);
 }
+
+}  // namespace soft_hexahedra_tests

@@ -8,6 +8,8 @@
 #include "catch.hpp"
 #include "hexahedral_scenes.hpp"
 
+namespace soft_hexahedra_joints_tests {
+
 using namespace delassus;
 
 TEST_CASE(
@@ -34,3 +36,5 @@ TEST_CASE(
   const Vec3 end = rigid.position(ball) + rigid.orientation(ball) * Vec3(0, 0, 0.3);
   CHECK(end[2] < place[2] - 0.001);
 }
+
+}  // namespace soft_hexahedra_joints_tests

@@ -9,6 +9,8 @@
 #include "catch.hpp"
 #include "hexahedral_scenes.hpp"
 
+namespace soft_hexahedra_surfaces_tests {
+
 using namespace delassus;
 
 TEST_CASE("what lands between the nodes of a bed of hexahedra rests on it, and so does a soft cube") {
@@ -56,3 +58,5 @@ TEST_CASE("what lands between the nodes of a bed of hexahedra rests on it, and s
   for (const ContactResult& c : loop.contacts())
     CHECK((c.record.point() - Vec3(0.5, 0.5, 0.4 + radius)).norm() < 0.01);  // its cell is 0.33 m wide
 }
+
+}  // namespace soft_hexahedra_surfaces_tests

@@ -10,6 +10,8 @@
 #include "catch.hpp"
 #include "soft_scenes.hpp"
 
+namespace soft_joints_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -251,3 +253,5 @@ TEST_CASE("a soft body that is taken out takes its joints with it, and the other
   CHECK(s.loop.report().status == Status::converged);
   CHECK_THROWS_AS(s.loop.remove(s.second), InvalidArgument);
 }
+
+}  // namespace soft_joints_tests

@@ -2,6 +2,8 @@
 // back.
 #include "soft_recovery.hpp"
 
+namespace soft_recovery_tests {
+
 using namespace delassus;
 using namespace soft_scenes;
 
@@ -56,3 +58,5 @@ TEST_CASE("a body that falls freely keeps its shape, its momentum and its turn")
   CHECK(set.elastic_energy() < 1e-18);
   (void)body;
 }
+
+}  // namespace soft_recovery_tests

@@ -11,6 +11,8 @@
 #include "catch.hpp"
 #include "soft_scenes.hpp"
 
+namespace soft_self_contact_tests {
+
 using namespace delassus;
 
 namespace {
@@ -128,3 +130,5 @@ TEST_CASE("a soft U whose arms are pressed together closes, and the arms do not 
     }
   }
 }
+
+}  // namespace soft_self_contact_tests

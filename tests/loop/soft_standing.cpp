@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace soft_standing_tests {
+
 using namespace scenes;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("ten boxes on soft contacts sag by what each of them carries") {
   const double omega = 2 * M_PI * 60;
   REQUIRE(height_at_rest(10, 60, 60) == Approx(expected_height(10, omega)).epsilon(0).margin(1e-6));
 }
+
+}  // namespace soft_standing_tests

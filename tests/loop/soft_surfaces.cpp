@@ -11,6 +11,8 @@
 #include "collision/mesh_scene.hpp"
 #include "soft_scenes.hpp"
 
+namespace soft_surfaces_tests {
+
 using namespace delassus;
 
 namespace {
@@ -89,3 +91,5 @@ TEST_CASE("a soft cube rests on a meshed floor, which carries its weight") {
     for (Index k = 0; k < 27; ++k) CHECK(s.soft.position(s.soft.node(cube, k)).z() > 0.5 * Scene::radius);
   }
 }
+
+}  // namespace soft_surfaces_tests

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 
+namespace soft_surfaces_asleep_tests {
+
 using namespace delassus;
 
 TEST_CASE("a soft block that lands on a sleeping box between its nodes wakes it, and is carried") {
@@ -54,3 +56,5 @@ TEST_CASE("a soft block that lands on a sleeping box between its nodes wakes it,
   CHECK(most > 0.1 * 40 * 9.81);  // and of its 40 kg the box stops a part
   CHECK(rigid.position(box).z() > 0.09);
 }
+
+}  // namespace soft_surfaces_asleep_tests

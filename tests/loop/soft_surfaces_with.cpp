@@ -12,6 +12,8 @@
 #include "catch.hpp"
 #include "soft_scenes.hpp"
 
+namespace soft_surfaces_with_tests {
+
 using namespace delassus;
 
 namespace {
@@ -88,3 +90,5 @@ TEST_CASE("restored, a box on a soft bed goes on bit for bit") {
     }
   }
 }
+
+}  // namespace soft_surfaces_with_tests

@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace squeezer_tests {
+
 using namespace squeezer;
 
 namespace {
@@ -29,3 +31,5 @@ TEST_CASE("the squeezing mechanism is met by Runge-Kutta, and by Rattle with sec
   CAPTURE(orders[0], orders[1]);
   CHECK(are_of_order(orders, 2));
 }
+
+}  // namespace squeezer_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace standing_tests {
+
 using namespace scenes;
 
 namespace {
@@ -36,3 +38,5 @@ TEST_CASE("ten boxes stand for a minute when positions are projected") {
 }
 TEST_CASE("ten cubes given as points stand for a minute") { check(stand_ten(cube_of_points(), Baumgarte{})); }
 TEST_CASE("ten cylinders stand for a minute") { check(stand_ten(Cylinder{0.5, 1}, Baumgarte{})); }
+
+}  // namespace standing_tests

@@ -9,6 +9,8 @@
 
 #include "catch.hpp"
 
+namespace substeps_tests {
+
 using namespace scenes;
 
 // Without contacts the parts are steps: same bits.
@@ -148,3 +150,5 @@ TEST_CASE("the joint violation of a divided step is the worst of its parts") {
   loop.add(BallJoint::Item{anchor(set, ball), world_anchor(Vec3::Zero())});
   CHECK(loop.step(0.01).max_joint_violation == Approx(1e-3).epsilon(1e-9));
 }
+
+}  // namespace substeps_tests

@@ -4,6 +4,8 @@
 #include "catch.hpp"
 #include "rope.hpp"
 
+namespace users_own_parts_tests {
+
 using namespace delassus;
 
 namespace {
@@ -85,3 +87,5 @@ TEST_CASE("a listener of one's own hears the stage it names, once a step") {
   for (int n = 0; n < 7; ++n) loop.step(0.01);
   REQUIRE(loop.get<CountSolves>().count == 7);
 }
+
+}  // namespace users_own_parts_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace warm_start_tests {
+
 using namespace scenes;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_CASE("a warm start is kept when a body is removed: what is left starts from
   for (std::size_t i = 0; i < before.size(); ++i)
     REQUIRE((loop.contacts()[i].impulse - before[i]).norm() <= 1e-12 * before[i].norm());
 }
+
+}  // namespace warm_start_tests

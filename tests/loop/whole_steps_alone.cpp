@@ -8,6 +8,8 @@
 #include "integrators/free_fall.hpp"
 #include "integrators/oscillator.hpp"
 
+namespace whole_steps_alone_tests {
+
 using namespace delassus;
 
 // Exact for a constant force. 60 steps round v and x a few times each: 60 · 4 · 2^-53 of the fall's end, and
@@ -80,3 +82,5 @@ TEST_CASE(
   CHECK(of(RungeKutta4{})(1.0 / 160) <= 1.5 * 2.86e-10);
   CHECK(euler_top::after_ten_seconds(Rattle{}, 1600).momentum <= 1600 * 8 * 0x1p-53);
 }
+
+}  // namespace whole_steps_alone_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace free_turns_tests {
+
 using namespace delassus;
 
 namespace {
@@ -44,3 +46,5 @@ TEST_CASE("a ball turns about its momentum, however long the step") {
   const Quat end = turn_freely<double>(Mat3(0.5 * Mat3::Identity()), Quat::Identity(), Vec3(0, 0, 2), 3.0);
   REQUIRE((end.coeffs() - exponential<double>({0, 0, 3}).coeffs()).norm() <= 1e-14);
 }
+
+}  // namespace free_turns_tests

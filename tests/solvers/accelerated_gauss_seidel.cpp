@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace accelerated_gauss_seidel_tests {
+
 using namespace scenes;
 
 namespace {
@@ -74,3 +76,5 @@ TEST_CASE("every iterate that momentum returns lies in the cone") {
     }
   }
 }
+
+}  // namespace accelerated_gauss_seidel_tests

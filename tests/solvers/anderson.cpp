@@ -3,6 +3,8 @@
 
 #include "catch.hpp"
 
+namespace anderson_tests {
+
 using namespace delassus;
 
 namespace {
@@ -62,3 +64,5 @@ TEST_CASE("mixing does not run away where there is no solution") {
   inner::anderson(p, count, history, [&] { return p.sweep(); });
   REQUIRE(p.x.norm() <= 50 * 10 * p.b.norm());
 }
+
+}  // namespace anderson_tests

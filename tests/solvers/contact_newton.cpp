@@ -4,6 +4,8 @@
 #include "scenes.hpp"
 #include "towers.hpp"
 
+namespace contact_newton_tests {
+
 using namespace scenes;
 using cold_problems::error;
 using cold_problems::tower;
@@ -67,3 +69,5 @@ TEST_CASE("a number of the contact-space Newton solver that cannot be is refused
   REQUIRE_THROWS_WITH((ContactNewton{.first_sweeps = 9, .max_sweeps = 8}.check()),
                       Catch::Contains("max_sweeps 8"));
 }
+
+}  // namespace contact_newton_tests

@@ -1,6 +1,8 @@
 // The direct path with contacts and a limit beside the joints.
 #include "direct_tests.hpp"
 
+namespace direct_contacts_tests {
+
 using namespace direct_tests;
 
 namespace {
@@ -41,3 +43,5 @@ TEST_CASE(
   for (const ContactResult& c : loop.contacts()) weight += 60 * c.impulse.dot(Vec3(0, 0, 1));
   CHECK(std::abs(std::abs(weight) - 204 * 9.81) <= 1e-5 * 204 * 9.81);
 }
+
+}  // namespace direct_contacts_tests

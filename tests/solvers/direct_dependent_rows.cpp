@@ -1,6 +1,8 @@
 // The direct path where rows depend on each other, or contradict each other.
 #include "direct_tests.hpp"
 
+namespace direct_dependent_rows_tests {
+
 using namespace direct_tests;
 
 namespace {
@@ -83,3 +85,5 @@ TEST_CASE("joints that contradict each other give a compromise, small impulses a
     CHECK(loop.impulse(left).norm() <= 0.1 / 1e-4);  // m · 0.1 m/s over ε, not growing from step to step
   }
 }
+
+}  // namespace direct_dependent_rows_tests

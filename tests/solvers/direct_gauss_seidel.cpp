@@ -3,6 +3,8 @@
 
 #include "direct_tests.hpp"
 
+namespace direct_gauss_seidel_tests {
+
 using namespace direct_tests;
 
 // What is left is the rounding of W λ: λ ~ ratio · m g h, seen over the mass of a light link, is 1e-16 · 1e6
@@ -57,3 +59,5 @@ TEST_CASE("the same start gives the same bits under the direct path") {
   for (int n = 0; n < 20; ++n) a.step(1e-3), b.step(1e-3);
   REQUIRE((end_of(a) - end_of(b)).norm() == 0);
 }
+
+}  // namespace direct_gauss_seidel_tests

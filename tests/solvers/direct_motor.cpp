@@ -1,6 +1,8 @@
 // The direct path with a motor beside the joints.
 #include "direct_tests.hpp"
 
+namespace direct_motor_tests {
+
 using namespace direct_tests;
 
 // A load of 1000 times the jib's mass, lifted by a motor: the joints hold as well as their rows are solved.
@@ -22,3 +24,5 @@ TEST_CASE("a motor on a chain of hinges with a heavy end turns at its speed") {
     REQUIRE(std::abs(rigid.angular_velocity(jib).y() + 0.1) <= 1e-6);
   }
 }
+
+}  // namespace direct_motor_tests

@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace gauss_seidel_tests {
+
 using namespace scenes;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("the impulses of a solve do not depend on the scale of time and mass b
   for (Index i = 0; i < p.rows.pool<0>().items(); ++i)
     REQUIRE((1024 * p.rows.pool<0>().lambda[i] - q.rows.pool<0>().lambda[i]).norm() == 0);
 }
+
+}  // namespace gauss_seidel_tests

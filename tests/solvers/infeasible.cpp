@@ -6,6 +6,8 @@
 
 #include "catch.hpp"
 
+namespace infeasible_tests {
+
 using namespace scenes;
 
 namespace {
@@ -98,3 +100,5 @@ TEST_CASE("two rods of different lengths between the same points are infeasible 
   REQUIRE(loop.report().status == Status::converged);
   REQUIRE(set.velocity(ball).norm() < 10);  // 0.2 of what is left of 0.5 m a step
 }
+
+}  // namespace infeasible_tests

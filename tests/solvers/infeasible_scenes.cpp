@@ -3,6 +3,8 @@
 
 #include "catch.hpp"
 
+namespace infeasible_scenes_tests {
+
 using namespace scenes;
 
 namespace {
@@ -64,3 +66,5 @@ TEST_CASE("a bar in half its room stays at rest, and is free within ten steps wh
   }
   REQUIRE(loop.report().status == Status::converged);
 }
+
+}  // namespace infeasible_scenes_tests

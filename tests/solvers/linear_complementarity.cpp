@@ -13,6 +13,8 @@
 #include <random>
 #include <vector>
 
+namespace linear_complementarity_tests {
+
 using namespace delassus;
 
 namespace {
@@ -203,3 +205,5 @@ TEST_CASE("where sweeps do not get there the status says so") {
   REQUIRE(r.status == Status::max_iterations);
   REQUIRE(r.measure.residual > 1e-9);
 }
+
+}  // namespace linear_complementarity_tests

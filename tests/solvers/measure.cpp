@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace measure_tests {
+
 using namespace scenes;
 
 namespace {
@@ -121,3 +123,5 @@ TEST_CASE("the residual does not change when all masses or all velocities are sc
   for (auto& x : problem.rows.pool<0>().d) x *= size;
   REQUIRE(solve(problem, only_measure).measure.residual == Approx(before.residual).epsilon(1e-14));
 }
+
+}  // namespace measure_tests

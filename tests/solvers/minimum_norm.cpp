@@ -6,6 +6,8 @@
 #include "catch.hpp"
 #include "scenes.hpp"
 
+namespace minimum_norm_tests {
+
 using namespace scenes;
 
 namespace {
@@ -140,3 +142,5 @@ TEST_CASE("two equal rods in a running loop carry half of the weight each") {
   REQUIRE(loop.impulse(one)[0] == Approx(loop.impulse(two)[0]).epsilon(1e-9));
   REQUIRE(std::abs(loop.impulse(one)[0]) == Approx(0.5 * g * 0.01).epsilon(1e-6));
 }
+
+}  // namespace minimum_norm_tests

@@ -3,6 +3,8 @@
 
 #include "catch.hpp"
 
+namespace momentum_tests {
+
 using namespace delassus;
 using inner::RestartRule;
 
@@ -65,3 +67,5 @@ TEST_CASE("only a strict time after a loose one that grew at once is futile") {
   go_on(rule, 1, 21.0);
   REQUIRE_FALSE(rule.is_futile());
 }
+
+}  // namespace momentum_tests

@@ -4,6 +4,8 @@
 #include "path_tests.hpp"
 #include "scenes.hpp"
 
+namespace path_newton_tests {
+
 using namespace scenes;
 using namespace path_tests;
 using cold_problems::tower;
@@ -54,3 +56,5 @@ TEST_CASE("a number of PathNewton that cannot be is refused in one sentence") {
   REQUIRE_THROWS_WITH(PathNewton{.max_iterations = -1}.check(), Catch::Contains("max_iterations -1"));
   REQUIRE_THROWS_WITH(PathNewton{.max_sweeps = -1}.check(), Catch::Contains("max_sweeps -1"));
 }
+
+}  // namespace path_newton_tests

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+namespace path_newton_alone_tests {
+
 using namespace path_tests;
 
 namespace {
@@ -83,3 +85,5 @@ TEST_CASE("a problem that is not finite, or empty, is no path") {
   for (const Vec3& x : p.rows.pool<0>().lambda) REQUIRE(x == Vec3::Zero());
   REQUIRE(solve(none, PathNewton{}).status == Status::converged);
 }
+
+}  // namespace path_newton_alone_tests

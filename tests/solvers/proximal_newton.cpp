@@ -1,5 +1,7 @@
 #include "newton_tests.hpp"
 
+namespace proximal_newton_tests {
+
 using namespace newton_tests;
 
 namespace {
@@ -119,3 +121,5 @@ TEST_CASE("parameters that cannot be right are refused by value") {
   REQUIRE_THROWS_WITH((ProximalNewton{.max_sweeps = -2}.check()),
                       Catch::Contains("max_sweeps -2 must be >= 0"));
 }
+
+}  // namespace proximal_newton_tests

@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace proximal_newton_axes_tests {
+
 using namespace delassus;
 
 namespace {
@@ -60,3 +62,5 @@ TEST_CASE(
   CHECK(4 * sweeps <= without);
   CHECK(apart <= 1e-6);
 }
+
+}  // namespace proximal_newton_axes_tests

@@ -1,6 +1,8 @@
 // Where springs couple the bodies.
 #include "newton_tests.hpp"
 
+namespace proximal_newton_coupled_tests {
+
 using namespace newton_tests;
 
 // Springs under implicit Euler couple the particles: A has no block of one of them, and the report says who
@@ -17,3 +19,5 @@ TEST_CASE("particles coupled by springs are swept") {
   CHECK(loop.island_reports()[0].factorizations == 0);
   CHECK(loop.island_reports()[0].sweeps > 0);
 }
+
+}  // namespace proximal_newton_coupled_tests

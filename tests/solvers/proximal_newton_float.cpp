@@ -1,6 +1,8 @@
 // Newton's method on bodies of single precision.
 #include "newton_tests.hpp"
 
+namespace proximal_newton_float_tests {
+
 using namespace newton_tests;
 
 // Single precision holds a residual of 1e-5 above its rounding floor of about 1e-6; Newton's own sums are double.
@@ -13,3 +15,5 @@ TEST_CASE("five boxes of single precision stand, and every step converges") {
   CHECK(loop.report().residual > 0);
   CHECK(kinetic_energy(rigid_bodies(loop)) < 1e-6);
 }
+
+}  // namespace proximal_newton_float_tests

@@ -1,6 +1,8 @@
 // Newton's method on joints, springs and bouncing contacts.
 #include "newton_tests.hpp"
 
+namespace proximal_newton_joints_tests {
+
 using namespace newton_tests;
 
 namespace {
@@ -78,3 +80,5 @@ TEST_CASE("the same start gives the same bits") {
     REQUIRE((x.position(x.handle(i)) - y.position(y.handle(i))).norm() == 0);
   }
 }
+
+}  // namespace proximal_newton_joints_tests

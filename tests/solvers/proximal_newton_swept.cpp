@@ -1,6 +1,8 @@
 // Islands that Newton's method leaves to the sweeps.
 #include "newton_tests.hpp"
 
+namespace proximal_newton_swept_tests {
+
 using namespace newton_tests;
 
 namespace {
@@ -37,3 +39,5 @@ TEST_CASE("an island whose law has no tangent is swept, and another one is not")
   CHECK(loop.island_reports()[1].factorizations == 0);
   CHECK(loop.island_reports()[1].sweeps > 0);
 }
+
+}  // namespace proximal_newton_swept_tests

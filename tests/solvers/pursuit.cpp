@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 
+namespace pursuit_tests {
+
 using namespace delassus;
 
 namespace {
@@ -78,3 +80,5 @@ TEST_CASE("a movement that foretells a large error does not keep the solve from 
   REQUIRE(pursuit.finish().status == Status::converged);
   REQUIRE(problem.sweeps <= 30 + 16);  // 2^-30 = 9.3e-10, and twice an interval of 8
 }
+
+}  // namespace pursuit_tests

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+namespace redundant_contacts_tests {
+
 using namespace delassus;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("a frictionless contact given up to 50 times changes the motion by les
   REQUIRE(std::abs(once[2]) > 0.01);
   for (const int copies : many) REQUIRE(distance(solved_motion(copies, free, 0), once) < 1e-10);
 }
+
+}  // namespace redundant_contacts_tests

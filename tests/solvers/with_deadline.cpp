@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace with_deadline_tests {
+
 using namespace scenes;
 
 namespace {
@@ -123,3 +125,5 @@ TEST_CASE("a budget below zero and a deadline that is no number are refused") {
       (AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, WithDeadline{GaussSeidel{.relaxation = 3}}}),
       Catch::Contains("relaxation 3"));
 }
+
+}  // namespace with_deadline_tests

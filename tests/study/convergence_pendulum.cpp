@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace convergence_pendulum_tests {
+
 using namespace delassus;
 
 namespace {
@@ -61,3 +63,5 @@ TEST_CASE(
   // Of the midpoint rule with gaps closed by projection the energy is off in second order too.
   CHECK(convergence_order(study, 4, 1) == Approx(2).margin(0.1));
 }
+
+}  // namespace convergence_pendulum_tests

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace convergence_slide_tests {
+
 using namespace delassus;
 
 namespace {
@@ -51,3 +53,5 @@ TEST_CASE(
   CHECK(convergence_order(study, 0) == Approx(1).margin(3e-6));
   CHECK(convergence_order(study, 1) == Approx(1).margin(3e-6));
 }
+
+}  // namespace convergence_slide_tests

@@ -12,6 +12,8 @@
 
 #include "catch.hpp"
 
+namespace materials_tests {
+
 using namespace delassus;
 
 namespace {
@@ -203,3 +205,5 @@ TEST_CASE("a material with impossible numbers is refused") {
   CHECK_THROWS_AS(check_material(StableNeoHookean{.poisson = -1}, "soft body #0"), InvalidArgument);
   check_material(StableNeoHookean{.poisson = -0.999}, "soft body #0");
 }
+
+}  // namespace materials_tests
