@@ -1,10 +1,10 @@
 // Also built with: -march=native
 //
-// W = H A⁻¹ Hᵀ of contacts on a soft box, and what it needs: factorization, refactorization of a region,
-// assembly. Each against another way, turn by turn in one run; CPU time of one thread. "The model's way" is
-// the algorithm of the component that is modelled: forward substitution of every row of H through all columns
-// of an LDLᵀ factor, then a dot product a pair of rows. Arguments: nodes (of tetrahedral_box.hpp), contacts,
-// nodes a contact.
+// W = H A⁻¹ Hᵀ of contacts on a soft box, and what it needs: factorization, refactorization of a region. Each
+// against another way, turn by turn in one run; CPU time of one thread. "The model's way" is the algorithm of
+// the component that is modelled: forward substitution of every row of H through all columns of an LDLᵀ
+// factor, then a dot product a pair of rows. Arguments: nodes (of tetrahedral_box.hpp), contacts, nodes a
+// contact.
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
@@ -120,34 +120,6 @@ void refactor_against_factor(benchmark::State& state) {
   state.counters["region"] = double(region.size());
 }
 
-/// Element matrices into A: by a table of places, and by a list of triplets.
-void assembly_against_triplets(benchmark::State& state) {
-  const Box box = box_of(Index(state.range(0)));
-  MultifrontalCholesky<3, double> f;
-  f.analyse(box.nodes(), box.pairs, box.positions);
-  std::vector<std::array<decltype(f)::BlockPlace, 10>> table;
-  for (const Element& e : box.elements) {
-    table.emplace_back();
-    for (int a = 0, k = 0; a < 4; ++a)
-      for (int b = 0; b <= a; ++b) table.back()[k++] = f.find(e.nodes[a], e.nodes[b]);
-  }
-  std::vector<Eigen::Triplet<double>> triplets;
-  Sparse A(3 * box.nodes(), 3 * box.nodes());
-  against::run(
-      state,
-      [&] {
-        f.set_zero();
-        for (std::size_t n = 0; n < table.size(); ++n)
-          for (int a = 0, k = 0; a < 4; ++a)
-            for (int b = 0; b <= a; ++b) f.add(table[n][k++], box.elements[n].A[a][b]);
-      },
-      [&] {
-        box.triplets(triplets);
-        A.setFromTriplets(triplets.begin(), triplets.end());
-      },
-      10);
-}
-
 void of_boxes(benchmark::internal::Benchmark* b) { b->UseManualTime()->Unit(benchmark::kMillisecond); }
 
 }  // namespace
@@ -166,4 +138,3 @@ BENCHMARK(compliance_against_the_models_way)
     ->Apply(of_boxes);
 BENCHMARK(factor_against_eigen_ldlt)->Arg(500)->Arg(1000)->Arg(3000)->Arg(10000)->Apply(of_boxes);
 BENCHMARK(refactor_against_factor)->Arg(1000)->Arg(3000)->Arg(10000)->Apply(of_boxes);
-BENCHMARK(assembly_against_triplets)->Arg(500)->Arg(3000)->Arg(10000)->Apply(of_boxes);

@@ -1,4 +1,4 @@
-// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha and FullNewton take no contacts, limits, motors and drives
+// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, motors and drives
 #include <delassus/delassus.hpp>
 #include <delassus/loop/rattle.hpp>
 

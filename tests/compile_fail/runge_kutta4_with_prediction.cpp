@@ -1,4 +1,4 @@
-// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha and FullNewton make their step at once, without W
+// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, without W
 #include <delassus/delassus.hpp>
 #include <delassus/loop/runge_kutta4.hpp>
 

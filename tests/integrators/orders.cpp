@@ -1,6 +1,8 @@
 // The order of every integrator on a smooth force, where it is a row of the table of docs/equations.md;
 // joints and free rotation of those that have no test of their own for it.
+#include <delassus/loop/bdf2.hpp>
 #include <delassus/loop/generalized_alpha.hpp>
+#include <delassus/loop/newmark.hpp>
 #include <delassus/loop/newton_midpoint.hpp>
 #include <delassus/loop/rattle.hpp>
 #include <delassus/loop/runge_kutta4.hpp>
@@ -42,6 +44,8 @@ TEST_CASE("every integrator meets a spring with its order") {
   check_spring<ImplicitMidpoint>(2);
   check_spring<Rattle>(2);
   check_spring<GeneralizedAlpha>(2);
+  check_spring<Newmark>(2);
+  check_spring<Bdf2>(2);
   check_spring<RungeKutta4>(4);
 }
 

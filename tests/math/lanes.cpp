@@ -1,5 +1,6 @@
 #include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/bodies/inner/linear_tetrahedron.hpp>
+#include <delassus/bodies/inner/node_matrix.hpp>
 #include <delassus/math/lanes.hpp>
 
 #include "catch.hpp"
@@ -38,9 +39,10 @@ LaneMatrix lanes_of(const Mat3* F) {
   std::memcpy(&M, numbers, sizeof numbers);
   return M;
 }
-Mat3 lane(const LaneMatrix& M, int l) {
+template <class M>
+Mat3 lane(const M& nine, int l) {
   double numbers[9 * lane_count];
-  std::memcpy(numbers, &M, sizeof numbers);
+  std::memcpy(numbers, &nine, sizeof numbers);
   Mat3 one;
   for (int k = 0; k < 9; ++k) one.data()[k] = numbers[k * lane_count + l];
   return one;
@@ -89,7 +91,11 @@ TEST_CASE("a batch of tetrahedra has the forces and the stiffness of each of the
           places[(3 * a + k) * lane_count + l] = x[l][a][k];
         }
     }
-    const auto state = inner::LinearTetrahedron::lanes_at(material, elements.data(), places);
+    double numbers[inner::LinearTetrahedron::lane_numbers * lane_count];
+    for (int l = 0; l < lane_count; ++l) elements[l].enter_lane({0, 1, 2, 3}, numbers + l);
+    const auto state = inner::LinearTetrahedron::lanes_at(material, numbers, places);
+    Lanes blocks[10][9];
+    state.stiffness(blocks);
     for (int l = 0; l < lane_count; ++l) {
       const auto one = elements[l].at(material, x[l]);
       const auto K = one.stiffness();
@@ -97,7 +103,11 @@ TEST_CASE("a batch of tetrahedra has the forces and the stiffness of each of the
         double force[3 * lane_count];
         std::memcpy(force, &state.force[a], sizeof force);
         for (int k = 0; k < 3; ++k) CHECK(std::abs(force[k * lane_count + l] - one.force[a][k]) < 1e-13);
-        for (int b = 0; b < 4; ++b) CHECK((lane(state.block(a, b), l) - K.block(a, b)).norm() < 1e-11);
+        CHECK((lane(blocks[a], l) - K.block(a, a)).norm() < 1e-11);
+      }
+      for (int k = 0; k < 6; ++k) {
+        const auto [a, b] = inner::pairs_of_nodes<4>[k];
+        CHECK((lane(blocks[4 + k], l) - K.block(a, b)).norm() < 1e-11);
       }
     }
   }

@@ -229,15 +229,15 @@ consteval bool whole_step_fits() {
     constexpr bool is_plain = takes_whole_steps<typename Parts::Scheme> &&
                               std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...);
     static_assert(are_equal,
-                  "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha and FullNewton take no contacts, limits, "
+                  "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, "
                   "motors and drives; take their laws out, or use another integrator, such as ImplicitEuler");
     if constexpr (are_equal)
       static_assert(can_move,
-                    "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles, GeneralizedAlpha "
-                    "particles and soft bodies, FullNewton soft bodies and rods; take the other sets out of World{...}, or use ImplicitMidpoint");
+                    "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles, GeneralizedAlpha, "
+                    "Newmark and Bdf2 particles and soft bodies, FullNewton soft bodies and rods; take the other sets out of World{...}, or use ImplicitMidpoint");
     if constexpr (are_equal && can_move)
       static_assert(is_plain,
-                    "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha and FullNewton make their step at once, "
+                    "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, "
                     "without W; take out the scheme, the activity and the listeners that publish the problem");
     return are_equal && can_move && is_plain;
   }

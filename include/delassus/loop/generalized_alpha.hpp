@@ -4,13 +4,21 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
-#include <delassus/loop/stages/generalized_alpha_step.hpp>
+#include <delassus/loop/stages/alpha_rule.hpp>
 
 namespace delassus {
 
+template <class World, class Laws, class Rows>
+class GeneralizedAlphaStep : public StepBySets<inner::StepByAcceleration, World> {
+  static_assert(
+      Rows::pool_count == 0,
+      "delassus: GeneralizedAlpha moves bodies without joints; take the laws out, or use ImplicitMidpoint");
+};
+
 /// For structures: particles on springs and soft bodies, without joints and contacts. Implicit, solved by
 /// Newton's method; stable for every h ω. A motion with h ω → ∞ shrinks by ρ∞ a step, one with h ω ≪ 1 keeps
-/// its amplitude to third order.
+/// its amplitude to third order. A force that begins or ends with a step acts half in its neighbour, since a
+/// lags: the method is for what changes smoothly.
 struct GeneralizedAlpha {
   using plays = role::Integrator;
   static constexpr bool solves_whole_step = true;
@@ -22,13 +30,10 @@ struct GeneralizedAlpha {
   double tolerance = 1e-10;      ///< of the accelerations
   int max_iterations = 20;       ///< factorizations; reaching it is a status
 
-  struct Coefficients {
-    double alpha_m, alpha_f, beta, gamma;
-  };
-  Coefficients coefficients() const {
+  inner::AlphaRule rule(double h) const {
     const double rho = spectral_radius, alpha_m = (2 * rho - 1) / (rho + 1), alpha_f = rho / (rho + 1);
     const double step = 1 - alpha_m + alpha_f;
-    return {alpha_m, alpha_f, step * step / 4, step - 0.5};
+    return {alpha_m, alpha_f, step * step / 4, step - 0.5, h};
   }
   void check() const {
     DELASSUS_EXPECT(
@@ -44,15 +49,7 @@ struct GeneralizedAlpha {
     set.add_forces(p);
     times(p, h);
   }
-  /// The set goes to x₊, and takes v₊.
-  void advance(auto& set, double h) const {
-    if constexpr (requires { set.active(); }) {
-      set.advance(h);
-      auto& v = set.velocity();
-      for (const Index b : set.active())
-        if (set.moves(b) && is_finite(set.v_next[b]) && is_finite(set.v_free[b])) v[b] = set.v_free[b];
-    }
-  }
+  void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
 };
 static_assert(Integrator<GeneralizedAlpha>);
 

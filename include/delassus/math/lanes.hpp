@@ -42,6 +42,17 @@ inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 inline LaneVector times(const Lanes& s, const LaneVector& a) { return {{s * a[0], s * a[1], s * a[2]}}; }
+inline LaneMatrix transposed(const LaneMatrix& A) {
+  LaneMatrix B;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) B(i, k) = A(k, i);
+  return B;
+}
+/// A −= B.
+inline void subtract(LaneMatrix& A, const LaneMatrix& B) {
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) A(i, k) -= B(i, k);
+}
 /// A Bᵀ.
 inline LaneMatrix times_transposed(const LaneMatrix& A, const LaneMatrix& B) {
   LaneMatrix C;
@@ -65,22 +76,6 @@ void transpose_lanes(P* rows) {
 
 }  // namespace inner
 
-/// The matrix of lane l at to[l], by columns.
-inline void split_lanes(const LaneMatrix& M, double (*to)[9]) {
-  Lanes e[9];
-  std::memcpy(e, &M, sizeof e);
-  constexpr int whole = 8 / lane_count * lane_count;
-  for (int first = 0; first < whole; first += lane_count) {
-    inner::transpose_lanes(&e[first]);
-    for (int l = 0; l < lane_count; ++l) store_lanes(&to[l][first], e[first + l]);
-  }
-  for (int k = whole; k < 9; ++k) {
-    double column[lane_count];
-    store_lanes(column, e[k]);
-    for (int l = 0; l < lane_count; ++l) to[l][k] = column[l];
-  }
-}
-
 /// `SingularValues` of one matrix a lane.
 struct LaneSingularValues {
   LaneMatrix U, V;
@@ -95,7 +90,8 @@ inline bool turn_columns(LaneMatrix& B, LaneMatrix& V, int p, int q) {
   const Lanes a = dot(x, x), b = dot(y, y), g = dot(x, y), zero = all_lanes(0), one = all_lanes(1);
   const auto turns = size_of_lanes(g) > larger_lanes(4e-16 * root_of_lanes(a * b), all_lanes(1e-300));
   const Lanes zeta = turns ? (b - a) / (2 * g) : zero;
-  const Lanes t = turns ? (zeta < zero ? -one : one) / (size_of_lanes(zeta) + root_of_lanes(1 + zeta * zeta)) : zero;
+  const Lanes t =
+      turns ? (zeta < zero ? -one : one) / (size_of_lanes(zeta) + root_of_lanes(1 + zeta * zeta)) : zero;
   const Lanes c = 1 / root_of_lanes(1 + t * t), s = c * t;
   for (LaneMatrix* A : {&B, &V})
     for (int i = 0; i < 3; ++i) {

@@ -3,8 +3,50 @@
 
 #include <delassus/bodies/elasticity/isotropic.hpp>
 #include <delassus/bodies/elasticity/material.hpp>
+#include <delassus/math/lanes.hpp>
 
 namespace delassus {
+
+/// `Corotational` at one F a lane. Beside 2μ |dF|² and λ tr²(RᵀdF), ∂P/∂F has the turn of R: with a′ = R a,
+///
+///   block(a, b) = 2μ a·b 1 + λ a′ b′ᵀ + [a′]ₓ Z [b′]ₓᵀ,   Z = Σ_k ½ (twist_k − 2μ) u_k u_kᵀ,
+///
+/// u_k the principal axes where the element is, twists cut at zero.
+struct CorotationalLanes {
+  LaneMatrix R, stress, turn;  ///< P and Z, Pa
+  Lanes lambda, mu;
+
+  /// All by the volume they act in, m³.
+  void integrate(const Lanes& volume) {
+    for (LaneMatrix* A : {&stress, &turn})
+      for (LaneVector& column : A->column) column = times(volume, column);
+    lambda *= volume, mu *= volume;
+  }
+
+  /// Of a gradient g: g, λ R g, R g, and [R g]ₓ Z by columns.
+  struct Pulled {
+    LaneVector plain, stiff, turned;
+    LaneMatrix lever;
+  };
+  Pulled pull(const LaneVector& g) const {
+    Pulled p{.plain = g};
+    for (int i = 0; i < 3; ++i) p.turned[i] = R(i, 0) * g[0] + R(i, 1) * g[1] + R(i, 2) * g[2];
+    p.stiff = times(lambda, p.turned);
+    for (int k = 0; k < 3; ++k) p.lever.column[k] = cross(p.turned, turn.column[k]);
+    return p;
+  }
+  LaneMatrix block(const Pulled& a, const Pulled& b) const {
+    const Lanes along = 2 * mu * dot(a.plain, b.plain);
+    LaneMatrix K;
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3, m = (k + 2) % 3;
+      for (int i = 0; i < 3; ++i)  // row k of [b′]ₓ is e_m b′_l − e_l b′_m
+        K(i, k) = a.stiff[i] * b.turned[k] + (a.lever(i, m) * b.turned[l] - a.lever(i, l) * b.turned[m]);
+      K(k, k) += along;
+    }
+    return K;
+  }
+};
 
 /// Ψ = μ Σ(σ_i − 1)² + λ/2 (Σ(σ_i − 1))², that is μ |F − R|² + λ/2 tr²(RᵀF − 1), R the rotation next to F.
 /// The last σ is signed, so that an element that is flat or inside out is pushed back by the same law.
@@ -33,20 +75,18 @@ struct Corotational {
     return {s, f};
   }
   /// The same at one F a lane.
-  IsotropicLanes at(const LaneMatrix& F) const {
+  CorotationalLanes at(const LaneMatrix& F) const {
     const Lame lame(young, poisson);
     const LaneSingularValues f = singular_values(F);
     const Lanes pressure = lame.lambda * (f.sigma[0] - 1 + (f.sigma[1] - 1) + (f.sigma[2] - 1));
-    IsotropicLanes point{.U = f.U, .V = f.V};
+    LaneMatrix Up, Uc;
     for (int k = 0; k < 3; ++k) {
-      point.stress[k] = 2 * lame.mu * (f.sigma[k] - 1) + pressure;
-      for (int i = 0; i < 3; ++i) point.hessian(i, k) = all_lanes(lame.lambda + (i == k ? 2 * lame.mu : 0));
+      Up.column[k] = times(2 * lame.mu * (f.sigma[k] - 1) + pressure, f.U.column[k]);
       const Lanes sum = larger_lanes(f.sigma[(k + 1) % 3] + f.sigma[(k + 2) % 3], all_lanes(1e-3));
-      const Lanes twist = larger_lanes(2 * lame.mu + 2 * (pressure - 2 * lame.mu) / sum, all_lanes(0));
-      point.half_sum[k] = 0.5 * (2 * lame.mu + twist);
-      point.half_difference[k] = 0.5 * (2 * lame.mu - twist);
+      Uc.column[k] = times(larger_lanes((pressure - 2 * lame.mu) / sum, all_lanes(-lame.mu)), f.U.column[k]);
     }
-    return point;
+    return {times_transposed(f.U, f.V), times_transposed(Up, f.V), times_transposed(Uc, f.U),
+            all_lanes(lame.lambda), all_lanes(lame.mu)};
   }
 };
 static_assert(ElasticMaterial<Corotational>);

@@ -1,7 +1,6 @@
 /// An isotropic material at one F: from its derivatives by the principal stretches to its stress and tangent.
 #pragma once
 
-#include <delassus/math/lanes.hpp>
 #include <delassus/math/singular_values.hpp>
 
 namespace delassus {
@@ -20,9 +19,9 @@ struct PrincipalState {
 namespace inner {
 
 /// ∂P/∂F contracted with two gradients, all in the axes of the principal stretches.
-template <class M, class V>
-M principal_block(const M& hessian, const V& half_sum, const V& half_difference, const V& a, const V& b) {
-  M B;
+inline Mat3 principal_block(const Mat3& hessian, const Vec3& half_sum, const Vec3& half_difference,
+                            const Vec3& a, const Vec3& b) {
+  Mat3 B;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) B(i, k) = hessian(i, k) * a[i] * b[k];
   for (int k = 0; k < 3; ++k) {
@@ -67,29 +66,6 @@ class IsotropicPoint {
   double energy_;
   Mat3 hessian_;
   Vec3 half_sum_, half_difference_;
-};
-
-/// `IsotropicPoint` of one F a lane, without its energy: for a material that says it for several elements at a
-/// time. `hessian` has to be positive semidefinite.
-struct IsotropicLanes {
-  LaneMatrix U, V, hessian;
-  LaneVector stress, half_sum, half_difference;
-
-  LaneMatrix first_piola() const {
-    LaneMatrix Up;
-    for (int k = 0; k < 3; ++k) Up.column[k] = times(stress[k], U.column[k]);
-    return times_transposed(Up, V);
-  }
-  LaneVector pull(const LaneVector& gradient) const {
-    return {{dot(V.column[0], gradient), dot(V.column[1], gradient), dot(V.column[2], gradient)}};
-  }
-  LaneMatrix block(const LaneVector& a, const LaneVector& b) const {
-    const LaneMatrix B = inner::principal_block(hessian, half_sum, half_difference, a, b);
-    LaneMatrix UB;
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < 3; ++i) UB(i, k) = U(i, 0) * B(0, k) + U(i, 1) * B(1, k) + U(i, 2) * B(2, k);
-    return times_transposed(UB, U);
-  }
 };
 
 }  // namespace delassus

@@ -21,8 +21,8 @@ namespace delassus::inner {
 
 /// An element that takes as many at a time as there are lanes, with a material that does.
 template <class E, class M>
-concept LaneElement = requires(const M& material, const E* elements, const double* places) {
-  E::lanes_at(material, elements, places);
+concept LaneElement = requires(const M& material, const double* numbers, const double* places) {
+  E::lanes_at(material, numbers, places);
 };
 
 /// Of elements E. Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double,
@@ -32,6 +32,7 @@ class ElasticBody {
  public:
   using Mesh = typename E::Mesh;
   using Velocity = Vec<3, T>;
+  using Matrix = NodeMatrix<T, E::nodes>;
   static constexpr bool has_constant_stiffness = requires { requires M::has_constant_stiffness; };
 
   ElasticBody() = default;
@@ -148,12 +149,29 @@ class ElasticBody {
     elements_.clear();
     const Lame lame(material_.young, material_.poisson);
     for (Index e = 0; e < Index(mesh_.cells().size()); ++e) elements_.emplace_back(mesh_, e, lame);
+    order_corners();
     force_.assign(n, Velocity::Zero());
     work_ = product_ = force_;
     mass_.assign(n, T(0));
     is_held_.assign(n, 0);
-    if (n > 0) matrix_.analyse(Index(n), mesh_.cells(), mesh_.points);
+    if (n > 0) matrix_.analyse(Index(n), nodes_, mesh_.points);
     has_stiffness_ = is_factored_ = false;
+  }
+
+  /// The corners of each element by ascending node, and what its lane is made of.
+  void order_corners() {
+    const std::size_t n = elements_.size();
+    order_.resize(n), nodes_.resize(n);
+    if constexpr (LaneElement<E, M>) lane_numbers_.resize(n / lane_count * lane_count * E::lane_numbers);
+    for (std::size_t e = 0; e < n; ++e) {
+      const auto& t = mesh_.cells()[Index(e)];
+      for (int a = 0; a < E::nodes; ++a) order_[e][a] = a;
+      std::sort(order_[e].begin(), order_[e].end(), [&](int a, int b) { return t[a] < t[b]; });
+      for (int a = 0; a < E::nodes; ++a) nodes_[e][a] = t[order_[e][a]];
+      if constexpr (LaneElement<E, M>)
+        if (const std::size_t l = e % lane_count; (e - l + lane_count) <= n)
+          elements_[e].enter_lane(order_[e], &lane_numbers_[(e - l) * E::lane_numbers + l]);
+    }
   }
 
   typename E::Corners corners(Index e, const std::vector<Velocity>& x) const {
@@ -168,51 +186,33 @@ class ElasticBody {
     for (int a = 0; a < E::nodes; ++a) force_[t[a]] += state.force[a].template cast<T>();
     if (with_stiffness) add_stiffness(e, state.stiffness());
   }
-
-  /// The elements e … e + lane_count − 1 at once.
-  void add_lanes(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
-    double places[E::nodes * 3 * lane_count];
-    for (int l = 0; l < lane_count; ++l)
-      for (int a = 0; a < E::nodes; ++a) {
-        const Velocity& at = x[block_of(e + l, a)];
-        for (int k = 0; k < 3; ++k) places[(3 * a + k) * lane_count + l] = double(at[k]);
-      }
-    const auto state = E::lanes_at(material_, &elements_[e], places);
-    double numbers[3 * lane_count], blocks[lane_count][9];
-    const auto each_block = [&](const LaneMatrix& block, auto&& add) {
-      split_lanes(block, blocks);
-      for (int l = 0; l < lane_count; ++l)
-        add(e + l, mesh_.cells()[e + l], Mat3(Eigen::Map<const Mat3>(blocks[l])));
-    };
-    for (int a = 0; a < E::nodes; ++a) {
-      std::memcpy(numbers, &state.force[a], sizeof numbers);
-      for (int l = 0; l < lane_count; ++l)
-        for (int k = 0; k < 3; ++k) force_[mesh_.cells()[e + l][a]][k] += T(numbers[k * lane_count + l]);
-    }
-    if (!with_stiffness) return;
-    for (int a = 0; a < E::nodes; ++a)
-      each_block(state.block(a, a), [&](Index, const auto& t, const Mat3& B) {
-        matrix_.add_diagonal(t[a], B.template cast<T>());
-      });
+  void add_stiffness(Index e, const auto& K) {
+    const auto& order = order_[e];
+    for (int a = 0; a < E::nodes; ++a) matrix_.add(e, a, K.block(order[a], order[a]));
     for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
-      const int i = pairs_of_nodes<E::nodes>[k][0], j = pairs_of_nodes<E::nodes>[k][1];
-      each_block(state.block(i, j), [&](Index one, const auto& t, const Mat3& B) {
-        if (t[i] < t[j])
-          matrix_.add_pair(one, k, B.template cast<T>());
-        else
-          matrix_.add_pair(one, k, B.transpose().template cast<T>());
-      });
+      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
+      matrix_.add(e, E::nodes + k, K.block(order[i], order[j]));
     }
   }
 
-  void add_stiffness(Index e, const auto& K) {
-    const auto& t = mesh_.cells()[e];
-    for (int a = 0; a < E::nodes; ++a) matrix_.add_diagonal(t[a], K.block(a, a).template cast<T>());
-    for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
-      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
-      const bool is_upper = t[i] < t[j];
-      matrix_.add_pair(e, k, K.block(is_upper ? i : j, is_upper ? j : i).template cast<T>());
+  /// The elements e … e + lane_count − 1 at once.
+  void add_lanes(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+    double places[E::nodes * 3 * lane_count], numbers[3 * lane_count];
+    for (int l = 0; l < lane_count; ++l)
+      for (int a = 0; a < E::nodes; ++a) {
+        const Velocity& at = x[blocks_[nodes_[e + l][a]]];
+        for (int k = 0; k < 3; ++k) places[(3 * a + k) * lane_count + l] = double(at[k]);
+      }
+    const auto state = E::lanes_at(material_, &lane_numbers_[std::size_t(e) * E::lane_numbers], places);
+    for (int a = 0; a < E::nodes; ++a) {
+      std::memcpy(numbers, &state.force[a], sizeof numbers);
+      for (int l = 0; l < lane_count; ++l)
+        for (int k = 0; k < 3; ++k) force_[nodes_[e + l][a]][k] += T(numbers[k * lane_count + l]);
     }
+    if (!with_stiffness) return;
+    Lanes K[Matrix::blocks_each][9];
+    state.stiffness(K);
+    for (int k = 0; k < Matrix::blocks_each; ++k) matrix_.add_lanes(e, k, K[k]);
   }
 
   /// Whether A is the one there was; takes over the masses.
@@ -232,10 +232,13 @@ class ElasticBody {
   std::uint32_t number_ = 0;
   std::vector<Index> blocks_;
   std::vector<E> elements_;
+  std::vector<std::array<int, E::nodes>> order_;    ///< the corners of an element by ascending node
+  std::vector<std::array<Index, E::nodes>> nodes_;  ///< these nodes
+  std::vector<double> lane_numbers_;                ///< of whole lanes of elements
   std::vector<Velocity> force_;
   std::vector<T> mass_;
   std::vector<char> is_held_;
-  NodeMatrix<T, E::nodes> matrix_;
+  Matrix matrix_;
   SystemScale scale_;  ///< of A
   bool has_stiffness_ = false, is_factored_ = false;
   mutable std::vector<Velocity> work_, product_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 namespace delassus::inner {
 
@@ -95,28 +96,43 @@ struct LinearTetrahedron {
     return state;
   }
 
-  /// The same of as many elements as there are lanes; `places`: coordinate k of corner a of element l at
-  /// (3 a + k) lane_count + l.
+  /// What the lanes are made of: gradients and volumes of as many elements as there are lanes.
+  static constexpr int lane_numbers = 13;
+  /// Number k of the corners named in `corner` at to[k lane_count].
+  void enter_lane(const std::array<int, nodes>& corner, double* to) const {
+    for (int a = 0; a < 4; ++a)
+      for (int k = 0; k < 3; ++k) to[(3 * a + k) * lane_count] = gradient[corner[a]][k];
+    to[12 * lane_count] = volume;
+  }
+  /// The elements of all lanes, where their corners are: forces (N) and K.
   template <class Points>
   struct LaneState {
     Points point;
-    Lanes volume;
-    LaneVector b[4], force[4];  ///< b: the gradients, pulled
-    LaneMatrix block(int i, int j) const {
-      LaneMatrix K = point.block(b[i], b[j]);
-      for (LaneVector& column : K.column) column = times(volume, column);
-      return K;
+    LaneVector gradient[4], force[4];
+
+    /// The blocks (0, 0) … (3, 3), then (0, 1), (0, 2), … (2, 3), 9 numbers each by columns. A row of
+    /// blocks sums to nothing, so that six are made by the material and the others by subtraction.
+    void stiffness(Lanes (&to)[10][9]) const {
+      typename Points::Pulled b[4];
+      for (int a = 1; a < 4; ++a) b[a] = point.pull(gradient[a]);
+      LaneMatrix K[4][4], first{};
+      for (int i = 1; i < 4; ++i)
+        for (int j = i; j < 4; ++j) K[i][j] = point.block(b[i], b[j]);
+      for (int j = 1; j < 4; ++j) {
+        K[0][j] = {};
+        for (int i = 1; i < 4; ++i) subtract(K[0][j], i <= j ? K[i][j] : transposed(K[j][i]));
+        subtract(first, K[0][j]);
+      }
+      K[0][0] = first;
+      for (int a = 0; a < 4; ++a) std::memcpy(to[a], &K[a][a], sizeof first);
+      for (int a = 0, k = 4; a < 4; ++a)
+        for (int j = a + 1; j < 4; ++j, ++k) std::memcpy(to[k], &K[a][j], sizeof first);
     }
   };
+  /// `numbers`: what `enter_lane` wrote; `places`: coordinate k of corner a at (3 a + k) lane_count.
   template <class M>
-    requires requires(const M& material, const LaneMatrix& F) { material.at(F); }
-  static auto lanes_at(const M& material, const LinearTetrahedron* elements, const double* places) {
-    double numbers[13 * lane_count];
-    for (int l = 0; l < lane_count; ++l) {
-      for (int a = 0; a < 4; ++a)
-        for (int k = 0; k < 3; ++k) numbers[(3 * a + k) * lane_count + l] = elements[l].gradient[a][k];
-      numbers[12 * lane_count + l] = elements[l].volume;
-    }
+  requires requires(const M& material, const LaneMatrix& F) { material.at(F); }
+  static auto lanes_at(const M& material, const double* numbers, const double* places) {
     const auto load = [](const double* from, int a) {
       return LaneVector{{load_lanes(from + 3 * a * lane_count), load_lanes(from + (3 * a + 1) * lane_count),
                          load_lanes(from + (3 * a + 2) * lane_count)}};
@@ -128,15 +144,14 @@ struct LinearTetrahedron {
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 3; ++i) F(i, k) += (x[i] - origin[i]) * g[k];
     }
-    LaneState<decltype(material.at(F))> state{material.at(F), load_lanes(numbers + 12 * lane_count), {}, {}};
-    const LaneMatrix P = state.point.first_piola();
+    LaneState<decltype(material.at(F))> state{material.at(F), {}, {}};
+    state.point.integrate(load_lanes(numbers + 12 * lane_count));
+    const LaneMatrix& P = state.point.stress;
     for (int k = 0; k < 3; ++k) state.force[0][k] = all_lanes(0);
-    for (int a = 0; a < 4; ++a) {
-      const LaneVector g = load(numbers, a);
-      state.b[a] = state.point.pull(g);
-      if (a == 0) continue;
+    for (int a = 1; a < 4; ++a) {
+      const LaneVector& g = state.gradient[a] = load(numbers, a);
       for (int i = 0; i < 3; ++i) {
-        state.force[a][i] = -state.volume * (P(i, 0) * g[0] + P(i, 1) * g[1] + P(i, 2) * g[2]);
+        state.force[a][i] = -(P(i, 0) * g[0] + P(i, 1) * g[1] + P(i, 2) * g[2]);
         state.force[0][i] -= state.force[a][i];
       }
     }

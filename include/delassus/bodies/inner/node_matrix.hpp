@@ -3,6 +3,7 @@
 
 #include <delassus/core/index.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
+#include <delassus/math/lanes.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -22,47 +23,60 @@ inline constexpr auto pairs_of_nodes = [] {
   return pairs;
 }();
 
-/// Symmetric: the diagonal, and K_ij of the pairs i < j of elements of `corners` nodes. `slots(e)[k]` is
-/// where pair k of element e goes.
+/// Symmetric: the diagonal, and K_ij of the pairs i < j of elements of `corners` nodes, which every element
+/// names in ascending order. An element's blocks are those of its nodes, then those of its pairs; where each
+/// goes is looked up once.
 template <class T, int corners>
 class NodeMatrix {
  public:
   using Block = Mat<3, 3, T>;
   using Velocity = Vec<3, T>;
-  static constexpr int pairs_each = corners * (corners - 1) / 2;
+  static constexpr int pairs_each = corners * (corners - 1) / 2, blocks_each = corners + pairs_each;
 
   void analyse(Index nodes, std::span<const std::array<Index, corners>> elements,
                std::span<const Vec3> positions) {
     pairs_.clear();
     for (const auto& t : elements)
-      for (const auto& [a, b] : pairs_of_nodes<corners>) pairs_.emplace_back(std::minmax(t[a], t[b]));
+      for (const auto& [a, b] : pairs_of_nodes<corners>) pairs_.emplace_back(t[a], t[b]);
     const auto all = pairs_;
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-    slots_.resize(elements.size());
-    for (std::size_t k = 0; k < all.size(); ++k)
-      slots_[k / pairs_each][k % pairs_each] =
-          Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[k]) - pairs_.begin());
-    diagonal_.resize(nodes);
-    upper_.resize(pairs_.size());
+    places_.resize(elements.size());
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      for (int a = 0; a < corners; ++a) places_[e][a] = elements[e][a];
+      for (int k = 0; k < pairs_each; ++k)
+        places_[e][corners + k] =
+            nodes +
+            Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[e * pairs_each + k]) - pairs_.begin());
+    }
+    nodes_ = nodes;
+    blocks_.resize(nodes + pairs_.size());
     factor_.analyse(nodes, pairs_, positions);
   }
 
   void set_zero() {
-    for (Block& b : diagonal_) b.setZero();
-    for (Block& b : upper_) b.setZero();
+    for (Block& b : blocks_) b.setZero();
   }
-  void add_diagonal(Index i, const Block& block) { diagonal_[i] += block; }
-  /// Pair k of element e; the block is of the lower node's row and the higher one's column.
-  void add_pair(Index e, int k, const Block& block) { upper_[slots_[e][k]] += block; }
+  /// Block k of element e.
+  void add(Index e, int k, const Mat3& block) { blocks_[places_[e][k]] += block.template cast<T>(); }
+  /// Block k of the elements e, e + 1, … of all lanes, one number of each by columns; `block` is used up.
+  void add_lanes(Index e, int k, Lanes (&block)[9]) {
+    double last[lane_count];
+    store_lanes(last, block[8]);
+    for (int first = 0; first < 8; first += lane_count) {
+      transpose_lanes(&block[first]);
+      for (int l = 0; l < lane_count; ++l) add_to(numbers(e + l, k) + first, block[first + l]);
+    }
+    for (int l = 0; l < lane_count; ++l) numbers(e + l, k)[8] += T(last[l]);
+  }
 
   /// y += s K x.
   void add_product(T s, const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
-    for (std::size_t i = 0; i < diagonal_.size(); ++i) y[i] += s * (diagonal_[i] * x[i]);
+    for (Index i = 0; i < nodes_; ++i) y[i] += s * (blocks_[i] * x[i]);
     for (std::size_t e = 0; e < pairs_.size(); ++e) {
       const auto [i, j] = pairs_[e];
-      y[i] += s * (upper_[e] * x[j]);
-      y[j] += s * (upper_[e].transpose() * x[i]);
+      y[i] += s * (blocks_[nodes_ + e] * x[j]);
+      y[j] += s * (blocks_[nodes_ + e].transpose() * x[i]);
     }
   }
 
@@ -77,10 +91,10 @@ class NodeMatrix {
     using Other = typename F::Block;
     using S = typename Other::Scalar;
     factor.set_zero();
-    for (Index i = 0; i < Index(diagonal_.size()); ++i) {
+    for (Index i = 0; i < nodes_; ++i) {
       Block A = Block::Identity();
       if (!is_held[i]) {
-        A = stiffness_share * diagonal_[i];
+        A = stiffness_share * blocks_[i];
         for (int k = 0; k < 3; ++k) A(k, k) += mass_share * mass[i];
       }
       factor.add_diagonal(i, Other(A.template cast<S>()));
@@ -88,7 +102,7 @@ class NodeMatrix {
     for (std::size_t e = 0; e < pairs_.size(); ++e) {
       const auto [i, j] = pairs_[e];
       if (!is_held[i] && !is_held[j])
-        factor.add_pair(i, j, Other((stiffness_share * upper_[e]).template cast<S>()));
+        factor.add_pair(i, j, Other((stiffness_share * blocks_[nodes_ + e]).template cast<S>()));
     }
   }
   /// Factors it; false where there is no factor.
@@ -101,9 +115,18 @@ class NodeMatrix {
   void compliance(std::span<const Index> nodes, std::span<T> C) const { factor_.compliance(nodes, C); }
 
  private:
+  T* numbers(Index e, int k) { return blocks_[places_[e][k]].data(); }
+  static void add_to(double* to, const Lanes& x) { store_lanes(to, load_lanes(to) + x); }
+  static void add_to(float* to, const Lanes& x) {
+    double from[lane_count];
+    store_lanes(from, x);
+    for (int i = 0; i < lane_count; ++i) to[i] += float(from[i]);
+  }
+
   std::vector<std::pair<Index, Index>> pairs_;
-  std::vector<std::array<Index, pairs_each>> slots_;
-  std::vector<Block> diagonal_, upper_;
+  std::vector<std::array<Index, blocks_each>> places_;
+  Index nodes_ = 0;
+  std::vector<Block> blocks_;  ///< the diagonal, then the pairs
   MultifrontalCholesky<3, T> factor_;
 };
 

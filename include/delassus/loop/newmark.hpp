@@ -1,0 +1,52 @@
+/// Newmark's method.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/stages/alpha_rule.hpp>
+
+namespace delassus {
+
+template <class World, class Laws, class Rows>
+class NewmarkStep : public StepBySets<inner::StepByAcceleration, World> {
+  static_assert(Rows::pool_count == 0,
+                "delassus: Newmark moves bodies without joints; take the laws out, or use ImplicitEuler");
+};
+
+/// x₊ = x + h v + h² ((½ − β) v̇ + β v̇₊),  v₊ = v + h ((1 − γ) v̇ + γ v̇₊), implicit, solved by Newton's method:
+/// the generalised-α method without its averages. For particles on springs and soft bodies, without joints
+/// and contacts. β = ¼, γ = ½ is the trapezoidal rule: second order, stable for every h ω, keeps the energy
+/// of linear forces; with γ > ½ first order and damped. Source: docs/references.md, [Newmark1959].
+struct Newmark {
+  using plays = role::Integrator;
+  static constexpr bool solves_whole_step = true;
+  template <class World, class Laws, class Rows>
+  using WholeStep = NewmarkStep<World, Laws, Rows>;
+  template <class Set>
+  static constexpr bool can_move = Set::width == 3;
+  double beta = 0.25;        ///< ≥ γ/2
+  double gamma = 0.5;        ///< ≥ ½
+  double tolerance = 1e-10;  ///< of the accelerations
+  int max_iterations = 20;   ///< factorizations; reaching it is a status
+
+  inner::AlphaRule rule(double h) const { return {0, 0, beta, gamma, h}; }
+  void check() const {
+    DELASSUS_EXPECT(gamma >= 0.5 && gamma <= 1,
+                    "Newmark: gamma " + inner::text(gamma) + " must be in [0.5, 1]");
+    DELASSUS_EXPECT(
+        beta >= gamma / 2 && beta <= 1,
+        "Newmark: beta " + inner::text(beta) + " must be in [gamma/2, 1], where it is stable for every step");
+    DELASSUS_EXPECT(tolerance >= 0, "Newmark: tolerance " + inner::text(tolerance) + " must be >= 0");
+    DELASSUS_EXPECT(max_iterations > 0,
+                    "Newmark: max_iterations " + inner::text(max_iterations) + " must be > 0");
+  }
+  SystemScale scale(double) const { return {.mass = 1}; }
+  void impulse(const auto& set, auto& p, double h) const {
+    set.add_forces(p);
+    times(p, h);
+  }
+  void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
+};
+static_assert(Integrator<Newmark>);
+
+}  // namespace delassus
