@@ -7,7 +7,7 @@
 #include <delassus/math/positive.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/inner/convex_newton.hpp>
-#include <delassus/solvers/inner/smoothed_newton.hpp>
+#include <delassus/solvers/path_newton.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +68,11 @@ void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
   }
 }
 
+/// Newton's steps alone, so many that a wall of a hundred boxes is given up after seconds.
+inline PathNewton path_alone(double tolerance) {
+  return {.tolerance = tolerance, .max_iterations = 500, .max_sweeps = 0};
+}
+
 /// ½ uᵀ W⁻¹ u, W lifted by rounding's share where it is singular; a u that is no number counts most.
 template <int R, class T>
 double energy_of(const Mat<R, R, T>& W, const Vec<R, T>& u) {
@@ -84,8 +89,8 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable
 
 }  // namespace inner
 
-/// Solves a problem anew from λ = 0 by `inner::ConvexNewton`, islands that resist by `inner::SmoothedNewton`;
-/// neither shares a local solve with the sweeping solvers. Compares constraint by constraint.
+/// Solves a problem anew from λ = 0 by `inner::ConvexNewton`, islands that resist by `PathNewton` without its
+/// sweeps; neither shares a local solve with the sweeping solvers. Compares constraint by constraint.
 ///
 /// What is compared are the velocities u = d + W λ: impulses need not be unique, since on four contacts under
 /// one box, or in a closed loop of joints, many λ give the same motion. A wrong impulse moves the neighbours
@@ -113,7 +118,7 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
     check.reference = solve(other, inner::ConvexNewton{.tolerance = tolerance});
     if (check.reference.status != Status::converged) {
       const int before = check.reference.factorizations;
-      check.reference = solve(other, inner::SmoothedNewton{.tolerance = tolerance});
+      check.reference = solve(other, inner::path_alone(tolerance));
       check.reference.factorizations += before;
     }
     check.reached = check.reference.status == Status::converged;

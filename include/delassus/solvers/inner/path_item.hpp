@@ -36,16 +36,15 @@ struct PathItem : NewtonItem<R> {
   Mat<R, R> B, folded;   ///< and (B + P C P E/w)⁻¹, C the compliance beside H A⁻¹ Hᵀ
 };
 
-/// Of an eigenvalue of E, in the matrix alone: a larger one beside a small one would be the small one's
-/// rounding.
-inline constexpr double largest_ratio = 1e12;
-inline double ratio(double a, double z) {
-  return a >= largest_ratio * z ? largest_ratio : std::max(a / z, 1 / largest_ratio);
+/// a/z, an eigenvalue of E, or `largest`: in the matrix alone a larger one beside a small one would be the
+/// small one's rounding.
+inline double ratio(double a, double z, double largest) {
+  return a >= largest * z ? largest : std::max(a / z, 1 / largest);
 }
 
-/// a, z and E of one x.
+/// a, z and E of one x; E's eigenvalues are at most `largest`.
 template <bool is_cone, int R>
-void smooth(PathItem<R>& c, const std::array<RowKind, std::size_t(R)>& kinds, double tau) {
+void smooth(PathItem<R>& c, const std::array<RowKind, std::size_t(R)>& kinds, double tau, double largest) {
   const auto p = [tau](double xi) {  // without a difference of nearly equal numbers
     const double root = std::sqrt(xi * xi + 4 * tau);
     return xi >= 0 ? 0.5 * (xi + root) : 2 * tau / (root - xi);
@@ -72,8 +71,8 @@ void smooth(PathItem<R>& c, const std::array<RowKind, std::size_t(R)>& kinds, do
         for (int l = 0; l < 2; ++l) out(1 + k, 1 + l) = (k == l ? across : 0) + (mean - across) * t[k] * t[l];
       }
     };
-    const double low_ratio = ratio(a_low, z_low), high_ratio = ratio(a_high, z_high);
-    const double across_ratio = is_long ? ratio(a_high - a_low, z_low - z_high) : 1;
+    const double low_ratio = ratio(a_low, z_low, largest), high_ratio = ratio(a_high, z_high, largest);
+    const double across_ratio = is_long ? ratio(a_high - a_low, z_low - z_high, largest) : 1;
     fill(low_ratio, high_ratio, across_ratio, c.E);
     fill(1 / low_ratio, 1 / high_ratio, 1 / across_ratio, c.inverse);
   } else {
@@ -83,7 +82,7 @@ void smooth(PathItem<R>& c, const std::array<RowKind, std::size_t(R)>& kinds, do
       const bool is_equality = kinds[std::size_t(k)] == RowKind::equality;
       c.a[k] = is_equality ? c.ahead[k] : p(c.ahead[k]);
       c.z[k] = is_equality ? 0 : p(-c.ahead[k]);
-      c.E(k, k) = is_equality ? largest_ratio : ratio(c.a[k], c.z[k]);
+      c.E(k, k) = is_equality ? largest : ratio(c.a[k], c.z[k], largest);
       c.inverse(k, k) = 1 / c.E(k, k);
     }
   }

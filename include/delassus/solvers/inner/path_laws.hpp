@@ -66,7 +66,7 @@ class PathLaws {
     each([&](auto p, auto& c) {
       constexpr int R = Rows::template rows_of<p>;
       c.ahead = c.x + t * c.direction + s * c.tangent;
-      smooth<is_cone<Problem, p>>(c, Problem::BookType::template kinds<p>(), tau);
+      smooth<is_cone<Problem, p>>(c, Problem::BookType::template kinds<p>(), tau, System::largest_ratio);
       reach_ = std::max(reach_, c.a.cwiseAbs().maxCoeff());
       problem.template assign<p>(c.item, Vec<R, T>(c.scale.cwiseProduct(c.a).template cast<T>()));
     });

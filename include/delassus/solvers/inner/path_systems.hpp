@@ -24,6 +24,8 @@ class PathBodies {
   using System = NewtonSystem<PathItem, Rows>;
 
  public:
+  static constexpr double largest_ratio = 1e10;  ///< of E, whose rounding the passes of `solve` take back
+
   template <class Problem>
   bool gather(Problem& problem) {
     return system_.gather(problem);
@@ -50,16 +52,31 @@ class PathBodies {
   }
   /// Whether det(−∂r/∂x) < 0: between it and the matrix that is factored lie positive ones.
   bool is_negative() const { return system_.is_negative(); }
-  /// Leaves δ in `lambda`, ρ being `side`.
+  /// Leaves δ in `lambda`, ρ being `side`. With g = (1 + E)⁻¹ δ what a pass has left of ρ is
+  /// ρ − B g − P (W + C) P E g/w, which goes in again: where contacts carry, E is large, and so is the
+  /// rounding of the matrix.
   void solve() {
-    push([](const auto& c) { return (c.scale.asDiagonal() * (c.E * (c.folded * c.side))).eval(); });
-    system_.solve(y_);
-    system_.each([&](auto, auto& c, auto& sides) {
-      auto left = c.side;
-      for (Index s = c.first; s < c.last; ++s) left -= c.shape.cwiseProduct(sides[s].H * at(sides[s]));
-      const auto folded = (c.folded * left).eval();
-      c.lambda = folded + c.E * folded;
+    system_.each([](auto, auto& c, auto&) {
+      c.error.setZero();
+      c.lambda = c.side;
     });
+    for (int pass = 0;; ++pass) {
+      push([](const auto& c) { return (c.scale.asDiagonal() * (c.E * (c.folded * c.lambda))).eval(); });
+      system_.solve(y_);
+      system_.each([&](auto, auto& c, auto& sides) {
+        for (Index s = c.first; s < c.last; ++s) c.lambda -= c.shape.cwiseProduct(sides[s].H * at(sides[s]));
+        c.error.noalias() += c.folded * c.lambda;
+      });
+      if (pass == passes - 1) break;
+      push([](const auto& c) { return c.scale.cwiseProduct(c.E * c.error).eval(); });
+      system_.each([&](auto, auto& c, auto& sides) {
+        Vec<std::remove_cvref_t<decltype(c)>::rows> velocity =
+            c.compliance.cwiseProduct(c.scale.cwiseProduct(c.E * c.error));
+        for (Index s = c.first; s < c.last; ++s) velocity.noalias() += sides[s].H * at(sides[s]);
+        c.lambda = c.side - c.B * c.error - c.shape.cwiseProduct(velocity);
+      });
+    }
+    system_.each([](auto, auto& c, auto&) { c.lambda = c.error + c.E * c.error; });
   }
   /// Leaves W δλ in `velocity`, δλ being `error`.
   void answer() {
@@ -71,6 +88,8 @@ class PathBodies {
   }
 
  private:
+  static constexpr int passes = 3;
+
   template <class Side>
   auto& at(const Side& side) {
     return y_[std::size_t(side.block)];
@@ -102,6 +121,8 @@ class PathImpulses {
   static constexpr double least = 1e-14;  ///< of w, added to W: above the rounding of its null space
 
  public:
+  static constexpr double largest_ratio = 1e12;  ///< of E: its inverse stands beside W
+
   template <class Problem>
   bool gather(Problem& problem) {
     items_.resize(std::size_t(problem.row_count() / R));

@@ -1,12 +1,9 @@
-// Newton's method on smoothed laws by itself: the reference where convex problems stall.
-#include <delassus/solvers/inner/smoothed_newton.hpp>
-
+// The path of smoothed laws as the reference goes along it: Newton's steps alone, contacts beside joints.
 #include "reference_tests.hpp"
 
-namespace reference_smoothed_tests {
+namespace reference_path_tests {
 
 using namespace reference_tests;
-using inner::SmoothedNewton;
 
 namespace {
 
@@ -26,7 +23,8 @@ void check_solved(Problem& problem) {
   for_each_index<2>([&](auto p) {
     for (auto& lambda : problem.rows.template pool<p>().lambda) lambda.setZero();
   });
-  const SolveReport report = solve(problem, SmoothedNewton{});
+  const SolveReport report = solve(problem, inner::path_alone(1e-10));
+  CAPTURE(report.factorizations, report.measure.residual);
   CHECK(report.status == Status::converged);
   CHECK(report.factorizations > 2);
   // The laws are met by λ itself, whatever the method thinks of it.
@@ -41,20 +39,23 @@ auto loop_with(Law law) {
 
 }  // namespace
 
-TEST_CASE("smoothed laws: contacts that slide and a joint, with friction and with a coefficient of zero") {
+TEST_CASE(
+    "the path of smoothed laws: contacts that slide and a joint, with friction and with a coefficient of "
+    "zero") {
   for (const double friction : {0.4, 0.0}) {
     auto loop = loop_with(Coulomb{.friction = friction});
     add_box_with_arm(loop);
     for (const int steps : {1, 30}) {
       run(loop, 1.0 / 240, steps);
       auto problem = loop.problem();
+      CAPTURE(friction, steps);
       check_solved(problem);
     }
   }
 }
 
 // Without friction the motion is unique, and so is the joint's impulse, which alone moves the arm.
-TEST_CASE("smoothed laws: frictionless contacts and a joint as Gauss-Seidel has them") {
+TEST_CASE("the path of smoothed laws: frictionless contacts and a joint as Gauss-Seidel has them") {
   auto loop = loop_with(Frictionless{});
   add_box_with_arm(loop);
   loop.step(1.0 / 240);
@@ -66,19 +67,4 @@ TEST_CASE("smoothed laws: frictionless contacts and a joint as Gauss-Seidel has 
   CHECK((problem.rows.pool<1>().lambda[0] - swept.rows.pool<1>().lambda[0]).norm() <= 1e-8);
 }
 
-TEST_CASE("smoothed laws: an island that is too large is left as it was") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}, BallJoint{}}, NativeCollision{}};
-  add_box_with_arm(loop);
-  loop.step(1.0 / 240);
-  auto problem = loop.problem();
-  auto& lambda = problem.rows.template pool<1>().lambda;
-  lambda[0] *= 1.5;
-  const Vec3 before = lambda[0];
-  const SolveReport report = solve(problem, SmoothedNewton{.max_rows = 8});
-  CHECK(report.status == Status::max_iterations);
-  CHECK(report.factorizations == 0);
-  CHECK(report.measure.residual > 1e-3);
-  CHECK(problem.rows.template pool<1>().lambda[0] == before);
-}
-
-}  // namespace reference_smoothed_tests
+}  // namespace reference_path_tests
