@@ -20,19 +20,17 @@ inline double deepest_gap(const std::vector<ContactPoint>& contacts) {
   return deepest;
 }
 
-/// What may differ between A against B and B against A.
-struct SwapBounds {
-  double overlapping, touching;  ///< distance / L, overlapping by 1e-4 L or more, and less or apart
-  double half, close;            ///< normals of bodies L/2 and 1e-3 L apart, rad
-};
-
-/// The least depth is unique, and so is the normal of bodies apart.
+/// The least depth is unique, to 1e-9 L, and so is the normal of bodies apart, to 1e-6 rad. Overlapping, two
+/// normals may be least, or h so flat between them that its 1e-14 L of rounding is 1e-6 rad or more: some 50
+/// in 84000 lean by more and less than a tie does, and 1 in 500 is allowed.
 template <class Kernel>
-void check_swap(const SwapBounds& allowed) {
+void check_swap() {
   const Zoo zoo;
   std::mt19937 random(7);
   Kernel kernel;
-  SwapBounds seen{};
+  double distance = 0, lean = 0;
+  int overlapping = 0, leaning = 0;
+  const auto larger = [](double worst, double x) { return x <= worst ? worst : x; };  // NaN is the largest
   for (const Depth depth : depths)
     for_each_pair(zoo.all, [&](const Shape& a, const Shape& b) {
       for (int k = 0; k < poses(10); ++k) {
@@ -43,18 +41,16 @@ void check_swap(const SwapBounds& allowed) {
         const double L = scale_of(s);
         const SignedPair r = certified_pair(kernel, a, b, s.b_in_a, 10 * L, L, Vec3::Zero()).pair,
                          back = certified_pair(kernel, b, a, a_in_b, 10 * L, L, Vec3::Zero()).pair;
-        double& distance = depth < Depth::touch ? seen.overlapping : seen.touching;
-        distance = std::max(distance, std::abs(r.distance - back.distance) / L);
+        distance = larger(distance, std::abs(r.distance - back.distance) / L);
         const double turn = (r.normal + R * back.normal).norm();
-        if (depth == Depth::gap_half) seen.half = std::max(seen.half, turn);
-        if (depth == Depth::gap_thousandth) seen.close = std::max(seen.close, turn);
+        if (depth > Depth::touch) lean = larger(lean, turn);
+        if (depth < Depth::touch) ++overlapping, leaning += !(turn < 1e-6 || turn > 1e-2);
       }
     });
-  CAPTURE(seen.overlapping, seen.touching, seen.half, seen.close);
-  CHECK(seen.overlapping < allowed.overlapping);
-  CHECK(seen.touching < allowed.touching);
-  CHECK(seen.half < allowed.half);
-  CHECK(seen.close < allowed.close);
+  CAPTURE(distance, lean, leaning, overlapping);
+  CHECK(distance < 1e-9);
+  CHECK(lean < 1e-6);
+  CHECK(leaning <= overlapping / 500);
 }
 
 /// On a floor the answer is known: normal z, gap −penetration. No normal may lean by 0.5°, and no gap may lie

@@ -46,20 +46,6 @@ inline bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const 
   return -inner::Difference{a, b, b_in_a}.reach(other) > r.distance + tolerance;
 }
 
-/// The same for the axes of both bodies, either way, and the line of their centres.
-inline bool is_beaten_by_axes(const Shape& a, const Shape& b, const Pose& b_in_a, double scale,
-                              const SignedPair& r) {
-  const Vec3 centres = b_in_a.to_world(middle(b)) - middle(a);
-  const double length = centres.norm();
-  if (length > 0 && is_beaten(a, b, b_in_a, Vec3(centres / length), scale, r)) return true;
-  for (int k = 0; k < 3; ++k)
-    for (const double sign : {1.0, -1.0})
-      if (is_beaten(a, b, b_in_a, Vec3(sign * unit_axis(k)), scale, r) ||
-          is_beaten(a, b, b_in_a, Vec3(sign * b_in_a.rotation.col(k)), scale, r))
-        return true;
-  return false;
-}
-
 /// The answer of last resort: the least h(n) over the face normals of both bodies, the line of centres and
 /// the guess. Always finite and always a valid separating translation, though not always the shortest.
 inline SignedPair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess) {

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/certificate.hpp>
 #include <delassus/collision/gjk_epa.hpp>
+#include <delassus/collision/inner/straighten.hpp>
 
 namespace delassus {
 
@@ -37,24 +38,16 @@ concept GivesLeastDepth = requires {
 
 /// True when an answer that holds deserves a second opinion all the same: of bodies apart, when the normal
 /// proves less than 1 − 1e-6 of the `claimed` distance, which is a lean of 0.08°, or the gap is below 1e-5 of
-/// the scale, where tolerances of others end; of an overlap beyond 1e-3 of the scale, when it is deep, beyond
-/// 5e-2, or when one of the few normals that bodies mostly part along beats it.
-inline bool is_doubtful(const Shape& a, const Shape& b, const Pose& b_in_a, double scale, double claimed,
-                        const SignedPair& r) {
-  if (r.status != PairStatus::near) return false;
-  if (claimed > 0 || r.distance > 0) return !(r.distance >= std::max(1e-5 * scale, (1 - 1e-6) * claimed));
-  return r.distance < -1e-3 * scale &&
-         (r.distance < -5e-2 * scale || is_beaten_by_axes(a, b, b_in_a, scale, r));
+/// the scale, where tolerances of others end; of an overlap always, since the way out that portals find may
+/// be the least of its neighbourhood only.
+inline bool is_doubtful(double scale, double claimed, const SignedPair& r) {
+  return r.status == PairStatus::near && !(r.distance >= std::max(1e-5 * scale, (1 - 1e-6) * claimed));
 }
 
-}  // namespace inner
-
-/// The signed distance of two shapes that are no half-spaces, up to `margin` (m), in the frame of A. `scale`
-/// is the size of the smaller one, m; `guess` a normal that held before, or zero. Never fails: when even the
-/// native answer is refused, one of the face normals separates.
+/// The kernel's answer when it is certain, else the better one of it and the native kernel's.
 template <NarrowKernel Kernel>
-CertifiedPair certified_pair(Kernel& kernel, const Shape& a, const Shape& b, const Pose& b_in_a,
-                             double margin, double scale, const Vec3& guess) {
+CertifiedPair better_pair(Kernel& kernel, const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
+                          double scale, const Vec3& guess) {
   PairCache cache{.guess = guess};
   const SignedPair answer = inner::ask(kernel, a, b, b_in_a, margin, cache);
   SignedPair r = answer;
@@ -62,7 +55,7 @@ CertifiedPair certified_pair(Kernel& kernel, const Shape& a, const Shape& b, con
   if constexpr (inner::GivesLeastDepth<Kernel>) {
     if (holds) return {r, false};
   } else {
-    if (holds && !inner::is_doubtful(a, b, b_in_a, scale, answer.distance, r)) return {r, false};
+    if (holds && !inner::is_doubtful(scale, answer.distance, r)) return {r, false};
   }
   cache.guess = guess;
   SignedPair native = GjkEpa{}.pair(a, b, b_in_a, margin, cache);
@@ -73,6 +66,21 @@ CertifiedPair certified_pair(Kernel& kernel, const Shape& a, const Shape& b, con
   const bool is_nearer = native.status == PairStatus::far || native.distance >= r.distance;
   return {is_nearer ? native : r,
           native.status == PairStatus::near && native.distance > r.distance + tolerance};
+}
+
+}  // namespace inner
+
+/// The signed distance of two shapes that are no half-spaces, up to `margin` (m), in the frame of A. `scale`
+/// is the size of the smaller one, m; `guess` a normal that held before, or zero. Never fails: when even the
+/// native answer is refused, one of the face normals separates.
+template <NarrowKernel Kernel>
+CertifiedPair certified_pair(Kernel& kernel, const Shape& a, const Shape& b, const Pose& b_in_a,
+                             double margin, double scale, const Vec3& guess) {
+  CertifiedPair r = inner::better_pair(kernel, a, b, b_in_a, margin, scale, guess);
+  constexpr bool is_native = inner::GivesLeastDepth<Kernel>;
+  if (r.pair.status != PairStatus::near || (is_native && has_closed_form(a, b))) return r;
+  inner::Straighten{a, b, b_in_a, scale}(r.pair, is_native);
+  return r;
 }
 
 }  // namespace delassus

@@ -69,6 +69,13 @@ inline SignedPair swapped(const SignedPair& r, const Pose& b_in_a) {
 
 }  // namespace inner
 
+/// True when the distance of such shapes is a formula, exact to rounding.
+inline bool has_closed_form(const Shape& a, const Shape& b) {
+  return (b.kind == ShapeKind::sphere && inner::is_simple(a)) ||
+         (a.kind == ShapeKind::sphere && inner::is_simple(b)) ||
+         (a.kind == ShapeKind::capsule && b.kind == ShapeKind::capsule);
+}
+
 /// True when the pair has a formula, whose answer is then in `r`. Exact, in the frame of A.
 inline bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess,
                         SignedPair& r) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/swing.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/roles.hpp>
@@ -10,32 +11,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace delassus {
-
-namespace inner {
-
-/// Half the radius of a ball about the middle that the shape holds, m.
-inline double core_of_motion(const Shape& s) {
-  switch (s.kind) {
-    case ShapeKind::box:
-    case ShapeKind::ellipsoid:
-      return 0.5 * std::min({s.size[0], s.size[1], s.size[2]});
-    case ShapeKind::cylinder:
-      return 0.5 * std::min(s.size[0], s.size[1]);
-    case ShapeKind::cone:
-      return s.size[0] * s.size[1] / (s.size[0] + std::hypot(s.size[0], 2 * s.size[1]));
-    case ShapeKind::convex_hull:
-      return 0.5 * s.hull->inner_radius();
-    default:
-      return 0.5 * s.size[0];
-  }
-}
-
-}  // namespace inner
 
 /// `Continuous{NativeCollision{}}` in the place of the backend: a pair that would come to touch within the
 /// step, from farther than the backend's margin, gets contacts now, with the way left to go as their gap.
@@ -48,15 +29,18 @@ inline double core_of_motion(const Shape& s) {
 ///   gap = t n · (v_A + ω_A × r_A − v_B − ω_B × r_B);
 ///
 /// where it is mostly a flight, the middle of the body that flies is, gap = t n · (v_A − v_B): an impulse
-/// beside the middle would turn it and let it fly on. For the same reason a ball within a fast body is held
-/// by its middle, also when the body touches already. Convex shapes and half-spaces only.
+/// beside the middle would turn it and let it fly on. A body that turns while it flies is held by both. For
+/// the same reason a ball within a fast body is held by its middle, also when the body touches already: then
+/// at once, and the next point that its turn would bring through the plane of that contact is held as well.
+/// Convex shapes and half-spaces only.
 template <class Backend>
 struct Continuous {
   using plays = role::Collision;
   static_assert(
       !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; } &&
           !requires { Backend::has_surfaces; },
-      "delassus: WithFilter, WithCompounds and WithSurfaces go around Continuous; write WithCompounds{Continuous{...}}");
+      "delassus: WithFilter, WithCompounds and WithSurfaces go around Continuous; write "
+      "WithCompounds{Continuous{...}}");
 
   Backend backend{};
 
@@ -82,18 +66,20 @@ struct Continuous {
         const bool is_first = colliders[i].key < colliders[j].key;
         const Index a = is_first ? i : j, b = is_first ? j : i;
         ++report.queries;
-        if (!is_touching(contacts, known, pair)) meet(colliders, a, b, h, contacts);
+        const auto touch = touching(contacts, known, pair);
+        if (!touch) meet(colliders, a, b, h, contacts);
         for (const bool holds_a : {true, false})
-          if (is_fast_[holds_a ? a : b]) hold_core(colliders, a, b, holds_a, h, contacts);
+          if (is_fast_[holds_a ? a : b]) {
+            if (touch) hold_swing(colliders, a, b, holds_a, h, *touch, contacts);
+            hold_core(colliders, a, b, holds_a, h, touch, contacts);
+          }
       }
     if (contacts.size() > known) inner::sort_by_name(contacts);
     report.points = Index(contacts.size());
     return report;
   }
 
-  void memory(auto& archive) {
-    inner::remember(backend, archive);
-  }
+  void memory(auto& archive) { inner::remember(backend, archive); }
   CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
@@ -140,11 +126,16 @@ struct Continuous {
     return later.merged(box);
   }
 
-  static bool is_touching(const std::vector<ContactPoint>& contacts, std::size_t known, std::uint64_t pair) {
+  /// The backend's contact of a pair with the least gap, if it has any.
+  static std::optional<ContactPoint> touching(const std::vector<ContactPoint>& contacts, std::size_t known,
+                                              std::uint64_t pair) {
     const auto end = contacts.begin() + std::ptrdiff_t(known);
-    const auto at = std::lower_bound(contacts.begin(), end, pair,
-                                     [](const ContactPoint& p, std::uint64_t key) { return p.pair < key; });
-    return at != end && at->pair == pair;
+    auto at = std::lower_bound(contacts.begin(), end, pair,
+                               [](const ContactPoint& p, std::uint64_t key) { return p.pair < key; });
+    std::optional<ContactPoint> nearest;
+    for (; at != end && at->pair == pair; ++at)
+      if (!nearest || at->gap < nearest->gap) nearest = *at;
+    return nearest;
   }
 
   /// Contacts of the patch that the two will have when they touch.
@@ -166,6 +157,13 @@ struct Continuous {
       const bool holds_a =
           a.is_movable && (!b.is_movable || a.velocity.squaredNorm() > b.velocity.squaredNorm());
       out.push_back(middle_contact(a, b, place_a, place_b, holds_a, n, hit.time * flight, whole_name));
+      if (!inner::is_turning(holds_a ? a : b)) return;
+      const PatchPoint p{.a = r.point_a, .b = r.point_b};
+      ContactPoint c = ahead(a, b, hit, n, p, 0);
+      c.a = place_a, c.b = place_b;
+      c.pair = pair_key(a.key, b.key);
+      c.feature = end_name;
+      if (c.gap > 0) out.push_back(c);
       return;
     }
     if (a.shape.has_volume() && b.shape.has_volume())
@@ -197,7 +195,7 @@ struct Continuous {
   /// A ball within the fast body, moved without turning, that would reach the other one in the step is held
   /// by its middle.
   void hold_core(std::span<const Collider> colliders, Index place_a, Index place_b, bool holds_a, double h,
-                 std::vector<ContactPoint>& out) {
+                 const std::optional<ContactPoint>& touch, std::vector<ContactPoint>& out) {
     Collider a = colliders[place_a], b = colliders[place_b];
     Collider& core = holds_a ? a : b;
     if (!core.is_movable || !core.shape.has_volume()) return;
@@ -208,9 +206,38 @@ struct Continuous {
     if (!hit.is_found) return;
     const Vec3 n = hit.a.rotation * hit.normal_in_a;
     const double flight = n.dot(a.velocity - b.velocity);
-    if (flight > 0)
-      out.push_back(middle_contact(a, b, place_a, place_b, holds_a, n, hit.time * flight,
-                                   holds_a ? core_name : core_name + 1));
+    if (!(flight > 0)) return;
+    // What touches has nowhere to go but to turn about that point, and may turn by more than a row can
+    // follow.
+    const double way = touch ? std::min(hit.time * flight, std::max(touch->gap, 0.0)) : hit.time * flight;
+    out.push_back(
+        middle_contact(a, b, place_a, place_b, holds_a, n, way, holds_a ? core_name : core_name + 1));
+  }
+
+  /// Of a body that touches, the next point that its turn brings to the plane of the contact is held there.
+  void hold_swing(std::span<const Collider> colliders, Index place_a, Index place_b, bool holds_a, double h,
+                  const ContactPoint& touch, std::vector<ContactPoint>& out) {
+    const Collider &a = colliders[place_a], &b = colliders[place_b], &other = holds_a ? b : a;
+    Collider body = holds_a ? a : b;
+    if (!body.is_movable || !body.shape.has_volume() || !inner::is_turning(body)) return;
+    const Vec3 up = holds_a ? Vec3(-touch.normal) : touch.normal;
+    const Vec3 on_other = holds_a ? touch.point_b : touch.point_a;
+    body.velocity -= other.velocity;
+    body.velocity -= std::min(0.0, up.dot(body.velocity)) * up;
+    const inner::Swing swing =
+        inner::swing_to_plane(body, up, up.dot(on_other), h, 1e-3 * inner::pair_scale(a.shape, b.shape));
+    const double closing = -up.dot(body.velocity + body.angular_velocity.cross(swing.arm));
+    if (!swing.is_found || !(closing > 0) || !inner::meets(other, body, swing)) return;
+    const Vec3 at = body.pose.position + swing.arm;
+    const double gap = swing.time * closing;
+    out.push_back({.a = place_a,
+                   .b = place_b,
+                   .point_a = at - 0.5 * gap * touch.normal,
+                   .point_b = at + 0.5 * gap * touch.normal,
+                   .normal = touch.normal,
+                   .gap = gap,
+                   .pair = touch.pair,
+                   .feature = holds_a ? end_name + 1 : end_name + 2});
   }
 
   /// A row through the middle of A or of B.
@@ -246,7 +273,7 @@ struct Continuous {
   }
 
   /// Names that no point of a patch has.
-  static constexpr std::uint32_t whole_name = 0x3ffffff0u, core_name = 0x3ffffff1u;
+  static constexpr std::uint32_t whole_name = 0x3ffffff0u, core_name = 0x3ffffff1u, end_name = 0x3ffffff4u;
 
   std::vector<Index> fast_;
   std::vector<bool> is_fast_;

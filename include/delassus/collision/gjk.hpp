@@ -32,11 +32,9 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
   r.simplex.weight[0] = 1;
   Vec3 v = r.simplex.p[0].w;
   double size = v.norm(), length = size;
-  // Of round cores the gap is what the radius leaves of the length: it shall have digits as well.
-  const double radius = difference.radius();
-  const auto slack = [&](double l) {
-    return radius > 0 ? std::min(1e-10 * l, std::max(1e-7 * std::abs(l - radius), 1e-15 * size)) : 1e-10 * l;
-  };
+  // A bound that is open by ε of the length lets the normal lean by √2ε; below the rounding of A − B nothing
+  // is seen.
+  const auto slack = [&](double l) { return std::max(1e-14 * l, 2e-16 * size); };
   const auto prove = [&](const Vec3& n) {
     const DifferencePoint q = difference.core(n);
     size = std::max(size, q.w.norm());
@@ -45,6 +43,7 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
     r.is_apart = r.separation > 1e-10 * size;
     return q;
   };
+  int stuck = 0;
   for (int iteration = 0; iteration < 128 && length > 1e-10 * size; ++iteration) {
     const Vec3 n = -v / length;
     const DifferencePoint q = prove(n);
@@ -61,10 +60,15 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
     }
     const double next = v.norm();
     if (next >= length) {
-      // As short as can be seen, but of flat faces the direction may still be the better one.
-      r.simplex = before;
+      // As short as can be seen, but not yet as straight: a bound that is open by g across a simplex of the
+      // length D shortens v by g² / D² only, which rounding hides.
+      const double proven = r.separation;
       prove(-v / next);
-      return r;
+      stuck = r.separation > proven ? 0 : stuck + 1;
+      if (stuck == 8 || next > (1 + 1e-8) * length) {
+        r.simplex = before;
+        return r;
+      }
     }
     length = next;
   }

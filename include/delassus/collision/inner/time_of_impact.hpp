@@ -33,6 +33,23 @@ inline SignedPair distance_of(const Shape& a, const Shape& b, const Pose& b_in_a
   return certified_pair(kernel, a, b, b_in_a, margin, scale, guess).pair;
 }
 
+/// Half the radius of a ball about the middle that the shape holds, m.
+inline double core_of_motion(const Shape& s) {
+  switch (s.kind) {
+    case ShapeKind::box:
+    case ShapeKind::ellipsoid:
+      return 0.5 * std::min({s.size[0], s.size[1], s.size[2]});
+    case ShapeKind::cylinder:
+      return 0.5 * std::min(s.size[0], s.size[1]);
+    case ShapeKind::cone:
+      return s.size[0] * s.size[1] / (s.size[0] + std::hypot(s.size[0], 2 * s.size[1]));
+    case ShapeKind::convex_hull:
+      return 0.5 * s.hull->inner_radius();
+    default:
+      return 0.5 * s.size[0];
+  }
+}
+
 struct Impact {
   bool is_found = false;
   double time = 0;  ///< s from now
