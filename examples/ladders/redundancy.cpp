@@ -108,7 +108,8 @@ void climb_vanishing(Ladder& ladder, const Policies&... policies) {
 }  // namespace
 
 void many_hinges(Ladder& ladder) {
-  climb_hinges(ladder, AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 20000}, WholeViolation{});
+  climb_hinges(ladder, AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 20000}, WholeViolation{},
+               Substeps{.count = 4});
 }
 void many_hinges_midpoint(Ladder& ladder) { climb_hinges(ladder, NewtonMidpoint{}); }
 void vanishing_mass(Ladder& ladder) {
