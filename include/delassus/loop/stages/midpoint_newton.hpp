@@ -76,7 +76,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     if (least_.are_least(system_, lambda)) return;
     // By the masses alone: the stiffness of a large idle share would weigh the rows.
     assemble(world, rows, [](const auto& set, auto, Index b, const auto& X) {
-      return set.template solve_block<X.ColsAtCompileTime>(b, X);
+      return set.template solve_block<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
     });
     least_.find(system_, lambda);
   }
@@ -212,7 +212,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   /// One step of Newton's method; false when its matrix is singular.
   bool improve(World& world, Rows& rows, double epsilon) {
     assemble(world, rows, [&](const auto&, auto s, Index b, const auto& X) {
-      return std::get<s>(bodies_).template answer<X.ColsAtCompileTime>(b, X);
+      return std::get<s>(bodies_).template answer<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
     });
     if (!system_.factor(epsilon)) return false;
     system_.load([&](auto p, Index i) { return gap<p>(world, rows, i); });
