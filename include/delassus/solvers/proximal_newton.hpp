@@ -15,7 +15,7 @@
 namespace delassus {
 
 /// Outside, the proximal point: λ̂ ← λ, where λ meets the laws of d + W λ + ε w (λ − λ̂), w_i = tr(W_ii)/rows,
-/// and ε shrinks by 0.01 a time, where that is slow by 1e-5. Inside, Newton's method for the velocities of the bodies with F and J of
+/// and ε shrinks by 0.01 a time, where that is slow by 1e-4. Inside, Newton's method for the velocities of the bodies with F and J of
 /// `inner::BodySpace`, each step halved until the rows see less of F. At the fixed point nothing is left of
 /// ε: the laws are met as they are, Coulomb's too.
 ///
@@ -63,7 +63,8 @@ struct BasicProximalNewton {
     if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
     if (min_iterations == 0 && is_done(now.best, now.rows)) return finish(now);
 
-    double epsilon = now.best.residual > 1e-2 ? 1e-5 : 1e-7, least = 1e-10;  // a warm start needs no care
+    double epsilon = now.best.residual > 1e-2 ? 1e-5 : 1e-7;  // a warm start needs no care
+    double shrink = 0.01, least = 1e-10;
     double centre = body.error();                             // of λ̂
     now.least = centre;
     for (int outer = 0, patience = 20; outer < max_iterations && has_time(now); ++outer) {
@@ -80,9 +81,8 @@ struct BasicProximalNewton {
         body.recentre();
         // One step of Newton's method was enough, and yet λ has hardly come nearer: impulses through what is light to
         // what is heavy, which move by 1/(1 + ε r) of their way, r the ratio of the masses.
-        const bool is_slow = now.report.factorizations == before + 1 && body.error() > 0.5 * centre;
-        if (is_slow) least = 1e-12;
-        epsilon = std::min(epsilon, std::max((is_slow ? 1e-5 : 0.01) * epsilon, least));
+        if (now.report.factorizations == before + 1 && body.error() > 0.5 * centre) shrink = 1e-4, least = 1e-12;
+        epsilon = std::min(epsilon, std::max(shrink * epsilon, least));
       } else {
         epsilon = std::min(20 * epsilon, 1.0);
         body.hand_over(
