@@ -4,6 +4,7 @@
 #include "watch.hpp"
 
 #include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/loop/substeps.hpp>
 
 namespace ladders {
 
