@@ -163,10 +163,8 @@ void screw(Ladder& ladder) {
       loop.add(Motor<Turn>::Item{.a = bolt, .b = end, .speed = 2 * pi});
       const double until = ladder.is_quick() ? 1 : turns;
       run(ladder, loop, until, 0.01);
-      // A turn of ω by the midpoint rule is 2 atan(h ω/2).
-      const double turned = until / 0.01 * 2 * std::atan(0.01 * pi) / (2 * pi);
-      return {{"way against pitch × turns", std::abs(set.position(nut).z() / (1.75e-3 * turned) - 1), 0.05,
-               5e-3}};
+      return {
+          {"way against pitch × turns", std::abs(set.position(nut).z() / (1.75e-3 * until) - 1), 0.05, 5e-3}};
     });
 }
 

@@ -73,7 +73,8 @@ void climb_big_on_small(Ladder& ladder, const Solver& solver) {
 }  // namespace
 
 void mass_ratio(Ladder& ladder) { climb_pair(ladder, AcceleratedGaussSeidel{}); }
-void mass_ratio_newton(Ladder& ladder) { climb_pair(ladder, ProximalNewton{}); }
+// λ of 1e8 kg rounds what 1 kg moves by to 1e-7 of it: the tolerance is that of the sweeps above.
+void mass_ratio_newton(Ladder& ladder) { climb_pair(ladder, ProximalNewton{.tolerance = 1e-6}); }
 void big_on_small(Ladder& ladder) { climb_big_on_small(ladder, AcceleratedGaussSeidel{}); }
 void big_on_small_newton(Ladder& ladder) { climb_big_on_small(ladder, ProximalNewton{}); }
 

@@ -102,8 +102,6 @@ void climb_gears(Ladder& ladder, const Solver& solver) {
                                               .d = world_anchor(at),
                                               .ratio = -ratio}));
       }
-      // A turn by the midpoint rule is 2 atan(h ω/2): at 6 rad/s the fastest wheel falls 1e-3 of its turn
-      // behind.
       const double fastest = 6, over = std::pow(ratio, wheels - 1),
                    first = ratio >= 1 ? fastest : fastest * over;
       loop.add(Motor<Turn>::Item{.a = world_anchor({0, 0, 0}), .b = anchor(set, train[0]), .speed = first});

@@ -4,6 +4,7 @@
 #include "watch.hpp"
 
 #include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/loop/substeps.hpp>
 
 namespace ladders {
 
@@ -108,7 +109,8 @@ void climb_vanishing(Ladder& ladder, const Policies&... policies) {
 }  // namespace
 
 void many_hinges(Ladder& ladder) {
-  climb_hinges(ladder, AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 20000}, WholeViolation{});
+  climb_hinges(ladder, AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 20000}, WholeViolation{},
+               Substeps{.count = 4});
 }
 void many_hinges_midpoint(Ladder& ladder) { climb_hinges(ladder, NewtonMidpoint{}); }
 void vanishing_mass(Ladder& ladder) {

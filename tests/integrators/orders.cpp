@@ -57,6 +57,7 @@ TEST_CASE(
   CAPTURE(orders[0], orders[1]);
   CHECK(are_of_order(orders, 2));
   const auto run = euler_top::after_ten_seconds(NewtonMidpoint{}, 1600);
+  CHECK(run.angle <= 1.5 * 5.86e-5);
   CHECK(run.momentum <= 1600 * 8 * 0x1p-53);
   CHECK(run.energy <= 1600 * 8 * 0x1p-53);
 }

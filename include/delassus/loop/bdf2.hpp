@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/inner/whole_steps.hpp>
 #include <delassus/loop/stages/step_by_acceleration.hpp>
 
 namespace delassus {
@@ -65,16 +66,9 @@ struct Bdf2 {
   int max_iterations = 20;   ///< factorizations; reaching it is a status
 
   inner::Bdf2Rule rule(double h) const { return {h}; }
-  void check() const {
-    DELASSUS_EXPECT(tolerance >= 0, "Bdf2: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations > 0,
-                    "Bdf2: max_iterations " + inner::text(max_iterations) + " must be > 0");
-  }
+  void check() const { inner::check_newton("Bdf2", tolerance, max_iterations); }
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
   void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
 };
 static_assert(Integrator<Bdf2>);

@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/inner/whole_steps.hpp>
 #include <delassus/loop/stages/elastic_newton_step.hpp>
 
 namespace delassus {
@@ -29,15 +30,10 @@ struct FullNewton {
   void check() const {
     DELASSUS_EXPECT(theta == 1 || theta == 0.5, "FullNewton: theta " + inner::text(theta) +
                                                     " must be 1, implicit Euler, or 0.5, the midpoint rule");
-    DELASSUS_EXPECT(tolerance >= 0, "FullNewton: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations > 0,
-                    "FullNewton: max_iterations " + inner::text(max_iterations) + " must be > 0");
+    inner::check_newton("FullNewton", tolerance, max_iterations);
   }
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
   void advance(auto& set, double h) const {
     if (theta == 1)
       set.advance(h);

@@ -4,6 +4,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/inner/whole_steps.hpp>
 #include <delassus/loop/stages/alpha_rule.hpp>
 
 namespace delassus {
@@ -39,16 +40,10 @@ struct GeneralizedAlpha {
     DELASSUS_EXPECT(
         spectral_radius >= 0 && spectral_radius <= 1,
         "GeneralizedAlpha: spectral_radius " + inner::text(spectral_radius) + " must be in [0, 1]");
-    DELASSUS_EXPECT(tolerance >= 0,
-                    "GeneralizedAlpha: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations > 0,
-                    "GeneralizedAlpha: max_iterations " + inner::text(max_iterations) + " must be > 0");
+    inner::check_newton("GeneralizedAlpha", tolerance, max_iterations);
   }
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
   void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
 };
 static_assert(Integrator<GeneralizedAlpha>);

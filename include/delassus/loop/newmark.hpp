@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/inner/whole_steps.hpp>
 #include <delassus/loop/stages/alpha_rule.hpp>
 
 namespace delassus {
@@ -36,15 +37,10 @@ struct Newmark {
     DELASSUS_EXPECT(
         beta >= gamma / 2 && beta <= 1,
         "Newmark: beta " + inner::text(beta) + " must be in [gamma/2, 1], where it is stable for every step");
-    DELASSUS_EXPECT(tolerance >= 0, "Newmark: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations > 0,
-                    "Newmark: max_iterations " + inner::text(max_iterations) + " must be > 0");
+    inner::check_newton("Newmark", tolerance, max_iterations);
   }
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
   void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
 };
 static_assert(Integrator<Newmark>);

@@ -3,9 +3,11 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/inner/whole_steps.hpp>
 #include <delassus/loop/stages/hold_at_midpoint.hpp>
 
 #include <cmath>
+#include <type_traits>
 
 namespace delassus {
 
@@ -20,29 +22,26 @@ namespace delassus {
 /// islands are solved as one. The solver, the compliance and the stabilisation of the loop are not asked.
 struct NewtonMidpoint {
   using plays = role::Integrator;
-  using each_block_alone = NewtonMidpoint;
   static constexpr bool solves_whole_step = true;
   template <class World, class Laws, class Rows>
-  using WholeStep = MidpointHold<World, Laws, Rows>;
+  using WholeStep = std::conditional_t<(Rows::pool_count > 0), MidpointHold<World, Laws, Rows>, MidpointAlone<World>>;
   template <class Set>
   static constexpr bool can_move = requires { typename Set::Midpoint; };
   double tolerance = 1e-10;  ///< of what is missing in every equation, in units of the largest velocity
   int max_iterations = 20;   ///< factorizations; reaching it is a status
   double acceptable = 1e-3;  ///< of the same, when they run out: a step that misses more is not taken; ∞ takes any
+  int max_halvings = 6;      ///< how often a step that does not converge is halved before that
 
   void check() const {
-    DELASSUS_EXPECT(tolerance >= 0, "NewtonMidpoint: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations > 0,
-                    "NewtonMidpoint: max_iterations " + inner::text(max_iterations) + " must be > 0");
+    inner::check_newton("NewtonMidpoint", tolerance, max_iterations);
     DELASSUS_EXPECT(acceptable >= 0,
                     "NewtonMidpoint: acceptable " + inner::text(acceptable) + " must be >= 0");
+    DELASSUS_EXPECT(max_halvings >= 0,
+                    "NewtonMidpoint: max_halvings " + inner::text(max_halvings) + " must be >= 0");
   }
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
-  void advance(auto& set, double h) const { set.advance_midpoint(h); }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void advance(auto& set, double h) const { inner::arrive(set, h); }
 };
 static_assert(Integrator<NewtonMidpoint>);
 

@@ -1,8 +1,8 @@
 /// Störmer and Verlet's method with joints held in position and velocity.
 #pragma once
 
-#include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/inner/whole_steps.hpp>
 #include <delassus/loop/stages/rattle_step.hpp>
 
 namespace delassus {
@@ -27,20 +27,10 @@ struct Rattle {
       1e-12;  ///< of what the joints are apart at the end, in units of the way of the fastest body
   int max_iterations = 20;  ///< factorizations; reaching it is a status
 
-  void check() const {
-    DELASSUS_EXPECT(tolerance >= 0, "Rattle: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations > 0,
-                    "Rattle: max_iterations " + inner::text(max_iterations) + " must be > 0");
-  }
+  void check() const { inner::check_newton("Rattle", tolerance, max_iterations); }
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
-  /// The step has put the bodies where they are.
-  void advance(auto& set, double h) const {
-    if constexpr (requires { set.arrive(h); }) set.arrive(h);
-  }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void advance(auto& set, double h) const { inner::arrive(set, h); }
 };
 static_assert(Integrator<Rattle>);
 

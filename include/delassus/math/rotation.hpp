@@ -108,15 +108,27 @@ template <class T>
 [[gnu::noinline]] Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate,
                                                                const Vec<3, T>& a, const Vec<3, T>& c, T h, int halvings);
 
+/// s h, the step whose cay(s h Ω̄) turns by h Ω̄. Cayley's turn is short by (h ω)³/12; s = 1 + (h ω)²/12, with the
+/// ω = Ω·L/|L| that a free body keeps, gives that back. It is the midpoint rule of another step: L and the energy are
+/// kept as ever, and a free step can be turned back. s is 2 at most: beyond √12 rad a step it tells nothing.
+template <class T>
+T lengthened(T h, const Vec<3, T>& rate, const Vec<3, T>& momentum) {
+  const T square = momentum.squaredNorm(), twice = rate.dot(momentum);
+  const T turn = square > T(0) ? (h * twice) * (h * (twice / square)) : T(0);
+  return turn < T(12) ? h * (T(1) + turn / T(12)) : T(2) * h;
+}
+
 /// `midpoint_turn` of a step that may be halved `halvings` times more.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
                                            const Vec<3, T>& c, T h, int halvings) {
-  const MidpointRate<T> mid = midpoint_rate<T>(inertia, rate, a, c, h);
+  const T longer = lengthened<T>(h, rate, a);
+  const MidpointRate<T> mid = midpoint_rate<T>(inertia, rate, a, c, longer);
   // The products that make the residual are of size h |Ω̄| |c|, and as many roundings off.
   const T enough = T(128) * mid.rounding;
-  if (mid.residual <= enough) [[likely]] return cayley<T>(h * mid.rate);
-  if (halvings == 0 || mid.residual <= enough * (T(1) + h * mid.rate.norm())) return cayley<T>(h * mid.rate);
+  if (mid.residual <= enough) [[likely]] return cayley<T>(longer * mid.rate);
+  if (halvings == 0 || mid.residual <= enough * (T(1) + longer * mid.rate.norm()))
+    return cayley<T>(longer * mid.rate);
   return midpoint_turn_in_halves<T>(inertia, rate, a, c, h, halvings - 1);
 }
 
@@ -133,7 +145,7 @@ Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const 
 
 }  // namespace inner
 
-/// cay(h Ω̄) of `midpoint_rate` as a quaternion. Where that finds no root, a body that turns by many radians in a step, the step
+/// cay(s h Ω̄) of `midpoint_rate` for a step of s h, as a quaternion. Where that finds no root, a body that turns by many radians in a step, the step
 /// is made of halves, of which each keeps what the rule keeps; at most 2¹⁰ of them.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c,

@@ -29,7 +29,7 @@ namespace delassus {
 /// the stage that ended the solve. A solve that does not stall is in the first stage alone.
 ///
 /// Where λ runs away because the rows contradict each other, which `inner::Contradiction` proves when
-/// momentum has stalled, the status is `infeasible` and λ that of rows which yield by 3 % of their own W: a
+/// momentum has stalled, the status is `infeasible` and λ that of rows which yield by a tenth of their own W: a
 /// compromise, bounded, the same whatever came before.
 template <class Criterion = Residual>
 struct BasicAcceleratedGaussSeidel {

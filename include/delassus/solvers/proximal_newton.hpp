@@ -15,7 +15,7 @@
 namespace delassus {
 
 /// Outside, the proximal point: λ̂ ← λ, where λ meets the laws of d + W λ + ε w (λ − λ̂), w_i = tr(W_ii)/rows,
-/// and ε shrinks by 0.03 a time. Inside, Newton's method for the velocities of the bodies with F and J of
+/// and ε shrinks by 0.01 a time, where that is slow by what it has to. Inside, Newton's method for the velocities of the bodies with F and J of
 /// `inner::BodySpace`, each step halved until the rows see less of F. At the fixed point nothing is left of
 /// ε: the laws are met as they are, Coulomb's too.
 ///
@@ -64,9 +64,11 @@ struct BasicProximalNewton {
     if (min_iterations == 0 && is_done(now.best, now.rows)) return finish(now);
 
     double epsilon = now.best.residual > 1e-2 ? 1e-5 : 1e-7;  // a warm start needs no care
+    bool is_slow = false;
     double centre = body.error();                             // of λ̂
     now.least = centre;
     for (int outer = 0, patience = 20; outer < max_iterations && has_time(now); ++outer) {
+      const int before = now.report.factorizations;
       const bool is_well = descend(now, body, epsilon);
       note(now, body);
       if (is_done(now.report.measure, now.rows)) {
@@ -77,7 +79,14 @@ struct BasicProximalNewton {
         if (!restart(now, body)) break;
       } else if (is_well && body.error() < 1.5 * centre) {
         body.recentre();
-        epsilon = std::max(0.01 * epsilon, 1e-10);
+        // One step of Newton's method was enough, and yet λ has hardly come nearer: impulses through what is light to
+        // what is heavy, which move by 1/(1 + ε r) of their way, r the ratio of the masses.
+        is_slow = is_slow || (now.report.factorizations == before + 1 && body.error() > 0.5 * centre);
+        // The error goes by ε/(1/r + ε) a time: ε for 2e-4 of it next time.
+        if (is_slow)
+          epsilon = std::clamp(2e-4 * centre / std::max(body.error(), 1e-300) * epsilon, 1e-12, epsilon);
+        else
+          epsilon = std::max(0.01 * epsilon, 1e-10);
       } else {
         epsilon = std::min(20 * epsilon, 1.0);
         body.hand_over(

@@ -125,14 +125,15 @@ class RigidMidpoint {
     const Body& body = bodies_[b];
     return answer<1>(b, twist<T>(body.missing, body.R * body.missing_moment));
   }
-  /// The velocity after the impulses, at the axes of the start, from which `advance_midpoint` finds this q₊
-  /// again. It is made of the unknowns and not of the impulses: a moment that is off by rounding would turn a
-  /// slender body far.
-  Twist next(const RigidState<T>& s, Index b) const {
+  /// q ← q₊; returns the velocity there. It is made of the unknowns and not of the impulses: a moment that is
+  /// off by rounding would turn a slender body far.
+  Twist go(RigidState<T>& s, Index b, T h) const {
     const Body& body = bodies_[b];
-    const Vector p = s.inertia[b] * Vector(T(2) * body.mean_rate - body.rate);
-    const Vector rate = body.R * Vector(s.inverse_inertia[b] * Vector(body.turn * p));
-    return twist<T>(Vector(T(2) * body.mean - body.velocity), rate);
+    s.x[b] = body.x + h * body.mean;
+    s.q[b] = unit(s.q[b] * cayley<T>(h * body.mean_rate));
+    s.turn(b);
+    return twist<T>(Vector(T(2) * body.mean - body.velocity),
+                    s.R[b] * Vector(T(2) * body.mean_rate - body.rate));
   }
   /// The unknowns after the impulse has changed by this.
   void move(const RigidState<T>& s, Index b, const Twist& change) {

@@ -81,11 +81,12 @@ struct RigidState {
     kept_q = q;
   }
   void take_poses_back(const std::vector<Index>& blocks) {
-    for (const Index b : blocks) {
-      x[b] = kept_x[b];
-      q[b] = kept_q[b];
-      turn(b);
-    }
+    for (const Index b : blocks) take_pose_back(b);
+  }
+  void take_pose_back(Index b) {
+    x[b] = kept_x[b];
+    q[b] = kept_q[b];
+    turn(b);
   }
 
   /// x + step, and the axes turned by the vector `turn_by`, rad. False when that is not finite: then nothing moves.

@@ -1,11 +1,9 @@
-/// A whole step of the midpoint rule with its joints, by Newton's method: for `NewtonMidpoint`.
+/// A whole step of the midpoint rule with its joints: for `NewtonMidpoint`.
 #pragma once
 
-#include <delassus/loop/stages/linearize.hpp>
-#include <delassus/loop/stages/warm_start.hpp>
-#include <delassus/solvers/inner/direct_system.hpp>
-#include <delassus/solvers/island_problem.hpp>
-#include <delassus/solvers/solve_report.hpp>
+#include <delassus/bodies/world.hpp>
+#include <delassus/loop/stages/midpoint_newton.hpp>
+#include <delassus/math/linear.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +13,9 @@
 
 namespace delassus {
 
-/// Solves for the means z = (v̄, Ω̄) of all bodies and the impulses λ of all rows,
-///
-///   P(z) − h f − H(mean)ᵀ λ = 0,   φ(q₊(z)) + R λ + c = 0,
-///
-/// by δλ = −W⁻¹ (φ + R λ + c − H₊ C (P − h f − Hᵀλ)), W = H₊ C H(mean)ᵀ + R, C = ∂q₊/∂z (∂P/∂z − K)⁻¹:
-/// `inner::DirectSystem` takes W, which is not symmetric. A soft row is λ = −h k (φ + φ₊)/2 − c (φ₊ − φ), φ
-/// at the start. Source: docs/references.md, [SimoWong1991]; the quadratic invariants of Gauss' methods.
+/// One solve by `MidpointNewton`; where that does not converge, two of half the step, each of which may be
+/// halved again. A chain that snaps taut is a shock in a step, and has to be met in its time; every part
+/// keeps what the rule keeps.
 template <class World, class Laws, class Rows>
 class MidpointHold;
 
@@ -31,248 +25,121 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   using World = delassus::World<Sets...>;
   using T = typename Rows::Scalar;
 
-  /// Leaves v_next in the sets and λ in `rows`, which is linearised at the start on entry, with λ a guess.
-  ///
-  /// Rows that depend on each other only where all hold (Bricard's loop) contradict each other on the way
-  /// there, by the square of what is missing. Where Newton's method fails it is begun again with ε in
-  /// proportion to what is missing, which keeps such impulses small and the order of convergence. Source:
-  /// [Levenberg1944], [YamashitaFukushima2001].
+  /// Leaves q₊ and v_next in the sets and the sum of the parts' λ in `rows`, which is linearised at the start
+  /// on entry, with λ a guess. Where a part is no number, or far from its equations, every body stays where
+  /// it was: what it misses would come back as energy.
   template <class I>
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
+    keep(world);
+    for (auto* all : {&newton_.impulses, &force_, &total_}) all->resize_like(rows);
     for_each_index<Rows::pool_count>([&](auto p) {
-      start_.resize_like(rows);
-      lambda_.resize_like(rows);
-      std::get<p>(start_.pools) = rows.template pool<p>().phi;
-      std::get<p>(lambda_.pools) = rows.template pool<p>().lambda;
+      const auto& guess = rows.template pool<p>().lambda;
+      for (std::size_t i = 0; i < guess.size(); ++i) {
+        std::get<p>(force_.pools)[i] = guess[i] / T(h);
+        std::get<p>(total_.pools)[i].setZero();
+      }
     });
-    SolveReport report{.status = Status::max_iterations, .ended_by = "Newton"};
-    for (const bool is_damped : {false, true}) {
-      begin(world, integrator, h);
-      iterate(world, laws, rows, integrator, h, is_damped, report);
-      if (report.status != Status::max_iterations) break;
-      if (is_cut_short(integrator, report)) break;
-      if (!is_damped)
-        for_each_index<Rows::pool_count>([&](auto p) {
-          for (auto& x : std::get<p>(lambda_.pools)) x.setZero();
-        });
-    }
-    finish(world, rows, integrator, report);
-    return report;
+    report_ = {.ended_by = "Newton"};
+    const bool is_done = go(world, laws, rows, integrator, h, integrator.max_halvings);
+    if (!is_done) report_.status = Status::quarantined;
+    leave(world, rows, is_done);
+    return report_;
   }
 
  private:
-  static constexpr int most_undamped = 10;
-
-  /// Ended by its own number of factorizations, near enough to be taken.
+  /// A step of h from where the bodies are; false when it could not be made.
   template <class I>
-  static bool is_cut_short(const I& integrator, const SolveReport& report) {
-    return report.factorizations >= integrator.max_iterations && report.measure.residual <= integrator.acceptable;
-  }
-
-  template <class I>
-  void iterate(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, bool is_damped,
-               SolveReport& report) {
-    double first = 0, last = std::numeric_limits<double>::infinity();
-    for (int k = 0;; ++k) {
-      linearize_both(world, laws, rows, h);
-      const double size = balance(world, laws, rows, h);
-      if (k == 0) first = size;
-      report.measure.residual = size;
-      report.measure.floor = 64 * std::numeric_limits<T>::epsilon() * load_;
-      if (size <= integrator.tolerance)
-        report.status = Status::converged;
-      else if (size <= report.measure.floor || (size > 0.5 * last && size <= 1e-7))
-        report.status = Status::stalled;
-      // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
-      const bool is_lost = !(size <= 1e12 * first) || (!is_damped && k == most_undamped);
-      if (report.status != Status::max_iterations || is_lost || k == integrator.max_iterations) return;
-      last = size;
-      ++report.factorizations;
-      if (!improve(world, rows, is_damped ? std::clamp(1e-2 * size / first, 1e-9, 1e-2) : 1e-12)) return;
+  bool go(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, int halvings) {
+    for_each_index<Rows::pool_count>([&](auto p) {
+      auto& lambda = std::get<p>(newton_.impulses.pools);
+      lambda = std::get<p>(force_.pools);
+      for (auto& x : lambda) x *= T(h);
+    });
+    const SolveReport part = newton_.solve(world, laws, rows, integrator, h);
+    report_.factorizations += part.factorizations;
+    const bool is_solved = part.status != Status::max_iterations || newton_.is_cut_short(integrator, part);
+    if (!is_solved && halvings > 0) {
+      report_.ended_by = "halved steps";
+      for (int half = 0; half < 2; ++half) {
+        linearize(world, laws, rows);
+        if (!go(world, laws, rows, integrator, h / 2, halvings - 1)) return false;
+      }
+      return true;
     }
-  }
-
-  template <class I>
-  void begin(World& world, const I& integrator, double h) {
-    speed_ = 0;
-    world.each([&](auto& set, auto s) {
-      auto& body = std::get<s>(bodies_);
-      auto& force = std::get<s>(force_);
-      body.resize(std::size_t(set.blocks()));
-      force.resize(set.blocks());
-      for (auto& f : force) f.setZero();
-      integrator.impulse(set, force, h);
-      for (const Index b : set.active()) {
-        body.begin(set.state(), b, set.velocity()[b], set.moves(b), T(h));
-        speed_ = std::max(speed_, double(linear_part(set.velocity()[b]).norm()));
-        if (set.moves(b))
-          speed_ = std::max(speed_, double(linear_part(set.template solve_block<1>(b, force[b])).norm()));
+    report_.status = worse(report_.status, part.status);
+    report_.measure.floor = std::max(report_.measure.floor, part.measure.floor);
+    if (!(part.measure.residual <= report_.measure.residual))
+      report_.measure.residual = part.measure.residual;
+    if (!std::isfinite(part.measure.residual)) return false;
+    if (!is_solved && part.measure.residual > integrator.acceptable) return false;
+    if (part.factorizations > 0) newton_.take_least(world, rows);
+    newton_.go(world, h);
+    for_each_index<Rows::pool_count>([&](auto p) {
+      const auto& lambda = std::get<p>(newton_.impulses.pools);
+      for (std::size_t i = 0; i < lambda.size(); ++i) {
+        std::get<p>(total_.pools)[i] += lambda[i];
+        std::get<p>(force_.pools)[i] = lambda[i] / T(h);
       }
     });
-  }
-
-  /// φ and H at q₊ into `rows`, H at the mean into `middle_`.
-  void linearize_both(World& world, const Laws& laws, Rows& rows, double h) {
-    const auto place = [&](auto&& put) {
-      world.each([&](auto& set, auto s) {
-        for (const Index b : set.active()) put(std::get<s>(bodies_), set.state(), b);
-      });
-    };
-    place([&](auto& bodies, auto& state, Index b) { bodies.to_end(state, b, T(h)); });
-    linearize(world, laws, rows);
-    place([&](auto& bodies, auto& state, Index b) { bodies.to_middle(state, b, T(h)); });
-    linearize(world, laws, middle_);
-    place([&](auto& bodies, auto& state, Index b) { bodies.back(state, b); });
-  }
-
-  /// P − h f − Hᵀλ with the geometric stiffness, and φ + R λ + c; returns the largest of both, in units of
-  /// the speed.
-  double balance(World& world, const Laws& laws, Rows& rows, double h) {
-    double most = 0, spoilt = 0;
-    load_ = 0;
-    impulse_ = force_;
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& pool = rows.template pool<p>();
-      for (Index i = 0; i < pool.items(); ++i) {
-        const auto& lambda = std::get<p>(lambda_.pools)[i];
-        world.each(
-            [&](auto& set, auto s) { push<p>(set, s, laws.template pool<p>().item(i), i, lambda, h); });
-        for (int k = 0; k < pool.rows; ++k) {
-          soften(pool, i, k, double(std::get<p>(start_.pools)[i][k]), h);
-          pool.bias[i][k] += pool.phi[i][k] + pool.compliance[i][k] * lambda[k];
-          most = std::max(most, std::abs(double(pool.bias[i][k])) / h);
-        }
-      }
-    });
-    world.each([&](auto& set, auto s) {
-      for (const Index b : set.active())
-        if (set.moves(b)) {
-          const double missing =
-              double(std::get<s>(bodies_).balance(set.state(), b, std::get<s>(impulse_)[b], T(h)));
-          most = std::max(most, missing);
-          spoilt += 0 * missing;  // NaN for one that is no number, which a maximum would lose
-        }
-    });
-    const double unit = speed_ > 0 ? speed_ : 1;
-    load_ /= unit;
-    return most / unit + spoilt;
-  }
-  /// impulse += Hᵀλ; the force at each end of an item stiffens its body.
-  template <int p, class Set, class S, class Item, class Lambda>
-  void push(const Set& set, S s, const Item& item, Index i, const Lambda& lambda, double h) {
-    const auto& blocks = std::get<s>(middle_.template pool<p>().sets);
-    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
-      const Index b = blocks.block[e];
-      if (!set.moves(b)) continue;
-      const typename Set::Velocity by = blocks.H[e].transpose() * lambda;
-      std::get<s>(impulse_)[b] += by;
-      load_ = std::max(load_, double(linear_part(by).norm() / set.mass(b)));
-      each_end(item, [&](const Anchor& end) {
-        if (end.set == s && end.block == b)
-          std::get<s>(bodies_).stiffen(b, linear_part(by), end.local.template cast<T>(), T(h));
-      });
-    }
-  }
-  /// R and c of a soft row, in `bias`; λ (h k/2 + c)⁻¹ + φ₊ + φ (h k/2 − c)/(h k/2 + c) = 0.
-  template <class Pool>
-  static void soften(Pool& pool, Index i, int k, double start, double h) {
-    const double stiffness = h / 2 * double(pool.stiffness[i][k]), damping = double(pool.damping[i][k]);
-    if (!(stiffness + damping > 0)) return;
-    pool.compliance[i][k] = T(1 / (stiffness + damping));
-    pool.bias[i][k] = T(start * (stiffness - damping) / (stiffness + damping));
-  }
-
-  /// One step of Newton's method; false when its matrix is singular.
-  bool improve(World& world, Rows& rows, double epsilon) {
-    world.each([&](const auto& set, auto s) {
-      for_each_index<Rows::pool_count>([&](auto p) {
-        auto& end = std::get<s>(rows.template pool<p>().sets);
-        const auto& middle = std::get<s>(middle_.template pool<p>().sets);
-        end.G.resize(end.H.size());
-        for (std::size_t e = 0; e < end.H.size(); ++e) {
-          if (set.moves(end.block[e]))
-            end.G[e] = std::get<s>(bodies_).template answer<Rows::template rows_of<p>>(
-                end.block[e], middle.H[e].transpose());
-          else
-            end.G[e].setZero();
-        }
-      });
-    });
-    system_.begin();
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i) system_.template take<p>(rows, i, true);
-    });
-    system_.analyse(0);
-    if (!system_.factor(epsilon)) return false;
-    system_.load([&](auto p, Index i) { return gap<p>(world, rows, i); });
-    system_.solve();
-    change_by(world);
     return true;
   }
-  /// φ + R λ + c − H₊ C (P − h f − Hᵀλ).
-  template <int p>
-  Vec<Rows::template rows_of<p>, T> gap(const World& world, const Rows& rows, Index i) const {
-    const auto& pool = rows.template pool<p>();
-    Vec<Rows::template rows_of<p>, T> r = pool.bias[i];
-    world.each([&](const auto& set, auto s) {
-      const auto& blocks = std::get<s>(pool.sets);
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-        if (set.moves(blocks.block[e]))
-          r.noalias() -= blocks.H[e] * std::get<s>(bodies_).answer_to_missing(blocks.block[e]);
-    });
-    return r;
-  }
-  /// λ and z after δλ.
-  void change_by(World& world) {
-    world.each([&](const auto&, auto s) {
-      for (auto& x : std::get<s>(impulse_)) x.setZero();
-    });
-    system_.each([&](auto p, Index k) {
-      const Index i = system_.node(k).item;
-      Vec<Rows::template rows_of<p>, T> change;
-      for (int r = 0; r < change.size(); ++r) change[r] = T(system_.answer(k)[r]);
-      std::get<p>(lambda_.pools)[i] += change;
-      for_each_index<Rows::set_count>([&](auto s) {
-        const auto& blocks = std::get<s>(middle_.template pool<p>().sets);
-        for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-          std::get<s>(impulse_)[blocks.block[e]].noalias() += blocks.H[e].transpose() * change;
-      });
-    });
-    world.each([&](auto& set, auto s) {
-      for (const Index b : set.active())
-        if (set.moves(b)) std::get<s>(bodies_).move(set.state(), b, std::get<s>(impulse_)[b]);
-    });
-  }
 
-  /// v_next from the means. A solve that is no number, or far from its equations, leaves every body where it
-  /// was: what it misses would come back as energy.
-  template <class I>
-  void finish(World& world, Rows& rows, const I& integrator, SolveReport& report) {
-    const bool is_lost =
-        !std::isfinite(report.measure.residual) ||
-        (report.status == Status::max_iterations && report.measure.residual > integrator.acceptable);
-    if (is_lost) report.status = Status::quarantined;
+  void keep(World& world) {
+    world.each([&](auto& set, auto s) {
+      set.state().keep_poses();
+      std::get<s>(velocity_) = set.velocity();
+    });
+  }
+  /// v of the end becomes v_next, v that of the start. Bodies without impulses are where they were, for
+  /// `arrive` to move them; so are all when the step could not be made, which v_next says by being no number.
+  void leave(World& world, Rows& rows, bool is_done) {
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active()) {
-        set.v_next[b] = set.velocity()[b];
-        if (set.moves(b)) set.v_next[b] = std::get<s>(bodies_).next(set.state(), b);
-        if (is_lost && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
+        auto& v = set.velocity()[b];
+        set.v_next[b] = v;
+        v = std::get<s>(velocity_)[b];
+        if (!is_done && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
+        if (!is_done || !set.moves(b)) set.state().take_pose_back(b);
       }
     });
     for_each_index<Rows::pool_count>([&](auto p) {
       auto& lambda = rows.template pool<p>().lambda;
-      lambda = std::get<p>(lambda_.pools);
-      if (is_lost)
+      lambda = std::get<p>(total_.pools);
+      if (!is_done)
         for (auto& x : lambda) x.setZero();
     });
   }
 
-  std::tuple<typename Sets::Midpoint...> bodies_;
-  std::tuple<std::vector<typename Sets::Velocity>...> force_, impulse_;
-  Rows middle_;
-  Impulses<Rows> start_, lambda_;
-  inner::DirectSystem<Rows> system_;
-  double speed_ = 0, load_ = 0;  ///< load: of the impulses over the masses, in units of the speed
+  MidpointNewton<World, Laws, Rows> newton_;
+  std::tuple<std::vector<typename Sets::Velocity>...> velocity_;
+  Impulses<Rows> force_, total_;  ///< λ/h of the last part, and Σ λ
+  SolveReport report_;
+};
+
+/// The same without constraints: the bodies turn freely.
+template <class World>
+class MidpointAlone {
+ public:
+  template <class I>
+  SolveReport solve(World& world, const auto&, const auto&, const I& integrator, double h) {
+    world.each([&](auto& set, auto) {
+      const auto blocks = set.by_block(integrator.scale(h));
+      set.v_next = set.velocity();
+      auto& force = set.v_free;
+      for (auto& f : force) f.setZero();
+      integrator.impulse(set, force, h);
+      for (const Index b : set.active()) {
+        if (!set.moves(b)) continue;
+        auto& v = set.velocity()[b];
+        const auto start = v;
+        set.v_next[b] += blocks.solve(b, force[b]);
+        blocks.advance(b, set.v_next[b], h, typename World::Scalar(0.5));
+        if (is_finite(set.v_next[b])) set.v_next[b] = v;
+        v = start;
+      }
+    });
+    return {};
+  }
 };
 
 }  // namespace delassus

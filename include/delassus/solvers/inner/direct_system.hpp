@@ -155,6 +155,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   void clear() {
     for (Row& x : x_) x.setZero();
   }
+  void set_right_side(Index k, const Row& r) { x_[k] = r; }
   void solve() { graph_->matrix.solve(x_); }
   /// δ of bilateral constraint k after `solve`.
   const Row& answer(Index k) const { return x_[k]; }
