@@ -66,6 +66,7 @@ class NewtonStage {
     point.sweeps = pursuit_.sweeps();
     point.epsilon = epsilon_;
     if (!body_.restart(problem_)) return close(point.factorizations);
+    const double before = energy();
     body_.keep();
     point.begin();
     bool is_met = false;
@@ -74,6 +75,7 @@ class NewtonStage {
       if (!is_met) point.give_best();
       if (!is_met && !point.restart()) break;
     }
+    if (!(energy() <= 100 * before)) pursuit_.back_to_best();
     point.measure = problem_.measure();
     pursuit_.take(point.measure, point.factorizations);
     if (!pursuit_.is_over()) pursuit_.back_to_best();
@@ -86,6 +88,16 @@ class NewtonStage {
   static constexpr int attempts = 3;
   static constexpr double likely = 6;  ///< factorizations of an opening, for what surrounds them too
 
+  /// Σ w_i |λ_i|². Where contacts depend on each other λ may run away along what moves nothing; one ten times
+  /// larger than the sweeps' is not taken: its rounding alone would give the bodies energy.
+  double energy() const {
+    double sum = 0;
+    problem_.each([&](auto p, Index i) {
+      const double root = problem_.template root_of_weight<p>(i);
+      sum += root * root * double(problem_.rows().template pool<p>().lambda[i].squaredNorm());
+    });
+    return sum;
+  }
   void close(int factorizations) {
     wait_ *= 2;
     open_after(pursuit_.sweeps() + std::max(double(wait_), 2 * factorizations * cost_));
