@@ -46,7 +46,7 @@ TEST_CASE("when the sweeps run out the best measured iterate is returned") {
   double best = std::numeric_limits<double>::infinity();
   for (const int limit : {1, 5, 17, 40, 64, 130}) {
     auto p = ten;
-    const SolveReport r = solve(p, AcceleratedGaussSeidel{.tolerance = 1e-12, .max_iterations = limit});
+    const SolveReport r = solve(p, AcceleratedSweeps{.tolerance = 1e-12, .max_iterations = limit});
     REQUIRE(r.status == Status::max_iterations);
     REQUIRE(r.sweeps == limit);
     const Measure again = solve(p, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure;
@@ -55,7 +55,7 @@ TEST_CASE("when the sweeps run out the best measured iterate is returned") {
     best = std::min(best, again.residual);
   }
   auto p = ten;
-  REQUIRE(solve(p, AcceleratedGaussSeidel{.tolerance = 1e-12, .max_iterations = 400}).measure.residual <= best);
+  REQUIRE(solve(p, AcceleratedSweeps{.tolerance = 1e-12, .max_iterations = 400}).measure.residual <= best);
 }
 
 TEST_CASE("a tolerance below rounding ends at the floor and says stalled") {

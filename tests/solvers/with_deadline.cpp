@@ -32,7 +32,7 @@ bool same_bits(const Problem& a, const Problem& b) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("a solve returns at its first look at the clock after the deadline", "", GaussSeidel,
-                   AcceleratedGaussSeidel) {
+                   AcceleratedSweeps) {
   const auto start = problem_of(1, 10);
   for (const int looks : {1, 2, 9, 16, 40, 77}) {
     auto p = start;

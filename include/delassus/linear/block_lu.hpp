@@ -3,6 +3,7 @@
 
 #include <delassus/linear/block_pattern.hpp>
 #include <delassus/math/pivoted_lu.hpp>
+#include <delassus/math/small_products.hpp>
 
 #include <span>
 #include <utility>
@@ -40,6 +41,16 @@ class BlockLu {
     return row > column ? lower_[pattern_.find(row, column)] : upper_[pattern_.find(column, row)];
   }
 
+  /// Products of blocks that `factor` makes.
+  double products() const {
+    double sum = 0;
+    for (Index j = 0; j < pattern_.blocks(); ++j) {
+      const double below = pattern_.start(j + 1) - pattern_.start(j);
+      sum += 1 + below * (below + 1);
+    }
+    return sum;
+  }
+
   /// Replaces A by its factors; false when a pivot block is singular or not finite.
   bool factor() {
     for (Index j = 0; j < Index(diagonal_.size()); ++j) {
@@ -48,11 +59,11 @@ class BlockLu {
       for (Index e = first; e < last; ++e) pivot_[j].solve(upper_[e]);  // U_jk = D_j⁻¹ A_jk
       for (Index e = first; e < last; ++e) {
         const Index i = pattern_.row(e);
-        diagonal_[i].noalias() -= lower_[e] * upper_[e];
+        add_product(lower_[e], upper_[e], diagonal_[i], T(-1));
         for (Index f = e + 1; f < last; ++f) {
           const Index at = pattern_.find(pattern_.row(f), i);
-          lower_[at].noalias() -= lower_[f] * upper_[e];
-          upper_[at].noalias() -= lower_[e] * upper_[f];
+          add_product(lower_[f], upper_[e], lower_[at], T(-1));
+          add_product(lower_[e], upper_[f], upper_[at], T(-1));
         }
       }
     }
@@ -73,11 +84,11 @@ class BlockLu {
     for (Index j = 0; j < n; ++j) {
       pivot_[j].solve(work_[j]);
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
-        work_[pattern_.row(e)].noalias() -= lower_[e] * work_[j];
+        add_product(lower_[e], work_[j], work_[pattern_.row(e)], T(-1));
     }
     for (Index j = n; j-- > 0;)
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
-        work_[j].noalias() -= upper_[e] * work_[pattern_.row(e)];
+        add_product(upper_[e], work_[pattern_.row(e)], work_[j], T(-1));
     for (Index i = 0; i < n; ++i) x[i] = work_[pattern_.place(i)];
   }
 

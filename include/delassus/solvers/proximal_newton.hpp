@@ -6,6 +6,7 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
+#include <delassus/solvers/inner/proximal_point.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -15,16 +16,17 @@
 namespace delassus {
 
 /// Outside, the proximal point: λ̂ ← λ, where λ meets the laws of d + W λ + ε w (λ − λ̂), w_i = tr(W_ii)/rows,
-/// and ε shrinks by 0.01 a time, where that is slow by what it has to. Inside, Newton's method for the velocities of the bodies with F and J of
-/// `inner::BodySpace`, each step halved until the rows see less of F. At the fixed point nothing is left of
-/// ε: the laws are met as they are, Coulomb's too.
+/// and ε shrinks by 0.01 a time, where that is slow by what it has to. Inside, Newton's method for the
+/// velocities of the bodies with F and J of `inner::BodySpace`, each step halved until the rows see less of F.
+/// At the fixed point nothing is left of ε: the laws are met as they are, Coulomb's too.
 ///
 /// The number of factorizations hardly grows with the height of a stack or the ratio of masses; one costs a
 /// few sweeps. Where Newton's method stalls, accelerated sweeps lead on from the best λ; an island that it
 /// cannot treat (a law without `tangent`, bodies coupled by springs under an implicit integrator) is swept
 /// throughout, and one that it did not bring to the tolerance is swept from its start. The smallest measured
 /// residual is what is kept. Source: [Rockafellar1976] for the proximal point, [QiSun1993] for
-/// Newton's method on it, [AcaryBremondHuber2018] for both together, [AlartCurnier1991] for the contact's equations.
+/// Newton's method on it, [AcaryBremondHuber2018] for both together, [AlartCurnier1991] for the contact's
+/// equations.
 template <class Criterion = Residual>
 struct BasicProximalNewton {
   static_assert(
@@ -55,136 +57,45 @@ struct BasicProximalNewton {
 
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
-    auto& body = work.body;
-    if (!body.gather(problem)) return sweep(problem, work, max_sweeps, min_iterations);
-    Search<Problem> now{problem, problem.row_count()};
-    now.report.measure = now.best = body.measure(problem);
-    problem.tell(0, now.best);
-    if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
-    if (min_iterations == 0 && is_done(now.best, now.rows)) return finish(now);
-
-    double epsilon = now.best.residual > 1e-2 ? 1e-5 : 1e-7;  // a warm start needs no care
-    bool is_slow = false;
-    double centre = body.error();                             // of λ̂
-    now.least = centre;
-    for (int outer = 0, patience = 20; outer < max_iterations && has_time(now); ++outer) {
-      const int before = now.report.factorizations;
-      const bool is_well = descend(now, body, epsilon);
-      note(now, body);
-      if (is_done(now.report.measure, now.rows)) {
-        body.hand_over(
-            problem, [](const auto& c) -> const auto& { return c.lambda; });
-        now.report.measure = problem.measure();  // by W itself
-        if (is_done(now.report.measure, now.rows)) return finish(now);
-        if (!restart(now, body)) break;
-      } else if (is_well && body.error() < 1.5 * centre) {
-        body.recentre();
-        // One step of Newton's method was enough, and yet λ has hardly come nearer: impulses through what is light to
-        // what is heavy, which move by 1/(1 + ε r) of their way, r the ratio of the masses.
-        is_slow = is_slow || (now.report.factorizations == before + 1 && body.error() > 0.5 * centre);
-        // The error goes by ε/(1/r + ε) a time: ε for 2e-4 of it next time.
-        if (is_slow)
-          epsilon = std::clamp(2e-4 * centre / std::max(body.error(), 1e-300) * epsilon, 1e-12, epsilon);
-        else
-          epsilon = std::max(0.01 * epsilon, 1e-10);
+    if (!work.body.gather(problem)) return sweep(problem, work, max_sweeps, min_iterations);
+    Point<Problem, Workspace> now(*this, problem, work.body);
+    const Measure start = now.begin();
+    problem.tell(0, start);
+    if (!std::isfinite(start.residual)) return {.status = Status::quarantined, .measure = start};
+    if (min_iterations == 0 && now.is_done(start)) return finish(now);
+    for (int patience = 20; now.has_time();) {
+      if (now.run()) {
+        if (now.is_met()) return finish(now);
       } else {
-        epsilon = std::min(20 * epsilon, 1.0);
-        body.hand_over(
-            problem, [](const auto& c) -> const auto& { return c.best; });
-        patience = std::min(2 * patience, max_sweeps - now.report.sweeps);
+        now.give_best();
+        patience = std::min(2 * patience, max_sweeps - now.sweeps);
         if (patience <= 0) break;
-        now.report.sweeps += sweep(problem, work, patience, 1).sweeps;
-        if (!restart(now, body)) break;
-        if (is_done(now.report.measure, now.rows)) return finish(now);
+        now.sweeps += sweep(problem, work, patience, 1).sweeps;
       }
-      centre = body.error();
+      if (!now.restart()) break;
+      if (now.is_done(now.measure)) return finish(now);
     }
     return give_up(now, work);
   }
 
  private:
-  template <class Problem>
-  struct Search {
-    Problem& problem;
-    int rows;
-    SolveReport report{};
-    Measure best{};
-    double least = 0;  ///< the error of `best`
-    bool is_late = false;
-  };
-
-  /// Newton's method around one λ̂, until F has fallen by 1e4 or λ(u) is good enough; false when it stalls.
-  template <class Problem, class Body>
-  bool descend(Search<Problem>& now, Body& body, double epsilon) const {
-    double size = body.evaluate(now.problem, epsilon, 0);
-    body.close_what_touches(now.problem, epsilon, body.error());
-    const double first = size;
-    for (int step = 0; step < 8 && has_time(now); ++step) {
-      if (!(size > 0)) break;
-      if (!body.find_direction()) return false;
-      ++now.report.factorizations;
-      const double before = size;
-      const double fraction = search_line(now.problem, body, epsilon, size);
-      body.advance(fraction);
-      now.report.measure = body.measure(now.problem);
-      now.problem.tell(now.report.sweeps + now.report.factorizations, now.report.measure);
-      if (is_done(now.report.measure, now.rows) || size < 1e-4 * first) break;
-      if (!(size <= 0.99 * before)) return false;
-    }
-    now.report.measure = body.measure(now.problem);
-    return std::isfinite(size);
-  }
-
-  template <class Problem, class Body>
-  static void note(Search<Problem>& now, Body& body) {
-    if (!(body.error() < now.least)) return;
-    now.least = body.error();
-    now.best = now.report.measure;
-    body.keep();
-  }
-
-  /// Halves the step until the size of F has fallen by a thousandth of it, else takes the best; leaves F
-  /// evaluated there.
-  template <class Problem, class Body>
-  static double search_line(const Problem& problem, Body& body, double epsilon, double& size) {
-    double best = 0, least = std::numeric_limits<double>::infinity(), fraction = 1;
-    for (int halving = 0; halving < 14; ++halving, fraction *= 0.5) {
-      const double trial = body.evaluate(problem, epsilon, fraction);
-      if (trial <= (1 - 1e-3 * fraction) * size) {
-        size = trial;
-        return fraction;
-      }
-      if (trial < least) least = trial, best = fraction;
-    }
-    size = body.evaluate(problem, epsilon, best);
-    return best;
-  }
-
-  /// Begins anew from the λ that the rows have; false when nothing can be begun from there.
-  template <class Problem, class Body>
-  static bool restart(Search<Problem>& now, Body& body) {
-    if (!body.restart(now.problem)) return false;
-    now.report.measure = body.measure(now.problem);
-    note(now, body);
-    return true;
-  }
+  template <class Problem, class Workspace>
+  using Point = inner::ProximalPoint<Criterion, BasicProximalNewton, Problem, decltype(Workspace::body)>;
 
   /// The tolerance was not met: what is left of the sweeps leads on from the best λ.
-  template <class Problem, class Workspace>
-  SolveReport give_up(Search<Problem>& now, Workspace& work) const {
-    work.body.hand_over(
-        now.problem, [](const auto& c) -> const auto& { return c.best; });
-    const int left = max_sweeps - now.report.sweeps;
-    if (!now.is_late && left > 0) {
-      const SolveReport swept = sweep(now.problem, work, left, 1);
-      now.report.sweeps += swept.sweeps;
-      now.report.measure = swept.measure;
-      if (swept.status == Status::infeasible) {
-        now.report.status = swept.status;
-        return now.report;
-      }
+  template <class P, class Workspace>
+  SolveReport give_up(P& now, Workspace& work) const {
+    auto& problem = now.problem();
+    now.give_best();
+    const int left = max_sweeps - now.sweeps;
+    if (!now.is_late() && left > 0) {
+      const SolveReport swept = sweep(problem, work, left, 1);
+      now.sweeps += swept.sweeps;
+      now.measure = swept.measure;
+      if (swept.status == Status::infeasible)
+        return {swept.status, now.sweeps, now.measure, now.factorizations};
     } else {
-      now.report.measure = now.problem.measure();
+      now.measure = problem.measure();
     }
     return finish(now);
   }
@@ -199,20 +110,10 @@ struct BasicProximalNewton {
     return solver.solve(problem, work.sweeps);
   }
 
-  template <class Problem>
-  bool has_time(Search<Problem>& now) const {
-    if (now.report.factorizations >= max_iterations) return false;
-    if (now.report.factorizations >= std::max(1, min_iterations))
-      now.is_late = now.is_late || now.problem.is_out_of_time();
-    return !now.is_late;
-  }
-  bool is_done(const Measure& m, int rows) const {
-    return inner::is_within<Criterion>(*this, m, rows) || m.residual <= m.floor;
-  }
-  template <class Problem>
-  SolveReport finish(Search<Problem>& now) const {
-    now.report.status = inner::verdict<Criterion>(*this, now.report.measure, now.rows);
-    return now.report;
+  template <class P>
+  SolveReport finish(const P& now) const {
+    return {inner::verdict<Criterion>(*this, now.measure, now.rows()), now.sweeps, now.measure,
+            now.factorizations};
   }
 };
 

@@ -91,20 +91,25 @@ struct Coulomb {
   /// Source: [AlartCurnier1991], whose augmented Lagrangian has these terms.
   template <class T>
   Mat<3, 3, T> tangent(const Parameters& p, Local<3, T>& c) const {
-    const Vec<3, T> over = c.W.diagonal().cwiseInverse();
-    c.lambda -= over.cwiseProduct(c.d);
-    Mat<3, 3, T> slope = over.asDiagonal().toDenseMatrix();
-    const T normal = c.lambda[0], size = inner::length(c.lambda[1], c.lambda[2]), limit = T(p.friction) * normal;
-    if (!(normal > T(0))) {
-      c.lambda.setZero();
-      return Mat<3, 3, T>::Zero();
+    Vec<3, T>& x = c.lambda;
+    Mat<3, 3, T> slope = Mat<3, 3, T>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      slope(k, k) = T(1) / c.W(k, k);
+      x[k] -= slope(k, k) * c.d[k];
+    }
+    const T mu = T(p.friction), limit = mu * x[0], size = inner::length(x[1], x[2]);
+    if (!(x[0] > T(0))) {
+      x.setZero();
+      slope.setZero();
+      return slope;
     }
     if (size <= limit) return slope;
-    const Vec<2, T> t = c.lambda.template tail<2>() / size;
-    c.lambda.template tail<2>() = limit * t;
-    slope.template bottomLeftCorner<2, 1>() = T(p.friction) * over[0] * t;
-    slope.template bottomRightCorner<2, 2>() =
-        (limit / size * over[1]) * (Mat<2, 2, T>::Identity() - t * t.transpose());
+    const T t[2] = {x[1] / size, x[2] / size}, across = limit / size * slope(1, 1);
+    for (int k = 0; k < 2; ++k) {
+      x[k + 1] = limit * t[k];
+      slope(k + 1, 0) = mu * slope(0, 0) * t[k];
+      for (int l = 0; l < 2; ++l) slope(k + 1, l + 1) = across * (T(k == l) - t[k] * t[l]);
+    }
     return slope;
   }
 

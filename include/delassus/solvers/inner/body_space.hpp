@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/law.hpp>
+#include <delassus/math/small_products.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
@@ -33,23 +34,28 @@ class BodySpace {
     return true;
   }
 
+  /// Of a factorization and what goes with it, in sweeps.
+  double cost_in_sweeps() { return system_.cost_in_sweeps(); }
+
   /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
   /// see, in units of energy.
   template <class Problem>
   double evaluate(const Problem& problem, double epsilon, double fraction) {
-    for (std::size_t b = 0; b < residual_.size(); ++b) residual_[b] = y_[b] + fraction * change_[b];
+    for (std::size_t b = 0; b < residual_.size(); ++b)
+      for (int k = 0; k < System::width; ++k) residual_[b][k] = y_[b][k] + fraction * change_[b][k];
     each([&](auto p, auto& c, auto& sides) {
-      c.trial = c.velocity + fraction * c.move;
+      for (int k = 0; k < int(c.trial.size()); ++k) c.trial[k] = c.velocity[k] + fraction * c.move[k];
       auto local = proximal(c, epsilon);
       c.slope = tangent<p>(problem, c.item, local);
       c.lambda = local.lambda;
       const auto change = (c.lambda - c.centre).eval();
-      for (Index s = c.first; s < c.last; ++s) residual_[sides[s].block].noalias() -= sides[s].G * change;
+      for (Index s = c.first; s < c.last; ++s)
+        add_product(sides[s].G, change, residual_[sides[s].block], -1.0);
     });
     double square = 0;
     each([&](auto, auto& c, auto& sides) {
       c.error.setZero();
-      for (Index s = c.first; s < c.last; ++s) c.error.noalias() += sides[s].H * residual_[sides[s].block];
+      for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, residual_[sides[s].block], c.error);
       square += c.error.squaredNorm() / c.weight;
     });
     return std::sqrt(square);
@@ -73,18 +79,20 @@ class BodySpace {
   /// J δ = −F; false when J is singular to working precision.
   bool find_direction() {
     if (!system_.factor()) return false;
-    for (std::size_t b = 0; b < change_.size(); ++b) change_[b] = -residual_[b];
+    for (std::size_t b = 0; b < change_.size(); ++b)
+      for (int k = 0; k < System::width; ++k) change_[b][k] = -residual_[b][k];
     system_.solve(change_);
     each([&](auto, auto& c, auto& sides) {
       c.move.setZero();
-      for (Index s = c.first; s < c.last; ++s) c.move.noalias() += sides[s].H * change_[sides[s].block];
+      for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, change_[sides[s].block], c.move);
     });
     return true;
   }
 
   /// Goes where the last evaluation was.
   void advance(double fraction) {
-    for (std::size_t b = 0; b < y_.size(); ++b) y_[b] += fraction * change_[b], change_[b].setZero();
+    for (std::size_t b = 0; b < y_.size(); ++b)
+      for (int k = 0; k < System::width; ++k) y_[b][k] += fraction * change_[b][k], change_[b][k] = 0;
     each([](auto, auto& c, auto&) {
       c.velocity = c.trial;
       c.move.setZero();
@@ -158,12 +166,15 @@ class BodySpace {
   template <int r>
   static Local<r> proximal(const NewtonItem<r>& c, double epsilon) {
     Local<r> local{Mat<r, r>::Zero(), c.trial, c.centre};
-    local.W.diagonal() = c.compliance.array() + epsilon * c.weight;
+    for (int k = 0; k < r; ++k) local.W(k, k) = c.compliance[k] + epsilon * c.weight;
     return local;
   }
   template <int r>
   static Vec<r> own_velocity(const NewtonItem<r>& c) {
-    return c.velocity - c.error + c.compliance.cwiseProduct(c.lambda - c.centre);
+    Vec<r> velocity;
+    for (int k = 0; k < r; ++k)
+      velocity[k] = c.velocity[k] - c.error[k] + c.compliance[k] * (c.lambda[k] - c.centre[k]);
+    return velocity;
   }
 
   /// A pool without a tangent is never in an island that is gathered.

@@ -54,12 +54,13 @@ class RestartRule {
 /// futile and the error stands. `x` is room for the impulses before; sweep(x, curvature) sets that product
 /// and returns how much it moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
 /// gradient restart.
-template <class Problem, class Pursuit, class Impulses, class Sweep>
-bool momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
+template <class Problem, class Pursuit, class Impulses, class Sweep,
+          class Pause = decltype([] { return false; })>
+bool momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep, Pause&& pause = {}) {
   RestartRule rule;
   double theta = 1;
   problem.save(x);
-  for (;;) {
+  while (!pause()) {
     double curvature = 0;
     const double moved = sweep(x, curvature);  // λ is z now
     if (!pursuit.goes_on(moved)) return false;
@@ -76,6 +77,7 @@ bool momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep) {
       theta = next;
     }
   }
+  return false;
 }
 
 }  // namespace delassus::inner

@@ -56,17 +56,19 @@ class Pursuit {
     if (std::isinf(best_.residual) && is_not_finite()) return false;
     is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
     if (is_met_) return false;
-    if (Criterion::needs_measure ? Criterion::sum(report_.measure) < Criterion::sum(best_)
-                                 : report_.measure.residual < best_.residual) {
-      best_ = report_.measure;
-      problem_.save(best_set_);
-      if (Criterion::sum(best_) < 0.5 * mark_) {
-        mark_ = Criterion::sum(best_);
-        progressed_ = report_.sweeps;
-      }
-    }
+    keep_if_best();
     return !is_last_ && !stalls();
   }
+
+  /// λ of a stage that makes factorizations and no sweeps, measured by W; kept if it is the best.
+  void take(const Measure& measure, int factorizations) {
+    report_.factorizations += factorizations;
+    report_.measure = measure;
+    is_met_ = is_done(measure);
+    if (!is_met_) keep_if_best();
+  }
+  /// The stage goes on, or another name is in it for a while: its patience does not begin anew.
+  void name(const char* stage) { report_.ended_by = stage; }
 
   /// The best error did not halve within 60 sweeps, or half as many as it took to get there: a stage that has
   /// another sign of going round in circles need not wait for the end of its patience.
@@ -79,6 +81,7 @@ class Pursuit {
   bool is_over() const { return is_met_ || is_last_ || is_quarantined(); }
   bool is_quarantined() const { return report_.status == Status::quarantined; }
 
+  int sweeps() const { return report_.sweeps; }
   /// What is left of the sweeps.
   int left() const { return solver_.max_iterations - report_.sweeps; }
 
@@ -105,6 +108,16 @@ class Pursuit {
   }
   bool is_done(const Measure& m) const {
     return inner::is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
+  }
+  void keep_if_best() {
+    if (!(Criterion::needs_measure ? Criterion::sum(report_.measure) < Criterion::sum(best_)
+                                   : report_.measure.residual < best_.residual))
+      return;
+    best_ = report_.measure;
+    problem_.save(best_set_);
+    if (!(Criterion::sum(best_) < 0.5 * mark_)) return;
+    mark_ = Criterion::sum(best_);
+    progressed_ = report_.sweeps;
   }
   /// The error is foretold from the sweep's movement, their ratio being that of the last measure: where that
   /// is within the tolerance it is time to measure, and no later than after twice the usual number of sweeps.

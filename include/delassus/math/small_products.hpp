@@ -1,0 +1,21 @@
+/// Products of small matrices of any size, added where they belong.
+#pragma once
+
+#include <delassus/math/linear.hpp>
+
+namespace delassus {
+
+// Eigen makes a type of every product, and dozens of functions to compile for each pair of sizes; these are
+// loops with fixed trip counts over columns. `eager.hpp` has the like for 3-vectors.
+
+/// C += s A B.
+template <int r, int k, int c, class T>
+inline void add_product(const Mat<r, k, T>& A, const Mat<k, c, T>& B, Mat<r, c, T>& C, T s = T(1)) {
+  for (int column = 0; column < c; ++column)
+    for (int j = 0; j < k; ++j) {
+      const T b = s * B.data()[k * column + j];
+      for (int i = 0; i < r; ++i) C.data()[r * column + i] += A.data()[r * j + i] * b;
+    }
+}
+
+}  // namespace delassus

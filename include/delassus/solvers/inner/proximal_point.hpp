@@ -1,0 +1,153 @@
+/// The proximal point iteration on the impulses of an island, by Newton's method in the velocities of its
+/// bodies.
+#pragma once
+
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace delassus::inner {
+
+/// Outside λ̂ ← λ(u) while ε shrinks, inside Newton's method on F of `Body`, a `BodySpace` that holds the
+/// island, each step halved until the rows see less of F. `Solver` has the tolerance and how many
+/// factorizations are allowed; the smallest measured error is kept in `Body`. See `ProximalNewton`.
+template <class Criterion, class Solver, class Problem, class Body>
+class ProximalPoint {
+ public:
+  ProximalPoint(const Solver& solver, Problem& problem, Body& body)
+      : solver_(solver), problem_(problem), body_(body), rows_(problem.row_count()) {}
+
+  /// Around the λ that was gathered.
+  Measure begin() {
+    measure = best_ = body_.measure(problem_);
+    least_ = centre_ = body_.error();
+    if (epsilon == 0) epsilon = measure.residual > 1e-2 ? 1e-5 : 1e-7;  // a warm start needs no care
+    return measure;
+  }
+
+  /// Until λ(u) meets the tolerance by the bodies' own velocities: true. False: stalled, or out of time.
+  bool run() {
+    while (has_time()) {
+      const int before = factorizations;
+      const bool is_well = descend();
+      note();
+      if (is_done(measure)) return true;
+      if (!is_well || !(body_.error() < 1.5 * centre_)) {
+        epsilon = std::min(20 * epsilon, 1.0);
+        return false;
+      }
+      body_.recentre();
+      shrink(factorizations - before);
+      centre_ = body_.error();
+    }
+    return false;
+  }
+
+  /// The rows take λ(u); the measure by W itself tells whether it is one.
+  bool is_met() {
+    body_.hand_over(
+        problem_, [](const auto& c) -> const auto& { return c.lambda; });
+    measure = problem_.measure();
+    return is_done(measure);
+  }
+  /// The rows take the λ of the smallest measured error.
+  void give_best() {
+    body_.hand_over(
+        problem_, [](const auto& c) -> const auto& { return c.best; });
+  }
+
+  /// Begins anew from the λ that the rows have; false when nothing can be begun from there.
+  bool restart() {
+    if (!body_.restart(problem_)) return false;
+    measure = body_.measure(problem_);
+    note();
+    centre_ = body_.error();
+    return true;
+  }
+
+  bool has_time() {
+    if (std::max(factorizations, rounds_ - 1) >= solver_.max_iterations) return false;
+    if (factorizations >= std::max(1, solver_.min_iterations))
+      is_late_ = is_late_ || problem_.is_out_of_time();
+    return !is_late_;
+  }
+  bool is_late() const { return is_late_; }
+  Problem& problem() const { return problem_; }
+  int rows() const { return rows_; }
+  bool is_done(const Measure& m) const {
+    return is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
+  }
+
+  int factorizations = 0, sweeps = 0;  ///< sweeps: what the observer is told beside them
+  Measure measure{};                   ///< of the last λ
+  double epsilon = 0;
+
+ private:
+  /// Newton's method around one λ̂, until F has fallen by 1e4 or λ(u) is good enough; false when it stalls.
+  bool descend() {
+    ++rounds_;
+    double size = body_.evaluate(problem_, epsilon, 0);
+    body_.close_what_touches(problem_, epsilon, body_.error());
+    const double first = size;
+    for (int step = 0; step < 8 && has_time(); ++step) {
+      if (!(size > 0)) break;
+      if (!body_.find_direction()) return false;
+      ++factorizations;
+      const double before = size;
+      body_.advance(search_line(size));
+      measure = body_.measure(problem_);
+      problem_.tell(sweeps + factorizations, measure);
+      if (is_done(measure) || size < 1e-4 * first) break;
+      if (!(size <= 0.99 * before)) return false;
+    }
+    measure = body_.measure(problem_);
+    return std::isfinite(size);
+  }
+
+  /// ε for the next λ̂, after so many factorizations for the last. Where one was enough and yet λ has hardly
+  /// come nearer, impulses go through what is light to what is heavy, and by 1/(1 + ε r) of their way, r the
+  /// ratio of the masses: the error goes by ε/(1/r + ε) a time, and ε is made for 2e-4 of it.
+  void shrink(int spent) {
+    is_slow_ = is_slow_ || (spent == 1 && body_.error() > 0.5 * centre_);
+    if (is_slow_)
+      epsilon = std::clamp(2e-4 * centre_ / std::max(body_.error(), 1e-300) * epsilon, 1e-12, epsilon);
+    else
+      epsilon = std::max(0.01 * epsilon, 1e-10);
+  }
+
+  void note() {
+    if (!(body_.error() < least_)) return;
+    least_ = body_.error();
+    best_ = measure;
+    body_.keep();
+  }
+
+  /// Halves the step until the size of F has fallen by a thousandth of it, else takes the best; leaves F
+  /// evaluated there.
+  double search_line(double& size) {
+    double best = 0, least = std::numeric_limits<double>::infinity(), fraction = 1;
+    for (int halving = 0; halving < 14; ++halving, fraction *= 0.5) {
+      const double trial = body_.evaluate(problem_, epsilon, fraction);
+      if (trial <= (1 - 1e-3 * fraction) * size) {
+        size = trial;
+        return fraction;
+      }
+      if (trial < least) least = trial, best = fraction;
+    }
+    size = body_.evaluate(problem_, epsilon, best);
+    return best;
+  }
+
+  const Solver& solver_;
+  Problem& problem_;
+  Body& body_;
+  int rows_;
+  Measure best_{};
+  double least_ = 0, centre_ = 0;  ///< the errors of the best λ and of λ̂
+  int rounds_ = 0;  ///< λ̂ so far: where F is nothing at once there is no factorization to count
+  bool is_slow_ = false, is_late_ = false;
+};
+
+}  // namespace delassus::inner
