@@ -15,6 +15,16 @@ TEST_CASE("a warm step of a standing stack with a pendulum beside it allocates n
   REQUIRE(allocations_of(loop, 100, 1000) == 0);
 }
 
+TEST_CASE("a warm step that the default solver ends by Newton's method allocates nothing") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+  auto& set = rigid_bodies(loop);
+  add_stack(set, 10, Box{1, 1, 1});
+  set.add({.position = {0, 0, 10.5}, .mass = 1e3, .shape = Box{1, 1, 1}});
+  REQUIRE(allocations_of(loop, 100, 300) == 0);
+  REQUIRE(loop.island_reports().size() == 1);
+  REQUIRE(loop.island_reports()[0].factorizations > 0);
+}
+
 TEST_CASE("a warm step of a chain that lies on the ground allocates nothing under the direct path") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}, DirectGaussSeidel{}};
   auto& set = rigid_bodies(loop);
