@@ -88,7 +88,7 @@ TEST_CASE("the problem of a loop's step can be written, and is solved as in the 
   auto copy = problem;
   for (auto& x : copy.rows.template pool<0>().lambda) x.setZero();
   for (auto& x : p.rows.pool<0>().lambda) x.setZero();
-  const AcceleratedGaussSeidel solver{.tolerance = 1e-8, .max_iterations = 100000};
+  const AcceleratedSweeps solver{.tolerance = 1e-8, .max_iterations = 100000};
   const SolveReport a = solve(copy, solver), b = solve(p, solver);
   REQUIRE(a.status == Status::converged);
   REQUIRE(a.sweeps == b.sweeps);

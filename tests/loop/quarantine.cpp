@@ -89,7 +89,7 @@ TEST_CASE("a free body with a force that is not finite stays where it was, alone
 
 TEST_CASE("each island has its own sweeps and its own status") {
   auto loop = AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
-                            AcceleratedGaussSeidel{.max_iterations = 30}};
+                            AcceleratedSweeps{.max_iterations = 30}};
   auto& set = rigid_bodies(loop);
   set.add_fixed(HalfSpace{});
   set.add({.position = {-9, 0, 0.5}, .mass = 1.0, .shape = Sphere{0.5}});

@@ -43,7 +43,7 @@ auto arm(Solver solver) {
 TEST_CASE(
     "Newton's method moves an arm with limits, a motor and a drive as tight sweeps do, without a sweep") {
   auto newton = arm(ProximalNewton{.tolerance = 1e-10});
-  auto swept = arm(AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 100000});
+  auto swept = arm(AcceleratedSweeps{.tolerance = 1e-10, .max_iterations = 100000});
   int sweeps = 0, without = 0, unconverged = 0, pure = 0;
   double apart = 0;
   for (int n = 0; n < 60; ++n) {
