@@ -3,6 +3,7 @@
 #include <delassus/bodies/elasticity/linear.hpp>
 #include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
+#include <delassus/io/checkpoint.hpp>
 #include <delassus/loop/bdf2.hpp>
 #include <delassus/loop/newmark.hpp>
 
@@ -129,4 +130,25 @@ TEST_CASE("impossible numbers of Newmark's method are refused") {
                     Catch::Contains("Newmark: beta 0.2 must be in [gamma/2, 1]"));
   CHECK_THROWS_WITH((AnimationLoop{World{Particles{}}, Bdf2{.max_iterations = 0}}),
                     Catch::Contains("Bdf2: max_iterations 0 must be > 0"));
+}
+
+// A step with a force that is no number is not taken; what a checkpoint leaves out would be what memory holds.
+TEST_CASE("a point that is placed begins anew, after a bad step and after a checkpoint too") {
+  auto [loop, mass] = oscillator::make(Bdf2{}, oscillator::omega);
+  auto [hurt, same_mass] = oscillator::make(Bdf2{}, oscillator::omega);
+  const auto put = [](auto& each, const auto& point) {
+    bodies<Particles>(each.world()).place(point, {2, 0, 0});
+    each.step(0.01);
+    return bodies<Particles>(each.world()).position(point);
+  };
+  for (int n = 0; n < 20; ++n) loop.step(0.01), hurt.step(0.01);
+  const auto kept = checkpoint(loop);
+  bodies<Particles>(hurt.world()).apply_force(same_mass, {std::nan(""), 0, 0});
+  CHECK(hurt.step(0.01).status == Status::quarantined);
+  const Vec3 anew = put(loop, mass);
+  CHECK(put(hurt, same_mass) == anew);
+  CHECK(anew.x() < 2);
+  auto [again, other_mass] = oscillator::make(Bdf2{}, oscillator::omega);
+  restore(again, kept);
+  CHECK(put(again, other_mass) == anew);
 }

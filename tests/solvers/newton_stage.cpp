@@ -45,6 +45,14 @@ TEST_CASE("thirty boxes, the top one of 100 kg, stand under the default solver a
   CHECK(run(swept, 3).unconverged == 3);
 }
 
+TEST_CASE("an answer of the stage does not end a solve before the sweeps that are asked at least") {
+  auto loop = leaning_stack(10, 100, AcceleratedGaussSeidel{.min_iterations = 150});
+  const StepReport report = loop.step(1.0 / 60);
+  CHECK(report.status == Status::converged);
+  CHECK(report.sweeps >= 150);
+  CHECK(loop.island_reports()[0].factorizations > 0);
+}
+
 // Residuals of 1e-12 of velocities of order 1 m/s, and the error constant of the problem, for which 1e-9 leaves a thousand.
 TEST_CASE("the stage is named, and what it finds is what Newton's method finds alone") {
   auto loop = leaning_stack(10, 100, AcceleratedSweeps{.max_iterations = 1});

@@ -108,7 +108,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       report.measure.floor = 64 * std::numeric_limits<T>::epsilon() * load_;
       if (size <= integrator.tolerance)
         report.status = Status::converged;
-      else if (size <= report.measure.floor || (size > 0.5 * last && size <= 1e-7))
+      else if ((size <= report.measure.floor && std::isfinite(load_)) || (size > 0.5 * last && size <= 1e-7))
         report.status = Status::stalled;
       // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
       const bool is_lost = !(size <= 1e12 * first) || (!is_damped && k == most_undamped);

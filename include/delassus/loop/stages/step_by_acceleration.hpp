@@ -37,7 +37,7 @@ struct StepByAcceleration {
   std::vector<Velocity> left_x, left_v;     ///< x and v as the last step left them
   std::vector<std::uint32_t> generation;    ///< of the point whose past this is
 
-  void memory(auto& archive) { archive(past, left_x, left_v, generation); }
+  void memory(auto& archive) { archive(past, moved, left_x, left_v, generation); }
 
   /// Leaves (x₊ − x)/h in v_next and v₊ in v_free; x and v as they were.
   template <class I>
@@ -77,7 +77,11 @@ struct StepByAcceleration {
     }
     set.velocity() = v;
     for (const Index b : set.active()) {
-      if (!set.moves(b) || !is_finite(set.v_next[b]) || !is_finite(set.v_free[b])) continue;
+      if (!set.moves(b)) continue;
+      if (!is_finite(set.v_next[b]) || !is_finite(set.v_free[b])) {
+        moved[b].setZero();
+        continue;
+      }
       past[b] = rule.keep(past[b], next[b]);
       left_x[b] = set.pose(b).position.template cast<T>() + moved[b];
       left_v[b] = set.v_free[b];

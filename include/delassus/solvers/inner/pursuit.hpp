@@ -64,7 +64,7 @@ class Pursuit {
   void take(const Measure& measure, int factorizations) {
     report_.factorizations += factorizations;
     report_.measure = measure;
-    is_met_ = is_done(measure);
+    is_met_ = report_.sweeps >= solver_.min_iterations && is_done(measure);
     if (!is_met_) keep_if_best();
   }
   /// The stage goes on, or another name is in it for a while: its patience does not begin anew.
