@@ -212,7 +212,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::correct() {
   if constexpr (has_constraints) {
     if constexpr (Work::predicts) take_change(work_.rows, work_.predicted);
-    delassus::correct(world(), work_.rows, work_.W, scratch_, work_.islands, work_.is_sick);
+    delassus::correct(world(), work_.rows, work_.W, scratch_, work_.islands, work_.reports, work_.is_sick);
     if constexpr (Work::predicts) give_back_total(work_.rows, work_.predicted);
     if constexpr (Work::has_dormant)
       work_.activity.watch(part<role::Activity>(), world(), work_.rows, work_.islands, work_.reports, h_);

@@ -3,9 +3,13 @@
 
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace delassus {
@@ -50,14 +54,19 @@ void drop_rounding(V& v_next, const V& v_free) {
 
 }  // namespace inner
 
-/// v_next = v_free + A⁻¹ Hᵀ λ. The velocities of an island with one that is not finite are all made so: `advance` leaves
-/// such bodies where they were, and no other island notices.
+/// v_next = v_free + A⁻¹ Hᵀ λ. The velocities of an island with one that is not finite, or whose solver met what is no
+/// number, are all made so: `advance` leaves such bodies where they were, and no other island notices.
 template <class World, class Rows, class Operator, class Scratch, int pools>
 void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, const Islands<pools>& islands,
-             std::vector<char>& is_sick) {
+             std::span<const SolveReport> reports, std::vector<char>& is_sick) {
   is_sick.assign(islands.count(), 0);
   Index first = 0;
   bool any = false;
+  for (std::size_t k = 0; k < std::min(reports.size(), is_sick.size()); ++k)
+    if (reports[k].status == Status::quarantined) {
+      is_sick[k] = 1;
+      any = true;
+    }
   world.each([&](auto& set, auto s) {
     for (const Index b : set.active()) set.v_next[b] = set.v_free[b];
     add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
