@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -25,6 +26,17 @@ struct PointMotion {
 
 namespace inner {
 
+/// How x₊ and v₊ of a point follow from y = v̇₊, v and what is kept of its past.
+template <class R, class V>
+concept AccelerationRule = requires(const R rule, const V& v, const PastMotion<V>& past, const V& y) {
+  { rule.velocity_share() } -> std::same_as<double>;  // ∂v₊/∂y, s
+  { rule.place_share() } -> std::same_as<double>;     // ∂x₊/∂y, s²
+  { rule.begin(y) } -> std::same_as<PastMotion<V>>;   // of a point that has none
+  { rule.guess(past) } -> std::same_as<V>;            // of y
+  { rule.move(v, past, y) } -> std::same_as<PointMotion<V>>;
+  { rule.keep(past, y) } -> std::same_as<PastMotion<V>>;  // for the next step
+};
+
 /// M y = f(x₊, v₊) for y = v̇₊, where the integrator's `rule(h)` says how x₊ and v₊ follow from it: by
 /// Newton's method with A = M + D ∂v₊/∂y + K ∂x₊/∂y at x₊. A point that was not there in the last step, or
 /// was placed or given another velocity since, begins with the past of a = f/M.
@@ -42,7 +54,7 @@ struct StepByAcceleration {
   /// Leaves (x₊ − x)/h in v_next and v₊ in v_free; x and v as they were.
   template <class I>
   Status solve(Set& set, const I& integrator, double h, int& factorizations) {
-    const auto rule = integrator.rule(h);
+    const AccelerationRule<Velocity> auto rule = integrator.rule(h);
     begin(set, rule);
     for (const Index b : set.active()) next[b] = rule.guess(past[b]);
     set.shift(0);  // sets x aside
@@ -90,7 +102,7 @@ struct StepByAcceleration {
   }
 
  private:
-  void begin(Set& set, const auto& rule) {
+  void begin(Set& set, const AccelerationRule<Velocity> auto& rule) {
     const std::size_t n = std::size_t(set.blocks()), before = generation.size();
     for (auto* array : {&next, &moved, &p, &left_x, &left_v}) array->resize(n);
     past.resize(n);
@@ -131,7 +143,7 @@ struct StepByAcceleration {
     }
   }
   /// x ← x₊ and v ← v₊ of the present y.
-  void place(Set& set, const auto& rule) {
+  void place(Set& set, const AccelerationRule<Velocity> auto& rule) {
     set.restore();
     for (const Index b : set.active()) {
       set.velocity()[b] = v[b];
