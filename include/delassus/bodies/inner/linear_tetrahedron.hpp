@@ -110,23 +110,15 @@ struct LinearTetrahedron {
     Points point;
     LaneVector gradient[4], force[4];
 
-    /// The blocks (0, 0) … (3, 3), then (0, 1), (0, 2), … (2, 3), 9 numbers each by columns. A row of
-    /// blocks sums to nothing, so that six are made by the material and the others by subtraction.
-    void stiffness(Lanes (&to)[10][9]) const {
+    struct Stiffness {
+      const Points& point;
       typename Points::Pulled b[4];
-      for (int a = 1; a < 4; ++a) b[a] = point.pull(gradient[a]);
-      LaneMatrix K[4][4], first{};
-      for (int i = 1; i < 4; ++i)
-        for (int j = i; j < 4; ++j) K[i][j] = point.block(b[i], b[j]);
-      for (int j = 1; j < 4; ++j) {
-        K[0][j] = {};
-        for (int i = 1; i < 4; ++i) subtract(K[0][j], i <= j ? K[i][j] : transposed(K[j][i]));
-        subtract(first, K[0][j]);
-      }
-      K[0][0] = first;
-      for (int a = 0; a < 4; ++a) std::memcpy(to[a], &K[a][a], sizeof first);
-      for (int a = 0, k = 4; a < 4; ++a)
-        for (int j = a + 1; j < 4; ++j, ++k) std::memcpy(to[k], &K[a][j], sizeof first);
+      LaneMatrix block(int i, int j) const { return point.block(b[i], b[j]); }
+    };
+    Stiffness stiffness() const {
+      return {point,
+              {point.pull(gradient[0]), point.pull(gradient[1]), point.pull(gradient[2]),
+               point.pull(gradient[3])}};
     }
   };
   /// `numbers`: what `enter_lane` wrote; `places`: coordinate k of corner a at (3 a + k) lane_count.
@@ -147,6 +139,7 @@ struct LinearTetrahedron {
     LaneState<decltype(material.at(F))> state{material.at(F), {}, {}};
     state.point.integrate(load_lanes(numbers + 12 * lane_count));
     const LaneMatrix& P = state.point.stress;
+    state.gradient[0] = load(numbers, 0);
     for (int k = 0; k < 3; ++k) state.force[0][k] = all_lanes(0);
     for (int a = 1; a < 4; ++a) {
       const LaneVector& g = state.gradient[a] = load(numbers, a);
