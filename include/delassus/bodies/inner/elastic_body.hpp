@@ -56,7 +56,7 @@ class ElasticBody {
     Index found = -1;
     double best = -1e-6;
     for (Index e = 0; e < Index(elements_.size()); ++e) {
-      Vec3 at;
+      Vec3 at = Vec3::Zero();
       const double inside = E::locate(corners(e, x), point, at);
       if (!(inside > best)) continue;
       best = inside;
