@@ -42,7 +42,7 @@ struct BentBox {
     const Lame lame(material.young, material.poisson);
     R.resize(mesh.tetrahedra.size());
     for (Index e = 0; e < Index(R.size()); ++e) {
-      const inner::LinearTetrahedron t(mesh, e, lame);
+      const auto t = inner::LinearTetrahedron(mesh, e, lame).points[0];
       const auto at = Linear{.young = material.young, .poisson = material.poisson}.at(Mat3::Identity());
       K.emplace_back();
       for (int a = 0; a < 4; ++a)
@@ -55,7 +55,8 @@ struct BentBox {
     for (Index e = 0; e < Index(R.size()); ++e) {
       inner::LinearTetrahedron::Corners x;
       for (int a = 0; a < 4; ++a) x[a] = set.pose(mesh.tetrahedra[e][a]).position;
-      const SingularValues F = singular_values(inner::LinearTetrahedron(mesh, e, lame).deformation(x));
+      const SingularValues F =
+          singular_values(inner::LinearTetrahedron(mesh, e, lame).points[0].deformation(x));
       R[e] = F.U * F.V.transpose();
     }
   }

@@ -189,6 +189,37 @@ TEST_CASE("a mesh file that cannot be used is refused with its line and the reas
                 "two nodes have the tag 30"));
 }
 
+TEST_CASE("tetrahedra with nodes on their edges are read from both kinds of files, each with its order") {
+  const std::string path = "mesh_file_ten_nodes.msh";
+  const QuadraticTetrahedralMesh one =
+      quadratic({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, {{0, 1, 2, 3}}});
+  std::string nodes, points;
+  for (std::size_t k = 0; k < 10; ++k) {
+    const Vec3& p = one.points[std::size_t(one.tetrahedra[0][k])];
+    const std::string place =
+        std::to_string(int(p[0])) + " " + std::to_string(int(p[1])) + " " + std::to_string(int(p[2])) + "\n";
+    nodes += std::to_string(k + 1) + " " + place;
+    points += place;
+  }
+  const std::string
+      // Gmsh's ninth node is on the edge (2, 3), its tenth on (1, 3); VTK's the other way round.
+      gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n" + nodes +
+             "$EndNodes\n$Elements\n1\n1 11 0 1 2 3 4 5 6 7 8 10 9\n$EndElements\n",
+      vtk = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 double\n" +
+            points + "CELLS 1 11\n10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\n";
+  for (const std::string& text : {gmsh, vtk}) {
+    std::ofstream(path) << text;
+    const QuadraticTetrahedralMesh mesh = read_quadratic_tetrahedral_mesh(path);
+    check_mesh(mesh, "mesh");
+    REQUIRE(mesh.tetrahedra.size() == 1);
+    for (std::size_t k = 0; k < 10; ++k)
+      CHECK(mesh.points[std::size_t(mesh.tetrahedra[0][k])] == one.points[std::size_t(one.tetrahedra[0][k])]);
+    CHECK_THROWS_WITH(read_tetrahedral_mesh(path),
+                      Catch::Contains("ten nodes") || Catch::Contains("no tetra"));
+  }
+  std::remove(path.c_str());
+}
+
 TEST_CASE("hexahedra are read from both kinds of files, the tetrahedra beside them are left out") {
   const std::string path = "mesh_file_hexahedra.msh",
                     points = "0 0 0  1 0 0  1 1 0  0 1 0  0 0 2  1 0 2  1 1 2  0 1 2  5 5 5\n";

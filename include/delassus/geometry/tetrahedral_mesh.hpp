@@ -21,6 +21,7 @@ struct TetrahedralMesh {
   std::vector<std::array<Index, 4>> tetrahedra;
 
   static constexpr const char* cell = "tetrahedron";
+  static constexpr bool has_shares = true;  ///< places in an element are the shares of its corners 1, 2, 3
   const auto& cells() const { return tetrahedra; }
   auto& cells() { return tetrahedra; }
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/geometry/hexahedral_mesh.hpp>
+#include <delassus/geometry/quadratic_tetrahedral_mesh.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 #include <delassus/io/inner/text_reader.hpp>
 
@@ -20,14 +21,19 @@
 namespace delassus {
 namespace inner {
 
-/// What the cells of a mesh are to Gmsh and to VTK, and how many points they have. Both name the points of a
-/// hexahedron in our order.
+/// What the cells of a mesh are to Gmsh and to VTK, and how many points they have. Both name the points in
+/// our order, but for the last two of ten, which Gmsh exchanges.
 template <class Mesh>
 struct CellType;
 template <>
 struct CellType<TetrahedralMesh> {
   static constexpr int gmsh = 4, vtk = 10, points = 4;
   static constexpr const char* count = "four";
+};
+template <>
+struct CellType<QuadraticTetrahedralMesh> {
+  static constexpr int gmsh = 11, vtk = 24, points = 10;
+  static constexpr const char* count = "ten";
 };
 template <>
 struct CellType<HexahedralMesh> {
@@ -142,7 +148,11 @@ class GmshReader {
   /// How many nodes an element of Gmsh's type 1, 2, … has.
   int nodes_of(int type) const {
     constexpr int count[] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13};
-    if (type == 11) in_.refuse_here("the tetrahedra have ten nodes; save the mesh with elements of order 1");
+    if (type == 11 && CellType<Mesh>::points == 4)
+      in_.refuse_here(
+          "the tetrahedra have ten nodes; read them by read_quadratic_tetrahedral_mesh, or save the mesh "
+          "with "
+          "elements of order 1");
     if (CellType<Mesh>::points == 8 && (type == 12 || type == 17))
       in_.refuse_here("the hexahedra have more than eight nodes; save the mesh with elements of order 1");
     if (type < 1 || type >= int(std::size(count)))
@@ -157,6 +167,7 @@ class GmshReader {
     }
     auto& t = mesh_.cells().emplace_back();
     for (Index& i : t) i = node();
+    if (CellType<Mesh>::points == 10) std::swap(*(t.end() - 2), *(t.end() - 1));
   }
 
   void elements() {
@@ -283,6 +294,11 @@ inline TetrahedralMesh parse_vtk(std::string_view text, const std::string& path)
 /// what is inside out.
 inline TetrahedralMesh read_tetrahedral_mesh(const std::string& path) {
   return inner::read_mesh<TetrahedralMesh>(path);
+}
+
+/// The tetrahedra of ten nodes of such a file (type 11 of Gmsh, 24 of VTK), other elements left out.
+inline QuadraticTetrahedralMesh read_quadratic_tetrahedral_mesh(const std::string& path) {
+  return inner::read_mesh<QuadraticTetrahedralMesh>(path);
 }
 
 /// The hexahedra of eight nodes of such a file (type 5 of Gmsh, 12 of VTK), other elements left out.

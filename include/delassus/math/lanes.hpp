@@ -42,17 +42,6 @@ inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 inline LaneVector times(const Lanes& s, const LaneVector& a) { return {{s * a[0], s * a[1], s * a[2]}}; }
-inline LaneMatrix transposed(const LaneMatrix& A) {
-  LaneMatrix B;
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < 3; ++i) B(i, k) = A(k, i);
-  return B;
-}
-/// A −= B.
-inline void subtract(LaneMatrix& A, const LaneMatrix& B) {
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < 3; ++i) A(i, k) -= B(i, k);
-}
 /// A Bᵀ.
 inline LaneMatrix times_transposed(const LaneMatrix& A, const LaneMatrix& B) {
   LaneMatrix C;

@@ -29,7 +29,8 @@ struct CorotationalLanes {
     LaneMatrix lever;
   };
   Pulled pull(const LaneVector& g) const {
-    Pulled p{.plain = g};
+    Pulled p;
+    p.plain = g;
     for (int i = 0; i < 3; ++i) p.turned[i] = R(i, 0) * g[0] + R(i, 1) * g[1] + R(i, 2) * g[2];
     p.stiff = times(lambda, p.turned);
     for (int k = 0; k < 3; ++k) p.lever.column[k] = cross(p.turned, turn.column[k]);

@@ -56,7 +56,7 @@ class ElasticBody {
     Index found = -1;
     double best = -1e-6;
     for (Index e = 0; e < Index(elements_.size()); ++e) {
-      Vec3 at;
+      Vec3 at = Vec3::Zero();
       const double inside = E::locate(corners(e, x), point, at);
       if (!(inside > best)) continue;
       best = inside;
@@ -79,14 +79,13 @@ class ElasticBody {
   void assemble(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
                 const std::vector<T>& inverse_mass) {
     const bool is_implicit = scale.stiffness != 0;
-    const bool keeps_stiffness = has_constant_stiffness && has_stiffness_;
-    if (is_implicit && !keeps_stiffness) matrix_.set_zero();
+    const bool makes_stiffness = is_implicit && !(has_constant_stiffness && has_stiffness_);
     for (Velocity& f : force_) f.setZero();
     Index e = 0;
     if constexpr (LaneElement<E, M>)
-      for (; e + lane_count <= Index(elements_.size()); e += lane_count)
-        add_lanes(e, x, is_implicit && !keeps_stiffness);
-    for (; e < Index(elements_.size()); ++e) add_element(e, x, is_implicit && !keeps_stiffness);
+      for (; e < batched(); e += lane_count) add_lanes(e, x, makes_stiffness);
+    for (; e < Index(elements_.size()); ++e) add_element(e, x, makes_stiffness);
+    if (makes_stiffness) matrix_.add_diagonal();
     has_stiffness_ = has_stiffness_ || is_implicit;
     if (!is_implicit) return;
     const bool is_same = is_assembled_for(scale, mass, inverse_mass);
@@ -154,10 +153,12 @@ class ElasticBody {
     work_ = product_ = force_;
     mass_.assign(n, T(0));
     is_held_.assign(n, 0);
-    if (n > 0) matrix_.analyse(Index(n), nodes_, mesh_.points);
+    if (n > 0) matrix_.analyse(Index(n), nodes_, batched(), mesh_.points);
     has_stiffness_ = is_factored_ = false;
   }
 
+  /// How many elements are taken lane_count at a time.
+  Index batched() const { return LaneElement<E, M> ? Index(elements_.size()) / lane_count * lane_count : 0; }
   /// The corners of each element by ascending node, and what its lane is made of.
   void order_corners() {
     const std::size_t n = elements_.size();
@@ -188,10 +189,9 @@ class ElasticBody {
   }
   void add_stiffness(Index e, const auto& K) {
     const auto& order = order_[e];
-    for (int a = 0; a < E::nodes; ++a) matrix_.add(e, a, K.block(order[a], order[a]));
-    for (int k = 0; k < int(pairs_of_nodes<E::nodes>.size()); ++k) {
+    for (int k = 0; k < Matrix::pairs_each; ++k) {
       const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
-      matrix_.add(e, E::nodes + k, K.block(order[i], order[j]));
+      matrix_.add(e, k, K.block(order[i], order[j]));
     }
   }
 
@@ -210,9 +210,12 @@ class ElasticBody {
         for (int k = 0; k < 3; ++k) force_[nodes_[e + l][a]][k] += T(numbers[k * lane_count + l]);
     }
     if (!with_stiffness) return;
-    Lanes K[Matrix::blocks_each][9];
-    state.stiffness(K);
-    for (int k = 0; k < Matrix::blocks_each; ++k) matrix_.add_lanes(e, k, K[k]);
+    const auto K = state.stiffness();
+#pragma GCC unroll 6  // a block's numbers stay in registers from the material to their places
+    for (int k = 0; k < Matrix::pairs_each; ++k) {
+      const auto& [i, j] = pairs_of_nodes<E::nodes>[k];
+      matrix_.add_lanes(e, k, K.block(i, j));
+    }
   }
 
   /// Whether A is the one there was; takes over the masses.

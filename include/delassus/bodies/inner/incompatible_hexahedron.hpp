@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/elasticity/material.hpp>
+#include <delassus/bodies/inner/find_place.hpp>
 #include <delassus/bodies/inner/hexahedron_modes.hpp>
 #include <delassus/math/singular_values.hpp>
 
@@ -38,22 +39,10 @@ class IncompatibleHexahedron {
   static double share(const HexahedralMesh& mesh, Index e, int k) { return corner_share(mesh, e, k); }
   /// ξ of a point by Newton's method, and how far inside it is as a share of the element.
   static double locate(const Corners& x, const Vec3& point, Vec3& local) {
-    Vec3 low = x[0], high = x[0];
-    for (const Vec3& p : x) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    const double slack = 1e-3 * (high - low).norm();
-    for (int i = 0; i < 3; ++i)
-      if (!(point[i] >= low[i] - slack && point[i] <= high[i] + slack)) return -1;
+    const auto slope = [](const EightPoints& at, const Vec3& xi) { return jacobian(at, xi); };
     Vec3 xi = Vec3::Zero();
-    double step = 1;
-    for (int n = 0; n < 30 && step > 1e-15; ++n) {
-      Vec3 rest = point;
-      for (int a = 0; a < nodes; ++a) rest -= trilinear(a, xi) * x[a];
-      const Vec3 by = inverse(jacobian(x, xi)) * rest;
-      xi += by;
-      step = by.norm();
-    }
+    if (!find_place(x, point, trilinear, slope, xi)) return -1;
     local = xi;
-    if (!(step < 1e-9)) return -1;
     return std::min({1 - std::abs(xi[0]), 1 - std::abs(xi[1]), 1 - std::abs(xi[2])}) / 2;
   }
 

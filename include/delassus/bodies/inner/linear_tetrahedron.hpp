@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/elasticity/material.hpp>
+#include <delassus/bodies/inner/gradient_element.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 #include <delassus/math/lanes.hpp>
 
@@ -11,26 +12,22 @@
 
 namespace delassus::inner {
 
-/// A tetrahedron with linear shape functions N_a: gradients ∇N_a at rest (1/m), volume at rest (m³).
-///
-///   F = Σ_a x_a ∇N_aᵀ,   f_a = −V P ∇N_a,   K_ab = V ∇N_a · ∂P/∂F · ∇N_b.
-struct LinearTetrahedron {
+/// A tetrahedron with linear shape functions: their gradients are the same everywhere, so that one point is
+/// the whole rule.
+struct LinearTetrahedron : GradientElement<4, 1> {
   using Mesh = TetrahedralMesh;
-  static constexpr int nodes = 4;
-  using Corners = std::array<Vec3, nodes>;
-
-  std::array<Vec3, nodes> gradient;
-  double volume;
 
   LinearTetrahedron() = default;
-  LinearTetrahedron(const TetrahedralMesh& mesh, Index e, const Lame&) : volume(delassus::volume(mesh, e)) {
+  LinearTetrahedron(const TetrahedralMesh& mesh, Index e, const Lame&) {
     const auto& t = mesh.tetrahedra[e];
     const Vec3& o = mesh.points[t[0]];
     const Mat3 edges =
         columns(Vec3(mesh.points[t[1]] - o), Vec3(mesh.points[t[2]] - o), Vec3(mesh.points[t[3]] - o));
     const Mat3 rows = inverse(edges);
+    auto& [gradient, volume] = points[0];
     for (int a = 1; a < 4; ++a) gradient[a] = Vec3(rows(a - 1, 0), rows(a - 1, 1), rows(a - 1, 2));
     gradient[0] = -(gradient[1] + gradient[2] + gradient[3]);
+    volume = delassus::volume(mesh, e);
   }
 
   /// How much of corner k a point is; `local` holds those of 1, 2, 3.
@@ -48,61 +45,13 @@ struct LinearTetrahedron {
     return std::min({1 - w[0] - w[1] - w[2], w[0], w[1], w[2]});
   }
 
-  Mat3 deformation(const Corners& x) const {
-    Mat3 F = Mat3::Zero();
-    for (int a = 1; a < 4; ++a) {
-      const Vec3 edge = x[a] - x[0], &b = gradient[a];
-      for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
-    }
-    return F;
-  }
-
-  /// J.
-  double energy(const auto& material, const Corners& x) const {
-    return volume * material.at(deformation(x)).energy();
-  }
-
-  /// K by pairs of corners.
-  template <class Point>
-  struct Stiffness {
-    const Point& point;
-    double volume;
-    Corners b;
-    Mat3 block(int i, int j) const { return volume * point.block(b[i], b[j]); }
-  };
-  /// The element where its corners are at x: forces (N) on them.
-  template <class Point>
-  struct State {
-    const LinearTetrahedron& element;
-    Point point;
-    Corners force;
-    Stiffness<Point> stiffness() const {
-      Stiffness<Point> K{point, element.volume, {}};
-      for (int a = 0; a < 4; ++a) K.b[a] = point.pull(element.gradient[a]);
-      return K;
-    }
-  };
-  template <ElasticMaterial M>
-  auto at(const M& material, const Corners& x) const {
-    State<decltype(material.at(Mat3()))> state{*this, material.at(deformation(x)), {}};
-    const Mat3 pull = -volume * Mat3(state.point.stress());
-    Vec3 rest = Vec3::Zero();
-    for (int a = 1; a < 4; ++a) {
-      state.force[a] = pull * gradient[a];
-      rest += state.force[a];
-    }
-    state.force[0] = -rest;
-    return state;
-  }
-
   /// What the lanes are made of: gradients and volumes of as many elements as there are lanes.
   static constexpr int lane_numbers = 13;
   /// Number k of the corners named in `corner` at to[k lane_count].
   void enter_lane(const std::array<int, nodes>& corner, double* to) const {
     for (int a = 0; a < 4; ++a)
-      for (int k = 0; k < 3; ++k) to[(3 * a + k) * lane_count] = gradient[corner[a]][k];
-    to[12 * lane_count] = volume;
+      for (int k = 0; k < 3; ++k) to[(3 * a + k) * lane_count] = points[0].gradient[corner[a]][k];
+    to[12 * lane_count] = points[0].volume;
   }
   /// The elements of all lanes, where their corners are: forces (N) and K.
   template <class Points>
@@ -110,23 +59,15 @@ struct LinearTetrahedron {
     Points point;
     LaneVector gradient[4], force[4];
 
-    /// The blocks (0, 0) … (3, 3), then (0, 1), (0, 2), … (2, 3), 9 numbers each by columns. A row of
-    /// blocks sums to nothing, so that six are made by the material and the others by subtraction.
-    void stiffness(Lanes (&to)[10][9]) const {
+    struct Stiffness {
+      const Points& point;
       typename Points::Pulled b[4];
-      for (int a = 1; a < 4; ++a) b[a] = point.pull(gradient[a]);
-      LaneMatrix K[4][4], first{};
-      for (int i = 1; i < 4; ++i)
-        for (int j = i; j < 4; ++j) K[i][j] = point.block(b[i], b[j]);
-      for (int j = 1; j < 4; ++j) {
-        K[0][j] = {};
-        for (int i = 1; i < 4; ++i) subtract(K[0][j], i <= j ? K[i][j] : transposed(K[j][i]));
-        subtract(first, K[0][j]);
-      }
-      K[0][0] = first;
-      for (int a = 0; a < 4; ++a) std::memcpy(to[a], &K[a][a], sizeof first);
-      for (int a = 0, k = 4; a < 4; ++a)
-        for (int j = a + 1; j < 4; ++j, ++k) std::memcpy(to[k], &K[a][j], sizeof first);
+      LaneMatrix block(int i, int j) const { return point.block(b[i], b[j]); }
+    };
+    Stiffness stiffness() const {
+      return {point,
+              {point.pull(gradient[0]), point.pull(gradient[1]), point.pull(gradient[2]),
+               point.pull(gradient[3])}};
     }
   };
   /// `numbers`: what `enter_lane` wrote; `places`: coordinate k of corner a at (3 a + k) lane_count.
@@ -147,6 +88,7 @@ struct LinearTetrahedron {
     LaneState<decltype(material.at(F))> state{material.at(F), {}, {}};
     state.point.integrate(load_lanes(numbers + 12 * lane_count));
     const LaneMatrix& P = state.point.stress;
+    state.gradient[0] = load(numbers, 0);
     for (int k = 0; k < 3; ++k) state.force[0][k] = all_lanes(0);
     for (int a = 1; a < 4; ++a) {
       const LaneVector& g = state.gradient[a] = load(numbers, a);

@@ -23,17 +23,22 @@ inline constexpr auto pairs_of_nodes = [] {
   return pairs;
 }();
 
-/// Symmetric: the diagonal, and K_ij of the pairs i < j of elements of `corners` nodes, which every element
-/// names in ascending order. An element's blocks are those of its nodes, then those of its pairs; where each
-/// goes is looked up once.
+/// Symmetric: K_ij of the pairs i < j of elements of `corners` nodes, which every element names in ascending
+/// order; where each of its blocks goes is looked up once. No shift of all nodes strains, so that
+///
+///   K_ii = −Σ_j K_ij,
+///
+/// and elements say nothing of the diagonal. The numbers of a block but its last lie in one line of the
+/// cache.
 template <class T, int corners>
 class NodeMatrix {
  public:
   using Block = Mat<3, 3, T>;
   using Velocity = Vec<3, T>;
-  static constexpr int pairs_each = corners * (corners - 1) / 2, blocks_each = corners + pairs_each;
+  static constexpr int pairs_each = corners * (corners - 1) / 2;
 
-  void analyse(Index nodes, std::span<const std::array<Index, corners>> elements,
+  /// The first `batched` elements are going to be added lane_count at a time.
+  void analyse(Index nodes, std::span<const std::array<Index, corners>> elements, Index batched,
                std::span<const Vec3> positions) {
     pairs_.clear();
     for (const auto& t : elements)
@@ -42,41 +47,66 @@ class NodeMatrix {
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     places_.resize(elements.size());
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      for (int a = 0; a < corners; ++a) places_[e][a] = elements[e][a];
+    for (std::size_t e = 0; e < elements.size(); ++e)
       for (int k = 0; k < pairs_each; ++k)
-        places_[e][corners + k] =
-            nodes +
+        places_[e][k] =
             Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[e * pairs_each + k]) - pairs_.begin());
-    }
-    nodes_ = nodes;
-    blocks_.resize(nodes + pairs_.size());
+    mark_first(batched);
+    eights_.assign(pairs_.size(), {});
+    ninths_.assign(pairs_.size(), T(0));
+    diagonal_.assign(nodes, Block::Zero());
+    above_ = diagonal_;
     factor_.analyse(nodes, pairs_, positions);
   }
 
-  void set_zero() {
-    for (Block& b : blocks_) b.setZero();
+  /// Pair k of element e. All elements are added in ascending order, and what is there from the last time is
+  /// written over.
+  void add(Index e, int k, const Mat3& block) {
+    const Place at = place(e, k);
+    for (int i = 0; i < 8; ++i) eights_[at.index].e[i] = at.from[i] + T(block.data()[i]);
+    ninths_[at.index] = at.ninth + T(block.data()[8]);
   }
-  /// Block k of element e.
-  void add(Index e, int k, const Mat3& block) { blocks_[places_[e][k]] += block.template cast<T>(); }
-  /// Block k of the elements e, e + 1, … of all lanes, one number of each by columns; `block` is used up.
-  void add_lanes(Index e, int k, Lanes (&block)[9]) {
+  /// Pair k of the elements e, e + 1, … of all lanes.
+  void add_lanes(Index e, int k, const LaneMatrix& block) {
     double last[lane_count];
-    store_lanes(last, block[8]);
+    store_lanes(last, block(2, 2));
+    Lanes rows[8];
+    for (int i = 0; i < 8; ++i) rows[i] = block(i % 3, i / 3);
     for (int first = 0; first < 8; first += lane_count) {
-      transpose_lanes(&block[first]);
-      for (int l = 0; l < lane_count; ++l) add_to(numbers(e + l, k) + first, block[first + l]);
+      transpose_lanes(&rows[first]);
+      for (int l = 0; l < lane_count; ++l) {
+        const Place at = place(e + l, k);
+        add_to(eights_[at.index].e + first, at.from + first, rows[first + l]);
+      }
     }
-    for (int l = 0; l < lane_count; ++l) numbers(e + l, k)[8] += T(last[l]);
+    for (int l = 0; l < lane_count; ++l) {
+      const Place at = place(e + l, k);
+      ninths_[at.index] = at.ninth + T(last[l]);
+    }
+  }
+  /// K_ii, when all elements are in.
+  void add_diagonal() {
+    for (Block& B : above_) B.setZero();
+    std::size_t p = 0;
+    for (Index i = 0; i < Index(diagonal_.size()); ++i) {
+      Block sum = above_[i].transpose();
+      for (; p < pairs_.size() && pairs_[p].first == i; ++p) {
+        const Block K = block(p);
+        sum -= K;
+        above_[pairs_[p].second] -= K;
+      }
+      diagonal_[i] = T(0.5) * (sum + sum.transpose().eval());  // no more symmetric than its rounding
+    }
   }
 
   /// y += s K x.
   void add_product(T s, const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
-    for (Index i = 0; i < nodes_; ++i) y[i] += s * (blocks_[i] * x[i]);
-    for (std::size_t e = 0; e < pairs_.size(); ++e) {
-      const auto [i, j] = pairs_[e];
-      y[i] += s * (blocks_[nodes_ + e] * x[j]);
-      y[j] += s * (blocks_[nodes_ + e].transpose() * x[i]);
+    for (std::size_t i = 0; i < diagonal_.size(); ++i) y[i] += s * (diagonal_[i] * x[i]);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const auto [i, j] = pairs_[p];
+      const Block K = block(p);
+      y[i] += s * (K * x[j]);
+      y[j] += s * (K.transpose() * x[i]);
     }
   }
 
@@ -91,18 +121,18 @@ class NodeMatrix {
     using Other = typename F::Block;
     using S = typename Other::Scalar;
     factor.set_zero();
-    for (Index i = 0; i < nodes_; ++i) {
+    for (Index i = 0; i < Index(diagonal_.size()); ++i) {
       Block A = Block::Identity();
       if (!is_held[i]) {
-        A = stiffness_share * blocks_[i];
+        A = stiffness_share * diagonal_[i];
         for (int k = 0; k < 3; ++k) A(k, k) += mass_share * mass[i];
       }
       factor.add_diagonal(i, Other(A.template cast<S>()));
     }
-    for (std::size_t e = 0; e < pairs_.size(); ++e) {
-      const auto [i, j] = pairs_[e];
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const auto [i, j] = pairs_[p];
       if (!is_held[i] && !is_held[j])
-        factor.add_pair(i, j, Other((stiffness_share * blocks_[nodes_ + e]).template cast<S>()));
+        factor.add_pair(i, j, Other((stiffness_share * block(p)).template cast<S>()));
     }
   }
   /// Factors it; false where there is no factor.
@@ -115,18 +145,52 @@ class NodeMatrix {
   void compliance(std::span<const Index> nodes, std::span<T> C) const { factor_.compliance(nodes, C); }
 
  private:
-  T* numbers(Index e, int k) { return blocks_[places_[e][k]].data(); }
-  static void add_to(double* to, const Lanes& x) { store_lanes(to, load_lanes(to) + x); }
-  static void add_to(float* to, const Lanes& x) {
-    double from[lane_count];
-    store_lanes(from, x);
-    for (int i = 0; i < lane_count; ++i) to[i] += float(from[i]);
+  /// Places are kept as −1 − place where no element adds to it before: nothing is read there.
+  struct Place {
+    Index index;
+    const T* from;  ///< what the first eight numbers are added to
+    T ninth;
+  };
+  Place place(Index e, int k) const {
+    static constexpr T zeros[8] = {};
+    const Index p = places_[e][k], index = p < 0 ? -1 - p : p;
+    return {index, p < 0 ? zeros : eights_[index].e, p < 0 ? T(0) : ninths_[index]};
+  }
+  void mark_first(Index batched) {
+    std::vector<char> is_met(pairs_.size(), 0);
+    const auto meet = [&](Index& place) {
+      if (!std::exchange(is_met[place], 1)) place = -1 - place;
+    };
+    for (Index e = 0; e < batched; e += lane_count)  // as add_lanes goes
+      for (int k = 0; k < pairs_each; ++k)
+        for (int l = 0; l < lane_count; ++l) meet(places_[e + l][k]);
+    for (Index e = batched; e < Index(places_.size()); ++e)
+      for (Index& place : places_[e]) meet(place);
+  }
+  Block block(std::size_t p) const {
+    Block K;
+    for (int i = 0; i < 8; ++i) K.data()[i] = eights_[p].e[i];
+    K.data()[8] = ninths_[p];
+    return K;
+  }
+  static void add_to(double* to, const double* from, const Lanes& x) {
+    store_lanes(to, load_lanes(from) + x);
+  }
+  static void add_to(float* to, const float* from, const Lanes& x) {
+    double numbers[lane_count];
+    store_lanes(numbers, x);
+    for (int i = 0; i < lane_count; ++i) to[i] = from[i] + float(numbers[i]);
   }
 
+  struct alignas(8 * sizeof(T)) Eight {
+    T e[8];
+  };
+
   std::vector<std::pair<Index, Index>> pairs_;
-  std::vector<std::array<Index, blocks_each>> places_;
-  Index nodes_ = 0;
-  std::vector<Block> blocks_;  ///< the diagonal, then the pairs
+  std::vector<std::array<Index, pairs_each>> places_;
+  std::vector<Eight> eights_;  ///< of the pairs' blocks, by columns
+  std::vector<T> ninths_;
+  std::vector<Block> diagonal_, above_;
   MultifrontalCholesky<3, T> factor_;
 };
 

@@ -27,7 +27,6 @@ class SoftSurface {
       std::array<Index, 3> corners{};
       std::array<Vec3, 3> places;
       const auto& element = mesh.cells()[face.element];
-      bool has_first = false;
       for (int k = 0; k < 3; ++k) {
         const Index node = face.triangle[k];
         if (vertex[node] < 0) {
@@ -38,11 +37,10 @@ class SoftSurface {
         corners[k] = vertex[node];
         const int corner = int(std::find(element.begin(), element.end(), node) - element.begin());
         places[k] = place_of_corner(mesh, corner);
-        has_first = has_first || corner == 0;
       }
       corners_.push_back(corners);
       places_.push_back(places);
-      sums_to_one_.push_back(element.size() == 4 && !has_first ? 1 : 0);
+      sums_to_one_.push_back(has_no_first_share<Mesh>(places) ? 1 : 0);
       element_.push_back(face.element);
       base_.push_back(blocks[element[0]]);
     }
@@ -181,6 +179,13 @@ class SoftSurface {
   }
 
  private:
+  /// Whether the face lies across from corner 0 of a tetrahedron.
+  template <class Mesh>
+  static bool has_no_first_share(const std::array<Vec3, 3>& places) {
+    if constexpr (requires { Mesh::has_shares; })
+      return std::all_of(places.begin(), places.end(), [](const Vec3& p) { return p[0] + p[1] + p[2] == 1; });
+    return false;
+  }
   Bounds bounds_of(Index t) const {
     Bounds b;
     for (const Index v : corners_[t]) b.add(vertices_[v]);
@@ -204,7 +209,7 @@ class SoftSurface {
   std::vector<Index> block_;                   ///< of each vertex
   std::vector<std::array<Index, 3>> corners_;  ///< vertices of each triangle
   std::vector<std::array<Vec3, 3>> places_;    ///< where they are in the element behind
-  std::vector<char> sums_to_one_;              ///< of a tetrahedron without its corner 0
+  std::vector<char> sums_to_one_;              ///< across from corner 0 of a tetrahedron
   std::vector<Index> element_, base_;          ///< that element, and the block of its corner 0
   SurfaceTopology topology_;
   std::vector<Vec3> rest_, vertices_, velocities_, normals_, outward_;
