@@ -22,8 +22,8 @@ auto machine(Law law, Solver solver) {
                        Constraints{Contact{law}, DistanceJoint{}, Hinge{}, Limit<Turn>{}}, solver, Audit{}};
 }
 
-/// Three pairs of boxes rest on the ground, each with a rod of just its length between the two; a door swings,
-/// its limits out of reach.
+/// Three pairs of boxes rest on the ground, each with a rod of just its length between the two; a door
+/// swings, its limits out of reach.
 template <class Law, class Solver = AcceleratedGaussSeidel>
 auto useless(Law law, Idle idle = {}, Solver solver = {.tolerance = 1e-8}) {
   auto loop = machine(law, solver);
@@ -56,22 +56,30 @@ inline double predicted(const AuditReport& report, Effect effect, const char* wo
   return share;
 }
 
-TEST_CASE("friction, restitution, joints and limits that do nothing are found, each at what a run without it saves") {
+TEST_CASE(
+    "friction, restitution, joints and limits that do nothing are found, each at what a run without it "
+    "saves") {
   const AuditReport report = audit(useless(Restitution{rough, 0.5}));
   struct Planted {
     const char* what;
     double predicted;
     Without measured;
   };
-  const Planted all[] = {
-      {"friction", predicted(report, Effect::friction, "Coulomb"),
-       without(report, [] { return useless(Restitution{Frictionless{}, 0.5}); })},
-      {"restitution", predicted(report, Effect::restitution, "Restitution"),
-       without(report, [] { return useless(rough); })},
-      {"rods", predicted(report, Effect::joint, "DistanceJoint"),
-       without(report, [] { return useless(Restitution{rough, 0.5}, {.rod = false}); })},
-      {"limit", predicted(report, Effect::joint, "Limit"),
-       without(report, [] { return useless(Restitution{rough, 0.5}, {.limit = false}); })}};
+  const Planted all[] = {{"friction", predicted(report, Effect::friction, "Coulomb"),
+                          without(report,
+                                  [] {
+                                    return useless(Restitution{Frictionless{}, 0.5});
+                                  })},
+                         {"restitution", predicted(report, Effect::restitution, "Restitution"),
+                          without(report, [] { return useless(rough); })},
+                         {"rods", predicted(report, Effect::joint, "DistanceJoint"),
+                          without(report,
+                                  [] {
+                                    return useless(Restitution{rough, 0.5}, {.rod = false});
+                                  })},
+                         {"limit", predicted(report, Effect::joint, "Limit"), without(report, [] {
+                            return useless(Restitution{rough, 0.5}, {.limit = false});
+                          })}};
   for (const Planted& planted : all) {
     CAPTURE(planted.what, planted.predicted, planted.measured.saving);
     CHECK(std::abs(planted.measured.saving - planted.predicted) <= 0.2 * planted.predicted);

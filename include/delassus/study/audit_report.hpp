@@ -70,7 +70,7 @@ struct AuditedBody {
 
 struct AuditReport {
   long steps = 0;
-  double work = 0;  ///< visits of rows of the run, Σ rows × (sweeps + factorizations): what no machine changes
+  double work = 0;  ///< visits of rows, Σ rows × (sweeps + factorizations): no machine changes them
   std::vector<EffectUse> uses;
   std::vector<AuditedBody> bodies;
 
@@ -80,8 +80,8 @@ struct AuditReport {
       if (use.verdict == Verdict::never) out.push_back(use);
     return out;
   }
-  /// The share of the visits that goes with an effect, if the sweeps stay as they are. Not of the time: that has detection
-  /// and the bodies in it too.
+  /// The share of the visits that goes with an effect, if the sweeps stay as they are. Not of the time: that
+  /// has detection and the bodies in it too.
   double predicted_saving(const EffectUse& use) const { return work > 0 ? use.work / work : 0; }
 };
 
