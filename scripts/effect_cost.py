@@ -3,7 +3,7 @@
 
     scripts/effect_cost.py                    prints the table
     scripts/effect_cost.py --docs FILE        and puts it between the two marks `effects` of a page
-    scripts/effect_cost.py NAME...            only these rows, "ball joint" say
+    scripts/effect_cost.py NAME...            only these rows, "ball joint" say; with --docs the others stay as the page has them
 
 Counts depend on compiler, flags and Eigen, not on the machine's load. Every row is a program of its own, compiled with -O3: some
 five seconds and 400 MB each. The steps counted are the hundred after the first three hundred, in which the boxes come to rest.
@@ -40,6 +40,14 @@ EFFECTS = [
     ("`ProximalNewton` for sweeps", "newton", "one", "Coulomb friction", True),
     ("listener `DoubleBuffer`", "double_buffer", "one", "Coulomb friction", True),
     ("a joint law without a joint", "law_without_item", "one", "Coulomb friction", True),
+    ("`Penalty` springs with friction", "penalty", "one", "Coulomb friction", True),
+    ("`PredictiveScheme`", "prediction", "one", "Coulomb friction", True),
+    ("`Substeps`, four", "substeps", "one", "Coulomb friction", True),
+    ("`Continuous` collision", "continuous", "one", "Coulomb friction", True),
+    ("listener `Recorder`", "recorder", "one", "Coulomb friction", True),
+    ("a virtual coupling that holds one box", "coupling", "one", "Coulomb friction", True),
+    ("`HapticChannel` that publishes it", "haptics", "one", "a virtual coupling that holds one box", True),
+    ("a motor on each hinge", "hinge_motor", "one", "a hinge each, no contact", False),
 ]
 
 
@@ -92,6 +100,16 @@ def table(figures):
     return "\n".join(lines) + "\n"
 
 
+def published(page):
+    """What the page has: {row: [apart, stacked or None]}."""
+    figures = {}
+    for line in page.read_text(encoding="utf-8").split("<!-- effects -->")[-1].split("<!-- end of effects -->")[0].splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 6 and cells[2].replace(" ", "").isdigit():
+            figures[cells[0]] = [int(cell.replace(" ", "")) if cell else None for cell in (cells[2], cells[4])]
+    return figures
+
+
 def put(page, text):
     old = page.read_text(encoding="utf-8")
     new, found = re.subn(r"(<!-- effects -->\n).*?(<!-- end of effects -->)", lambda m: m[1] + text + m[2], old, flags=re.DOTALL)
@@ -113,6 +131,8 @@ def main():
     if not figures:
         print("no effect of this name")
         return 2
+    if options.docs:
+        figures = {**(published(options.docs) if options.names else {}), **figures}
     text = table(figures)
     print(text, end="")
     if options.docs:

@@ -40,6 +40,7 @@ void long_spin(Ladder&);
 void long_pendulum(Ladder&);
 void long_pendulum_midpoint(Ladder&);
 void overlap(Ladder&);
+void overlap_projected(Ladder&);
 void no_normal(Ladder&);
 void bad_input(Ladder&);
 void far_away(Ladder&);
@@ -51,6 +52,7 @@ void bullet_watched(Ladder&);
 void elastic_balls(Ladder&);
 void simultaneous(Ladder&);
 void heap(Ladder&);
+void heap_loose(Ladder&);
 void four_bars(Ladder&);
 void four_bars_midpoint(Ladder&);
 void gear_train(Ladder&);
@@ -64,6 +66,7 @@ void arch(Ladder&);
 void bollard(Ladder&);
 void screw(Ladder&);
 void crowding(Ladder&);
+void crowding_foreseen(Ladder&);
 
 struct Row {
   const char* id;
@@ -100,6 +103,7 @@ inline constexpr Row rows[] = {
     {"HC-11", "vanishing mass in a chain", "NewtonMidpoint", vanishing_mass_midpoint, Level::gold},
     {"HC-12", "free spin, 100 s at 60 steps a second", "", free_spin, Level::gold},
     {"HC-13", "overlap at the start", "", overlap, Level::bronze},
+    {"HC-13", "overlap at the start", "PositionProjection", overlap_projected, Level::gold},
     {"HC-14", "bad input", "", bad_input, Level::gold},
     {"HC-15", "far from the origin", "", far_away, Level::gold},
     {"HC-16", "no normal", "", no_normal, Level::gold},
@@ -122,6 +126,8 @@ inline constexpr Row rows[] = {
     {"HC-28", "dominoes", "ProximalNewton", dominoes, Level::silver},
     {"HC-29", "tower of blocks, one taken out", "ProximalNewton", tower, Level::gold},
     {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-5}", heap, Level::gold},
+    {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}",
+     heap_loose, Level::gold},
     {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
      bollard, Level::silver},
     {"HC-32", "nut on a bolt, by a joint", "", screw, Level::silver},
@@ -133,6 +139,9 @@ inline constexpr Row rows[] = {
     {"HC-35", "net of ball joints", "DirectGaussSeidel, WholeViolation", joint_grid_direct, Level::silver},
     {"HC-36", "stretched chain", "PositionProjection", stretched_chain, Level::gold},
     {"HC-37", "crowding", "ProximalNewton", crowding, Level::gold},
+    {"HC-37", "crowding",
+     "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}, NativeCollision{.margin = 0.1}",
+     crowding_foreseen, Level::gold},
     {"HC-38", "stiff drive", "", drives, Level::silver},
     {"HC-39", "grip", "ProximalNewton", grip, Level::silver},
     {"HC-40", "rigid on soft", "HexahedralFem, ImplicitEuler", rigid_on_soft, Level::silver},

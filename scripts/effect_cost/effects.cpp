@@ -2,8 +2,11 @@
 // list below. The difference of two runs under callgrind is the instructions of a step;
 // scripts/effect_cost.py makes the table.
 //   effects <apart|stacked> <one|other> <steps>       the other: asleep for awake, at the limit for far from
-//   it
+//                                                     it, what is recorded or published for what is not
+#include <delassus/collision/continuous.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/io/recorder.hpp>
+#include <delassus/loop/substeps.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 #include <cstdio>
@@ -48,9 +51,17 @@ enum Effect {
   double_buffer,
   sleeping,
   newton,
+  penalty,
+  prediction,
+  substeps,
+  continuous,
+  recorder,
+  coupling,
+  haptics,
   ball_joint,
   hinge,
-  hinge_limit
+  hinge_limit,
+  hinge_motor
 };
 
 template <Effect effect>
@@ -80,10 +91,26 @@ auto make([[maybe_unused]] bool is_other) {
     return with<effect>(Constraints{coulomb}, sweeps, Sleeping{.after = is_other ? 0.5 : 1e9});
   else if constexpr (effect == newton)
     return with<effect>(Constraints{coulomb}, ProximalNewton{.tolerance = 1e-6});
+  else if constexpr (effect == penalty)
+    return with<effect>(Constraints{Contact{Penalty{Coulomb{.friction = 0.6}, 1e5, 100}}}, sweeps);
+  else if constexpr (effect == prediction)
+    return with<effect>(Constraints{coulomb}, sweeps, PredictiveScheme{});
+  else if constexpr (effect == substeps)
+    return with<effect>(Constraints{coulomb}, sweeps, Substeps{.count = 4});
+  else if constexpr (effect == continuous)
+    return with<effect>(Constraints{coulomb}, sweeps, Continuous{NativeCollision{}});
+  else if constexpr (effect == recorder)
+    return with<effect>(Constraints{coulomb}, sweeps, Recorder{"ten boxes", "", 30});
+  else if constexpr (effect == coupling)
+    return with<effect>(Constraints{coulomb, VirtualCoupling{}}, sweeps);
+  else if constexpr (effect == haptics)
+    return with<effect>(Constraints{coulomb, VirtualCoupling{}}, sweeps, HapticChannel{});
   else if constexpr (effect == ball_joint)
     return with<effect>(Constraints{BallJoint{}}, sweeps);
   else if constexpr (effect == hinge)
     return with<effect>(Constraints{Hinge{}}, sweeps);
+  else if constexpr (effect == hinge_motor)
+    return with<effect>(Constraints{Hinge{}, Motor<Turn>{}}, sweeps);
   else
     return with<effect>(Constraints{Hinge{}, Limit<Turn>{}}, sweeps);
 }
@@ -111,7 +138,15 @@ void run(bool is_stacked, bool is_other, int steps) {
         loop.add(Hinge::Item{hook, box});
       if constexpr (effect == hinge_limit)
         loop.add(Limit<Turn>::Item{.a = hook, .b = box, .lower = is_other ? 0.0 : -1.0, .upper = 1});
+      if constexpr (effect == hinge_motor)
+        loop.add(Motor<Turn>::Item{.a = hook, .b = box, .speed = 0, .max_force = 100});
     }
+  }
+  // A hand holds the last box where it is.
+  if constexpr (effect == coupling || effect == haptics) {
+    const auto hand = set.add({.position = set.position(last), .motion = Motion::kinematic});
+    const auto held = loop.add(VirtualCoupling::Item{anchor(set, last), anchor(set, hand), 1000, 1});
+    if constexpr (effect == haptics) loop.template channel<HapticChannel>().connect(held);
   }
   for (int n = 0; n < steps; ++n) loop.step(h);
   std::printf("%.9g\n", set.position(last).z());

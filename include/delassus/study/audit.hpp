@@ -7,6 +7,7 @@
 #include <delassus/loop/stage.hpp>
 #include <delassus/rows/alive.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/solve_report.hpp>
 #include <delassus/study/audit_report.hpp>
 #include <delassus/study/code_of.hpp>
 
@@ -117,9 +118,11 @@ class Audit {
       use.is_contact = ContactLaw<Law>;
       use.has_friction = use.is_contact && R >= 3;  // rows n, t₁, t₂
       use.has_rolling = use.is_contact && R > 3;    // and those of moments
-      for (Index k = 0; k < problem.islands.count(); ++k)
+      for (Index k = 0; k < problem.islands.count(); ++k) {
+        const SolveReport& solved = reports[std::size_t(k)];
         use.work += double(R) * double(problem.islands.items(p, k).size()) *
-                    std::max(1, reports[std::size_t(k)].sweeps);
+                    std::max(1, solved.sweeps + solved.factorizations);
+      }
       const auto& rows = problem.rows.template pool<p>();
       use.items += rows.items();
       for (Index i = 0; i < rows.items(); ++i) {

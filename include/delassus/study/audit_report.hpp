@@ -58,7 +58,7 @@ struct EffectUse {
   Verdict verdict = Verdict::never;
   long acted = 0;    ///< constraints × steps in which it acted
   long present = 0;  ///< constraints × steps in which it was there
-  double work = 0;   ///< Σ rows × sweeps that it took
+  double work = 0;   ///< visits of its rows: Σ rows × (sweeps + factorizations)
 };
 
 /// Where a body was at the end, to compare two runs.
@@ -70,7 +70,7 @@ struct AuditedBody {
 
 struct AuditReport {
   long steps = 0;
-  double work = 0;  ///< Σ rows × sweeps of the run: the cost that no machine changes
+  double work = 0;  ///< visits of rows, Σ rows × (sweeps + factorizations): no machine changes them
   std::vector<EffectUse> uses;
   std::vector<AuditedBody> bodies;
 
@@ -80,7 +80,8 @@ struct AuditReport {
       if (use.verdict == Verdict::never) out.push_back(use);
     return out;
   }
-  /// The share of the work that goes with an effect, if the sweeps stay as they are.
+  /// The share of the visits that goes with an effect, if the sweeps stay as they are. Not of the time: that
+  /// has detection and the bodies in it too.
   double predicted_saving(const EffectUse& use) const { return work > 0 ? use.work / work : 0; }
 };
 
@@ -110,7 +111,7 @@ Without without(const AuditReport& with, F&& rerun) {
 inline Table audit_table(const AuditReport& report) {
   Table table{.title = "Effects of a run of " + std::to_string(report.steps) + " steps",
               .caption =
-                  "Share: of rows × sweeps, what would go with the effect. Restitution and bodies have no "
+                  "Share: of visits of rows, what would go with the effect. Restitution and bodies have no "
                   "rows of their own.",
               .columns = {"effect", "of", "verdict", "acted", "present", "share of work (%)"}};
   for (const bool is_first : {true, false})
