@@ -48,3 +48,32 @@ TEST_CASE("position projection changes nothing where nothing is violated") {
   }
   CHECK(projected.set().position(projected.bob) == plain.set().position(plain.bob));
 }
+
+// What goes across the joint is of the order of the step's change of speed times its turn, h α · h ω with
+// α ω = g cos θ √(2 g sin θ) <= 27/s³; the 0.1 m/s of the start, of which a tenth fades a step, are gone
+// after 200. What a displacement leaves of the gap that a step opens, at most h³ α ω/2, is its share by the
+// turn of half a step, h ω/2 <= 0.022. Not known at the end of the step, the gap was h² α, and rounding that
+// is turned round every step grew to 4 cm and 11 m/s within 200 000.
+TEST_CASE("a pendulum under the midpoint rule neither rings across its joint nor opens it") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, PositionProjection{.rate = 1},
+                     ImplicitMidpoint{}, AcceleratedGaussSeidel{.tolerance = 1e-12}};
+  auto& set = bodies<RigidBodies>(loop.world());
+  const Vec3 arm(-1, 0, 0);
+  const auto bob = set.add(
+      {.position = -arm, .velocity = {0.1, 0, 0}, .mass = 1.0, .inertia = Mat3(0.01 * Mat3::Identity())});
+  loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor(set, bob, arm)});
+  const double h = 0.01, rate = h * 27;
+  double gap = 0, across = 0, off = 0;
+  for (int n = 0; n < 50000; ++n) {
+    const double now = loop.step(h).max_joint_violation;
+    if (n < 200) continue;
+    gap = std::max(gap, now);
+    across = std::max(
+        across, (set.velocity(bob) + set.angular_velocity(bob).cross(set.orientation(bob) * arm)).norm());
+    off = std::max(off, std::abs(kinetic_energy(set) + potential_energy(set)));
+  }
+  CAPTURE(gap, across, off);
+  CHECK(gap <= h * h * rate / 2 * 0.022);
+  CHECK(across <= h * rate);
+  CHECK(off <= 0.01 * 9.81);
+}

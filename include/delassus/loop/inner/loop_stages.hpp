@@ -138,7 +138,7 @@ void AnimationLoop<Policies...>::make_bias() {
       });
     }
     delassus::make_bias(std::as_const(*this).world(), laws(), work_.rows, part<role::Stabilisation>(), h_,
-                        theta<typename Parts::Integrator>(), work_.bounce);
+                        theta<typename Parts::Integrator>(), work_.bounce, work_.at_start);
   }
   tell<stage::Bias>();
 }
@@ -239,15 +239,25 @@ void AnimationLoop<Policies...>::move_freely() {
 
 template <class... Policies>
 void AnimationLoop<Policies...>::advance() {
-  if constexpr (has_constraints)
-    if constexpr (Work::projects_position)
-      report_.status = worse(report_.status, find_displacements(world(), laws(), work_,
-                                                                part<role::Stabilisation>(), part<role::Solver>(),
-                                                                scratch_, h_));
+  const auto find = [&] {
+    if constexpr (has_constraints)
+      if constexpr (Work::projects_position)
+        report_.status = worse(report_.status, find_displacements(world(), laws(), work_, part<role::Stabilisation>(),
+                                                                  part<role::Solver>(), scratch_, h_));
+  };
+  constexpr bool sees_end = [] {
+    if constexpr (has_constraints) return Work::at_midpoint && Work::projects_position;
+    else return false;
+  }();
+  if constexpr (!sees_end) find();
   world().each([&](auto& set, auto) {
     part<role::Integrator>().advance(set, h_);
     report_.quarantined += set.held();
   });
+  if constexpr (sees_end) {
+    delassus::linearize(std::as_const(*this).world(), laws(), work_.at_start);
+    find();
+  }
   if constexpr (has_constraints)
     if constexpr (Work::projects_position) displace(world(), work_.displacement, h_);
   if constexpr (has_constraints)

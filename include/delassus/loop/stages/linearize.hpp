@@ -37,7 +37,8 @@ void linearize(const World& world, const Laws& laws, Rows& rows) {
 }
 
 /// H at the integrator's guess q ⊕ h v/2 of the mid-configuration, φ where the step starts. Contacts keep the H of the start:
-/// their points are those of the start, and a point that stays while its body moves would turn the body.
+/// their points are those of the start, and a point that stays while its body moves would turn the body. `scratch` has the
+/// rows of the start of all others.
 template <class World, class Laws, class Rows>
 void linearize_at_midpoint(World& world, const Laws& laws, Rows& rows, Rows& scratch, double h) {
   linearize(world, laws, scratch);

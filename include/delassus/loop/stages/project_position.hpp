@@ -63,9 +63,11 @@ class PositionBook<Constraints<Laws...>, T> {
 };
 
 /// d of the position problem: u⁺ + push(φ), the velocity the row has plus the rate its violation asks for; an open
-/// contact only must not close. λ starts at zero.
-template <class World, class Laws, class Rows, class S>
-void make_position_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h) {
+/// contact only must not close. Where `at_end` has rows, the bodies are at the end of the step: equalities have push(φ) of
+/// there alone. λ starts at zero.
+template <class World, class Laws, class Rows, class S, class AtEnd>
+void make_position_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h,
+                        const AtEnd& at_end) {
   using T = typename Rows::Scalar;
   for_each_index<Laws::pool_count>([&](auto p) {
     using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
@@ -78,8 +80,12 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
       for (int k = 0; k < Law::rows; ++k) {
         const double phi = double(pool.phi[i][k]), sign = kinds[k] == RowKind::upper ? -1 : 1;
         const bool is_soft = pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0;
-        if (kinds[k] == RowKind::equality) pool.d[i][k] = is_soft ? T(0) : T(stabilisation.push(phi, h) + double(u[k]));
-        else if (kinds[k] != RowKind::friction)
+        if (kinds[k] == RowKind::equality) {
+          double asked = stabilisation.push(phi, h) + double(u[k]);
+          if constexpr (requires { at_end.pools; })
+            asked = stabilisation.push(double(at_end.template pool<p>().phi[i][k]), h);
+          pool.d[i][k] = is_soft ? T(0) : T(asked);
+        } else if (kinds[k] != RowKind::friction)
           pool.d[i][k] = T(sign * (sign * phi < 0 ? stabilisation.push(sign * phi, h) : sign * phi / h) + double(u[k]));
       }
     }
@@ -96,7 +102,7 @@ Status find_displacements(World& world, const Laws& laws, Work& work, const S& s
     std::get<p>(work.aside[0].pools) = work.rows.template pool<p>().lambda;
     std::get<p>(work.aside[1].pools) = work.rows.template pool<p>().d;
   });
-  make_position_bias(world, laws, work.rows, stabilisation, h);
+  make_position_bias(world, laws, work.rows, stabilisation, h, work.at_start);
   work.W.reset(work.rows);
   PositionBook<Laws, typename World::Scalar> book;
   NoObserver nobody;
