@@ -3,6 +3,8 @@
 #include "watch.hpp"
 
 #include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/loop/rattle.hpp>
+#include <delassus/loop/substeps.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
@@ -76,24 +78,32 @@ void climb_four_bars(Ladder& ladder, double until, const Policies&... policies) 
     });
 }
 
-// A train of gears, each pair with a ratio, driven at the first wheel for a thousand turns and more.
-template <class Solver>
-void climb_gears(Ladder& ladder, const Solver& solver) {
+// A train of gears, each pair with a ratio, for a thousand turns and more of the fastest: driven at the first
+// wheel, or set going and left alone.
+template <bool is_driven, class... Policies>
+void climb_gears(Ladder& ladder, const Policies&... policies) {
   struct Case {
     int wheels;
     double ratio;
   };
   for (const auto& [wheels, ratio] : {Case{2, 1.}, {2, 10.}, {10, 1.}, {10, 2.}, {2, 1e3}, {2, 1e-3}})
     ladder.rung(format("%d wheels, ratio %g", wheels, ratio), [&, wheels = wheels, ratio = ratio]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Gear{}, Motor<Turn>{}}, solver};
+      using Laws =
+          std::conditional_t<is_driven, Constraints<Hinge, Gear, Motor<Turn>>, Constraints<Hinge, Gear>>;
+      AnimationLoop loop{World{RigidBodies{}}, Laws{}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
       set.gravity.setZero();
       std::vector<RigidBodies::Handle> train;
-      std::vector<double> turned(std::size_t(wheels), 0);
       std::vector<ConstraintHandle<Gear>> gears;
+      const double fastest = 6, over = std::pow(ratio, wheels - 1),
+                   first = ratio >= 1 ? fastest : fastest * over;
       for (int k = 0; k < wheels; ++k) {
         const Vec3 at(2. * k, 0, 0);
-        train.push_back(set.add({.position = at, .mass = 1.0, .inertia = Mat3(Mat3::Identity())}));
+        const double rate = is_driven ? 0 : first / std::pow(-ratio, k);
+        train.push_back(set.add({.position = at,
+                                 .angular_velocity = {0, 0, rate},
+                                 .mass = 1.0,
+                                 .inertia = Mat3(Mat3::Identity())}));
         loop.add(Hinge::Item{world_anchor(at), anchor(set, train.back())});
         if (k > 0)
           gears.push_back(loop.add(Gear::Item{.a = anchor(set, train[std::size_t(k - 1)]),
@@ -102,9 +112,8 @@ void climb_gears(Ladder& ladder, const Solver& solver) {
                                               .d = world_anchor(at),
                                               .ratio = -ratio}));
       }
-      const double fastest = 6, over = std::pow(ratio, wheels - 1),
-                   first = ratio >= 1 ? fastest : fastest * over;
-      loop.add(Motor<Turn>::Item{.a = world_anchor({0, 0, 0}), .b = anchor(set, train[0]), .speed = first});
+      if constexpr (is_driven)
+        loop.add(Motor<Turn>::Item{.a = world_anchor({0, 0, 0}), .b = anchor(set, train[0]), .speed = first});
       double error = 0;
       run(ladder, loop, ladder.is_quick() ? 5 : 2 * pi * 1000 / fastest, frame, [&](int) {
         for (const auto& gear : gears) {
@@ -157,11 +166,16 @@ void four_bars_midpoint(Ladder& ladder) {
   climb_four_bars(ladder, ladder.is_quick() ? 1 : 20, NewtonMidpoint{});
 }
 void gear_train(Ladder& ladder) {
-  climb_gears(ladder, AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000});
+  climb_gears<true>(ladder, AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000});
 }
-void gear_train_direct(Ladder& ladder) { climb_gears(ladder, DirectGaussSeidel{}); }
+void gear_train_direct(Ladder& ladder) { climb_gears<true>(ladder, DirectGaussSeidel{}); }
+void gear_train_rattle(Ladder& ladder) { climb_gears<false>(ladder, Rattle{}); }
 void limits(Ladder& ladder) {
   climb_limits(ladder, AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 5000});
+}
+void limits_in_parts(Ladder& ladder) {
+  climb_limits(ladder, AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 5000}, WholeViolation{},
+               Substeps{.count = 4});
 }
 
 }  // namespace ladders

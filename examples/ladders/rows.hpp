@@ -57,7 +57,9 @@ void four_bars(Ladder&);
 void four_bars_midpoint(Ladder&);
 void gear_train(Ladder&);
 void gear_train_direct(Ladder&);
+void gear_train_rattle(Ladder&);
 void limits(Ladder&);
+void limits_in_parts(Ladder&);
 void inverted_elements(Ladder&);
 void incompressible(Ladder&);
 void rigid_on_soft(Ladder&);
@@ -133,7 +135,9 @@ inline constexpr Row rows[] = {
     {"HC-32", "nut on a bolt, by a joint", "", screw, Level::silver},
     {"HC-33", "train of gears", "", gear_train, Level::gold},
     {"HC-33", "train of gears", "DirectGaussSeidel", gear_train_direct, Level::silver},
+    {"HC-33", "train of gears", "Rattle", gear_train_rattle, Level::gold},
     {"HC-34", "chain at its limits", "", limits, Level::gold},
+    {"HC-34", "chain at its limits", "WholeViolation, Substeps{.count = 4}", limits_in_parts, Level::gold},
     {"HC-35", "net of ball joints", "AcceleratedGaussSeidel{.tolerance = 1e-6}, WholeViolation", joint_grid,
      Level::gold},
     {"HC-35", "net of ball joints", "DirectGaussSeidel, WholeViolation", joint_grid_direct, Level::silver},
