@@ -50,12 +50,23 @@ inline void mantle_line(double radius, double half, const Vec3& d, int name, Fac
   face.add({x, y, -half}, name + 1);
 }
 
-/// The disc of radius r at height z as an octagon turned with the body, counter-clockwise seen from `side`.
-inline void octagon(double r, double z, int side, int name, Face& face) {
+/// A cap that leans by less lies on its face: its contacts stay where they are on the body.
+inline constexpr double flat_slope = 2e-3;
+
+/// The disc of radius r at height z as an octagon, counter-clockwise seen from `side`. It is turned with the body where
+/// the disc lies flat across d, else so that its first corner is the farthest point of the rim along d: a rim that rolls
+/// touches there, not at a corner of the body nearby.
+inline void octagon(double r, double z, const Vec3& d, int side, int name, Face& face) {
   face.normal = side * unit_axis(2);
+  const double across = std::hypot(d[0], d[1]);
+  const bool is_flat = across <= flat_slope * std::abs(d[2]);
+  const double x = is_flat ? r : r * d[0] / across, y = is_flat ? 0 : r * d[1] / across;
   constexpr double c = 0.70710678118654752440;
   constexpr double corners[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
-  for (int k = 0; k < 8; ++k) face.add({r * corners[k][0], side * r * corners[k][1], z}, name + k);
+  for (int k = 0; k < 8; ++k) {
+    const double along = corners[k][0], beside = side * corners[k][1];
+    face.add({x * along - y * beside, y * along + x * beside, z}, name + k);
+  }
 }
 
 /// A cap (corners 0–7 above, 8–15 below), or a line of the mantle (16, 17).
@@ -63,7 +74,7 @@ inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
   const double across = std::hypot(d[0], d[1]);
   if (across > std::abs(d[2])) return mantle_line(s.size[0], s.size[1], d, 16, face);
   const int side = d[2] < 0 ? -1 : 1;
-  octagon(s.size[0], side * s.size[1], side, side > 0 ? 0 : 8, face);
+  octagon(s.size[0], side * s.size[1], d, side, side > 0 ? 0 : 8, face);
 }
 
 /// The base (corners 8–15), or the line of the mantle from the tip (16) to the rim (17), up to 45° off its
@@ -71,7 +82,7 @@ inline void cylinder_face(const Shape& s, const Vec3& d, Face& face) {
 inline void cone_face(const Shape& s, const Vec3& d, Face& face) {
   const double radius = s.size[0], half = s.size[1], slant = std::hypot(radius, 2 * half);
   const double across = std::hypot(d[0], d[1]), along_mantle = (2 * half * across + radius * d[2]) / slant;
-  if (-d[2] >= along_mantle) return octagon(radius, -0.5 * half, -1, 8, face);
+  if (-d[2] >= along_mantle) return octagon(radius, -0.5 * half, d, -1, 8, face);
   if (!(along_mantle > 0.7 && across > 0)) return;
   face.add({0, 0, 1.5 * half}, 16);
   face.add({d[0] / across * radius, d[1] / across * radius, -0.5 * half}, 17);
