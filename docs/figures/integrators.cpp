@@ -2,7 +2,7 @@
 // processor time, one colour an integrator, the step halved from mark to mark. The scenes are those of the
 // tests. From the root of the tree:
 //
-//   g++ -std=c++20 -O2 -DNDEBUG -Iinclude -Itests -isystem /usr/include/eigen3 docs/figures/integrators.cpp
+//   g++ -std=c++20 -O3 -DNDEBUG -Iinclude -Itests -isystem /usr/include/eigen3 docs/figures/integrators.cpp
 //   -o integrators && ./integrators docs/figures
 #include "loop/chains.hpp"
 #include "loop/smooth_scenes.hpp"
