@@ -58,6 +58,7 @@ struct BasicAcceleratedGaussSeidel {
     void reset(const Rows& rows) {
       for (auto* set : {&x, &best}) set->resize_like(rows);
       history.reserve(std::size_t(rows.row_count()));
+      newton.resize_like(rows);
     }
   };
 

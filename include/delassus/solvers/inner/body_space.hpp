@@ -37,6 +37,14 @@ class BodySpace {
   /// Of a factorization and what goes with it, in sweeps.
   double cost_in_sweeps() { return system_.cost_in_sweeps(); }
 
+  /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
+  /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
+  /// answers.
+  template <class Problem>
+  double energy_of_stopping(const Problem& problem) {
+    return system_.energy_of_stopping(problem);
+  }
+
   /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
   /// see, in units of energy.
   template <class Problem>

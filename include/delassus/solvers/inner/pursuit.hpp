@@ -18,7 +18,8 @@ class Pursuit {
  public:
   Pursuit(const Solver& solver, Problem& problem, Impulses& best)
       : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {
-    reach_ = near * solver.tolerance * (solver.scale_tolerance ? rows_ : 1);
+    tolerance_ = solver.tolerance * (solver.scale_tolerance ? rows_ : 1);
+    reach_ = near * tolerance_;
   }
 
   /// False: there is nothing to sweep. The start itself is measured only where that can end the solve or
@@ -56,6 +57,7 @@ class Pursuit {
     if (std::isinf(best_.residual) && is_not_finite()) return false;
     is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
     if (is_met_) return false;
+    note_pace();
     keep_if_best();
     return !is_last_ && !stalls();
   }
@@ -82,6 +84,15 @@ class Pursuit {
   bool is_quarantined() const { return report_.status == Status::quarantined; }
 
   int sweeps() const { return report_.sweeps; }
+  /// After the first sweep.
+  double first_error() const { return first_error_; }
+  /// The smallest measure so far.
+  const Measure& best() const { return best_; }
+  /// Sweeps to the tolerance at the pace of the last half of them or more; infinite where the error stands.
+  double likely_left() const {
+    const double now = Criterion::sum(report_.measure), fallen = std::log(from_.error / now);
+    return fallen > 0 ? std::log(now / tolerance_) * (measured_ - from_.sweeps) / fallen : infinity;
+  }
   /// What is left of the sweeps.
   int left() const { return solver_.max_iterations - report_.sweeps; }
 
@@ -108,6 +119,12 @@ class Pursuit {
   }
   bool is_done(const Measure& m) const {
     return inner::is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
+  }
+  void note_pace() {
+    if (lately_.sweeps == 0) first_error_ = Criterion::sum(report_.measure);
+    if (measured_ < 2 * lately_.sweeps) return;
+    from_ = lately_;
+    lately_ = {Criterion::sum(report_.measure), measured_};
   }
   void keep_if_best() {
     if (!(Criterion::needs_measure ? Criterion::sum(report_.measure) < Criterion::sum(best_)
@@ -143,7 +160,11 @@ class Pursuit {
   SolveReport report_{};
   Measure best_ = unmeasured;
   int rows_, measured_ = 0, patience_ = 0, opened_ = 0, progressed_ = 0;
-  double mark_ = infinity, per_root_of_movement_ = infinity, reach_;
+  double mark_ = infinity, per_root_of_movement_ = infinity, tolerance_, reach_, first_error_ = infinity;
+  struct Mark {
+    double error;
+    int sweeps;
+  } from_{infinity, 0}, lately_{infinity, 0};  ///< measures, at less than half of the sweeps and later
   bool is_met_ = false, is_last_ = false;
 };
 
