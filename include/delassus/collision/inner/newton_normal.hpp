@@ -28,7 +28,7 @@ struct NewtonNormal {
       if (!(next.dot(start) > nearby)) return start;
       const double turn2 = (next - n).squaredNorm();
       n = next;
-      if (turn2 < 1e-20) break;
+      if (turn2 < 1e-14) break;  // the next step is its square
     }
     return n;
   }

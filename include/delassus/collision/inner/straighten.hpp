@@ -27,7 +27,8 @@ struct Straighten {
     if (!meets_point(face_a, face_b, r)) {
       if (!is_sharp && r.distance > 0) measure(r);
       if (r.distance < 5e-4 * scale) part(r);
-      if (r.distance < 1e-2 * scale) take(NewtonNormal{Difference{a, b, b_in_a}}(r.normal), r);
+      if (r.distance < 1e-2 * scale && !(is_polytope(a) && is_polytope(b)))
+        take(NewtonNormal{Difference{a, b, b_in_a}}(r.normal), r);
       // As far as rounding shows, a face's own normal is as good.
       if (face_a.count >= 3) take(face_a.normal, r);
       if (face_b.count >= 3) take(Vec3(-(b_in_a.rotation * face_b.normal)), r);
@@ -52,6 +53,11 @@ struct Straighten {
     r.normal = n;
     r.distance = distance;
     return true;
+  }
+
+  /// A − B of two has faces only, no normal of which GJK leaves open.
+  static bool is_polytope(const Shape& s) {
+    return s.kind == ShapeKind::box || s.kind == ShapeKind::convex_hull;
   }
 
   /// Of flat bodies the kernel found the face itself.
@@ -97,7 +103,9 @@ struct Straighten {
     for (int round = 0; round < 2; ++round) {
       const GjkResult q = apart(n, 1e-2 * scale - proven(n));
       if (!q.is_apart || !(q.normal.dot(r.normal) > nearby)) break;
+      const double turn2 = (q.normal - n).squaredNorm();
       n = q.normal;
+      if (turn2 < 1e-14) break;
     }
     take(n, r);
   }
