@@ -20,16 +20,20 @@ inline double deepest_gap(const std::vector<ContactPoint>& contacts) {
   return deepest;
 }
 
-/// The least depth is unique, to 1e-9 L, and so is the normal of bodies apart, to 1e-6 rad. Overlapping, two
-/// normals may be least, or h so flat between them that its 1e-14 L of rounding is 1e-6 rad or more: some 50
-/// in 84000 lean by more and less than a tie does, and 1 in 500 is allowed.
+inline bool is_smooth(const Shape& s) {
+  return s.kind == ShapeKind::sphere || s.kind == ShapeKind::ellipsoid || s.kind == ShapeKind::capsule;
+}
+
+/// The least depth is unique, to 1e-9 L, and so is the normal, to 1e-6 rad: unless both touch with corners or
+/// edges, then any normal that both have there will do. Coordinates of 1 m keep 2e-16, which turns the normal
+/// of such bodies by 2e-16 m / distance: below 1e-9 L it has no six digits.
 template <class Kernel>
 void check_swap() {
   const Zoo zoo;
   std::mt19937 random(7);
   Kernel kernel;
   double distance = 0, lean = 0;
-  int overlapping = 0, leaning = 0;
+  int touching = 0, count = 0;
   const auto larger = [](double worst, double x) { return x <= worst ? worst : x; };  // NaN is the largest
   for (const Depth depth : depths)
     for_each_pair(zoo.all, [&](const Shape& a, const Shape& b) {
@@ -42,15 +46,15 @@ void check_swap() {
         const SignedPair r = certified_pair(kernel, a, b, s.b_in_a, 10 * L, L, Vec3::Zero()).pair,
                          back = certified_pair(kernel, b, a, a_in_b, 10 * L, L, Vec3::Zero()).pair;
         distance = larger(distance, std::abs(r.distance - back.distance) / L);
-        const double turn = (r.normal + R * back.normal).norm();
-        if (depth > Depth::touch) lean = larger(lean, turn);
-        if (depth < Depth::touch) ++overlapping, leaning += !(turn < 1e-6 || turn > 1e-2);
+        const bool touches = std::abs(r.distance) < 1e-9 * L && !is_smooth(a) && !is_smooth(b);
+        if (depth != Depth::touch) ++count, touching += touches;
+        if (!touches) lean = larger(lean, (r.normal + R * back.normal).norm());
       }
     });
-  CAPTURE(distance, lean, leaning, overlapping);
+  CAPTURE(distance, lean, touching, count);
   CHECK(distance < 1e-9);
   CHECK(lean < 1e-6);
-  CHECK(leaning <= overlapping / 500);
+  CHECK(touching <= count / 100);  // by chance: a corner on a face's rim
 }
 
 /// On a floor the answer is known: normal z, gap −penetration. No normal may lean by 0.5°, and no gap may lie

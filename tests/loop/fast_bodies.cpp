@@ -53,10 +53,11 @@ TEST_CASE("at 1000 m/s a ball of 1 cm and a box of 2 cm never pass a plate of 1 
   }
 }
 
-TEST_CASE("of needles at 1000 m/s that turn by half a radian a step not one in a hundred passes a plate",
-          "[table]") {
-  // 12 seeded shots of rods of 2 mm and 5 cm at a plate of 1 mm, 600 where DELASSUS_SHOTS is set: of these 2
-  // pass. An end may dip through while the rod is turned; the middle must stay on its side.
+TEST_CASE("at 1000 m/s needles that turn by half a radian a step never pass a plate of 1 mm", "[table]") {
+  // 600 seeded shots of rods of 2 mm and 5 cm, 6 000 where DELASSUS_SHOTS is set. An end may dip through
+  // while the rod is turned; the ball of half its thickness about its middle may not. That one rests 1e-3 of
+  // its radius early, and what it is held by does not know the velocity that gravity adds within the step: g
+  // h².
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto any = [&] {
@@ -64,12 +65,11 @@ TEST_CASE("of needles at 1000 m/s that turn by half a radian a step not one in a
     return Vec3(x, y, z);
   };
   const Shape needles[] = {Capsule{0.001, 0.048}, Box{0.002, 0.002, 0.05}, Cylinder{0.001, 0.05}};
-  const int shots = std::getenv("DELASSUS_SHOTS") ? 600 : 12;
-  int passed = 0;
-  for (int shot = 0; shot < shots; ++shot) {
+  constexpr double h = 1e-3, core = 5e-4, half_plate = 5e-4;
+  for (int shot = 0; shot < (std::getenv("DELASSUS_SHOTS") ? 6000 : 600); ++shot) {
     auto loop = scene();
     auto& rigid = bodies<RigidBodies>(loop.world());
-    rigid.add_fixed(Box{400, 400, 1e-3});
+    rigid.add_fixed(Box{400, 400, 2 * half_plate});
     const double side = shot % 2 ? 1 : -1;
     const Vec3 at = any(), aside = any(), spin = any(), turn = any();
     const auto body = rigid.add({.position = {0.3 * at[0], 0.3 * at[1], side * (1.2 + at[2])},
@@ -81,13 +81,12 @@ TEST_CASE("of needles at 1000 m/s that turn by half a radian a step not one in a
     INFO("shot " << shot);
     double least = 10;
     for (int i = 0; i < 40; ++i) {
-      loop.step(1e-3);
+      loop.step(h);
       least = std::min(least, side * rigid.position(body).z());
     }
-    passed += !(least > 0);
+    CHECK(least > half_plate + core - 1e-3 * core - 9.81 * h * h);
     CHECK(least < 0.05);  // and it did arrive
   }
-  CHECK(passed <= shots / 100);
 }
 
 TEST_CASE("a rod that turns by a radian a step does not pass a pin") {

@@ -88,8 +88,9 @@ struct Continuous {
            is_finite(c.pose.position) && is_finite(c.pose.rotation);
   }
 
-  /// Whoever moves further in a step than half the margin that the backend gives any pair here: two that do
-  /// not are seen.
+  /// Whoever moves further in a step than half the margin that the backend gives any pair here, since two
+  /// that do not are seen; or than the ball of half its size, since what is thin is then seen on its far
+  /// side.
   void find_fast(std::span<const Collider> colliders, double h) {
     const CollisionSettings s = settings();
     double way = 0.5 * s.margin;
@@ -103,7 +104,8 @@ struct Continuous {
     is_fast_.assign(colliders.size(), false);
     for (Index i = 0; i < Index(colliders.size()); ++i) {
       const Collider& c = colliders[i];
-      if (!is_asked(c) || !c.shape.has_volume() || !(inner::top_speed(c) * h > way)) continue;
+      if (!is_asked(c) || !c.shape.has_volume()) continue;
+      if (!(inner::top_speed(c) * h > std::min(way, inner::core_of_motion(c.shape)))) continue;
       is_fast_[i] = true;
       fast_.push_back(i);
     }
@@ -193,7 +195,7 @@ struct Continuous {
   }
 
   /// A ball within the fast body, moved without turning, that would reach the other one in the step is held
-  /// by its middle.
+  /// by its middle. One that is there stays, whichever way it moves: other rows may turn it.
   void hold_core(std::span<const Collider> colliders, Index place_a, Index place_b, bool holds_a, double h,
                  const std::optional<ContactPoint>& touch, std::vector<ContactPoint>& out) {
     Collider a = colliders[place_a], b = colliders[place_b];
@@ -203,10 +205,10 @@ struct Continuous {
     core.shape = Sphere{radius};
     core.angular_velocity.setZero();
     const inner::Impact hit = inner::time_of_impact(a, b, h, radius, 1e-3 * radius);
-    if (!hit.is_found) return;
+    if (!hit.is_found && !hit.is_now) return;
     const Vec3 n = hit.a.rotation * hit.normal_in_a;
     const double flight = n.dot(a.velocity - b.velocity);
-    if (!(flight > 0)) return;
+    if (!(flight > 0) && !hit.is_now) return;
     // What touches has nowhere to go but to turn about that point, and may turn by more than a row can
     // follow.
     const double way = touch ? std::min(hit.time * flight, std::max(touch->gap, 0.0)) : hit.time * flight;

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/certificate.hpp>
 #include <delassus/collision/gjk.hpp>
+#include <delassus/collision/inner/newton_normal.hpp>
 #include <delassus/geometry/face.hpp>
 
 #include <algorithm>
@@ -10,9 +11,9 @@
 
 namespace delassus::inner {
 
-/// Turns a certified normal to the minimum of h next to it: exactly where a face meets a point, else to some
-/// 1e-7 rad. A distance cannot say as much: a normal that leans by θ proves only R θ²/2 less, R being the
-/// radius of A − B there.
+/// Turns a certified normal to the minimum of h next to it: exactly where a face meets a point, to 1e-7 rad
+/// where there is a gap, else as Newton's method says. A distance cannot say as much: a normal that leans by
+/// θ proves only R θ²/2 less, R being the radius of A − B there.
 struct Straighten {
   const Shape &a, &b;
   const Pose& b_in_a;
@@ -26,6 +27,8 @@ struct Straighten {
     if (!meets_point(face_a, face_b, r)) {
       if (!is_sharp && r.distance > 0) measure(r);
       if (r.distance < 5e-4 * scale) part(r);
+      if (r.distance < 1e-2 * scale && !(is_polytope(a) && is_polytope(b)))
+        take(NewtonNormal{Difference{a, b, b_in_a}}(r.normal), r);
       // As far as rounding shows, a face's own normal is as good.
       if (face_a.count >= 3) take(face_a.normal, r);
       if (face_b.count >= 3) take(Vec3(-(b_in_a.rotation * face_b.normal)), r);
@@ -50,6 +53,11 @@ struct Straighten {
     r.normal = n;
     r.distance = distance;
     return true;
+  }
+
+  /// A − B of two has faces only, no normal of which GJK leaves open.
+  static bool is_polytope(const Shape& s) {
+    return s.kind == ShapeKind::box || s.kind == ShapeKind::convex_hull;
   }
 
   /// Of flat bodies the kernel found the face itself.
@@ -89,25 +97,15 @@ struct Straighten {
   }
 
   /// Bodies that overlap or nearly touch are parted along n to a gap g and measured there. Of a depth d the
-  /// normal is then wrong by ρ = (d + g) / (R + g) < 1 of what it was, and again; two such turns foretell the
-  /// rest of them, n + ρ / (1 − ρ) times the last.
+  /// normal is then wrong by (d + g) / (R + g) < 1 of what it was, and across an edge by nothing.
   void part(SignedPair& r) const {
-    Vec3 n = r.normal, last = Vec3::Zero();
-    double distance = r.distance;
-    for (int round = 0; round < 6; ++round) {
-      const GjkResult q = apart(n, 1e-2 * scale - distance);
+    Vec3 n = r.normal;
+    for (int round = 0; round < 2; ++round) {
+      const GjkResult q = apart(n, 1e-2 * scale - proven(n));
       if (!q.is_apart || !(q.normal.dot(r.normal) > nearby)) break;
-      const Vec3 turn = q.normal - n;
+      const double turn2 = (q.normal - n).squaredNorm();
       n = q.normal;
-      if (turn.squaredNorm() < 1e-14) break;
-      const double shrinks = last.squaredNorm() > 0 ? turn.dot(last) / last.squaredNorm() : 0;
-      last = turn;
-      if (shrinks > 0 && shrinks < 0.9) {
-        n = (n + shrinks / (1 - shrinks) * turn).normalized();
-        last.setZero();
-        if (turn.squaredNorm() < 1e-10 && shrinks < 0.1) break;
-      }
-      distance = proven(n);
+      if (turn2 < 1e-14) break;
     }
     take(n, r);
   }

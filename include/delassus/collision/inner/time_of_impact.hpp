@@ -52,8 +52,9 @@ inline double core_of_motion(const Shape& s) {
 
 struct Impact {
   bool is_found = false;
-  double time = 0;  ///< s from now
-  Pose a, b;        ///< where both are then
+  bool is_now = false;  ///< within the target from the start: not found, but `normal_in_a` holds
+  double time = 0;      ///< s from now
+  Pose a, b;            ///< where both are then
   Vec3 normal_in_a = Vec3::Zero();
 };
 
@@ -79,6 +80,7 @@ inline Impact time_of_impact(const Collider& a, const Collider& b, double h, dou
     hit.normal_in_a = guess = r.normal;
     if (r.distance <= target) {
       hit.is_found = look > 0;
+      hit.is_now = look == 0;
       return hit;
     }
     const double closing = (hit.a.rotation * r.normal).dot(a.velocity - b.velocity) + turning;
