@@ -14,7 +14,7 @@ struct PositionProjection {
   using plays = role::Stabilisation;
   static constexpr bool projects_position = true;
   double rate = 0.2;     ///< share of the violation per step, in (0, 1]
-  double max_speed = 1;  ///< m/s
+  double max_speed = 1;  ///< m/s, of overlaps; joints are closed at any speed
 
   void check() const {
     DELASSUS_EXPECT(rate > 0 && rate <= 1, "PositionProjection: rate " + inner::text(rate) + " must be in (0, 1]");
@@ -22,7 +22,8 @@ struct PositionProjection {
   }
   double equality(double, double) const { return 0; }
   double penetration(double, double) const { return 0; }
-  double push(double phi, double h) const { return std::max(rate * phi / h, -max_speed); }
+  double push(double phi, double h) const { return std::max(close(phi, h), -max_speed); }
+  double close(double phi, double h) const { return rate * phi / h; }
 };
 static_assert(Stabilisation<PositionProjection>);
 

@@ -38,6 +38,8 @@ struct WithCompliance {
   { return stabilisation.softness(h); }
   double push(double phi, double h) const requires requires { stabilisation.push(phi, h); }
   { return stabilisation.push(phi, h); }
+  double close(double phi, double h) const requires requires { stabilisation.close(phi, h); }
+  { return stabilisation.close(phi, h); }
   /// R of an equality and of a lower or upper row, 1/kg.
   double joint_compliance(double h) const { return equality(near, h) / near * least / h; }
   double contact_compliance(double h) const { return penetration(-near, h) / -near * least / h; }

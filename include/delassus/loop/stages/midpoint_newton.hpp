@@ -100,15 +100,18 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   void iterate(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, bool is_damped,
                SolveReport& report) {
     double first = 0, last = std::numeric_limits<double>::infinity();
+    int slow = 0;
     for (int k = 0;; ++k) {
       linearize_both(world, laws, rows, h);
       const double size = balance(world, laws, rows, h);
       if (k == 0) first = size;
       report.measure.residual = size;
       report.measure.floor = 64 * std::numeric_limits<T>::epsilon() * load_;
+      // One slow step is no sign: a damped iteration may gain in every other one alone.
+      slow = size > 0.5 * last && size <= 1e-7 ? slow + 1 : 0;
       if (size <= integrator.tolerance)
         report.status = Status::converged;
-      else if ((size <= report.measure.floor && std::isfinite(load_)) || (size > 0.5 * last && size <= 1e-7))
+      else if ((size <= report.measure.floor && std::isfinite(load_)) || slow == 2)
         report.status = Status::stalled;
       // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
       const bool is_lost = !(size <= 1e12 * first) || (!is_damped && k == most_undamped);

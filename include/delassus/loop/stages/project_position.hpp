@@ -62,9 +62,9 @@ class PositionBook<Constraints<Laws...>, T> {
   }
 };
 
-/// d of the position problem: u⁺ + push(φ), the velocity the row has plus the rate its violation asks for; an open
-/// contact only must not close. Where `at_end` has rows, the bodies are at the end of the step: equalities have push(φ) of
-/// there alone. λ starts at zero.
+/// d of the position problem: u⁺ + push(φ), close(φ) of a joint: the velocity the row has plus the rate its violation asks
+/// for; an open contact only must not close. Where `at_end` has rows, the bodies are at the end of the step: equalities have
+/// close(φ) of there alone. λ starts at zero.
 template <class World, class Laws, class Rows, class S, class AtEnd>
 void make_position_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h,
                         const AtEnd& at_end) {
@@ -81,9 +81,9 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
         const double phi = double(pool.phi[i][k]), sign = kinds[k] == RowKind::upper ? -1 : 1;
         const bool is_soft = pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0;
         if (kinds[k] == RowKind::equality) {
-          double asked = stabilisation.push(phi, h) + double(u[k]);
+          double asked = stabilisation.close(phi, h) + double(u[k]);
           if constexpr (requires { at_end.pools; })
-            asked = stabilisation.push(double(at_end.template pool<p>().phi[i][k]), h);
+            asked = stabilisation.close(double(at_end.template pool<p>().phi[i][k]), h);
           pool.d[i][k] = is_soft ? T(0) : T(asked);
         } else if (kinds[k] != RowKind::friction)
           pool.d[i][k] = T(sign * (sign * phi < 0 ? stabilisation.push(sign * phi, h) : sign * phi / h) + double(u[k]));
