@@ -90,14 +90,14 @@ class NewtonStage {
       space_.body.keep();
       point.begin();
       const int share = std::max(2 * likely, int(pursuit_.sweeps() / cost_));
-      double least = std::min(Criterion::sum(point.measure), Criterion::sum(pursuit_.best()));
+      double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(pursuit_.best()));
       for (limits_.max_iterations = share; !(point.run() && point.is_met());
            limits_.max_iterations += share) {
         point.give_best();
         if (!point.restart()) break;
         const double error = Criterion::sum(point.measure);
-        if (!(error < 0.5 * least)) break;
-        least = error;
+        if (!(error < 0.5 * smallest)) break;
+        smallest = error;
       }
       if (!(energy() <= allowed)) pursuit_.back_to_best();
       point.measure = problem_.measure();

@@ -1,0 +1,65 @@
+/// Whether the parts of a loop agree on how a step is made: at once, in parts, or stage by stage.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/loop/activity.hpp>
+#include <delassus/loop/channels.hpp>
+#include <delassus/loop/workspace.hpp>
+#include <delassus/rows/row_kind.hpp>
+
+#include <type_traits>
+
+namespace delassus::inner {
+
+/// A law whose rows are all equalities.
+template <class Law>
+consteval bool holds_exactly() {
+  for (const RowKind kind : row_kinds<Law>())
+    if (kind != RowKind::equality) return false;
+  return true;
+}
+
+/// The order of the stages knows what a whole step is.
+template <class Scheme>
+inline constexpr bool takes_whole_steps = requires { requires Scheme::takes_whole_steps; };
+
+/// An integrator that solves for joints and bodies together leaves no room for parts between FreeMotion and Correct.
+template <class Parts, class... Policies>
+consteval bool whole_step_fits() {
+  using I = typename Parts::Integrator;
+  if constexpr (!solves_whole_step<I, (Parts::Laws::pool_count > 0)>) {
+    return true;
+  } else {
+    constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
+      return (holds_exactly<L>() && ...);
+    }(static_cast<const typename Parts::Laws*>(nullptr));
+    constexpr bool can_move = []<class... S>(const delassus::World<S...>*) {
+      return (I::template can_move<S> && ...);
+    }(static_cast<const typename Parts::World*>(nullptr));
+    constexpr bool is_plain = takes_whole_steps<typename Parts::Scheme> &&
+                              std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...);
+    static_assert(are_equal,
+                  "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, "
+                  "motors and drives; take their laws out, or use another integrator, such as ImplicitEuler");
+    if constexpr (are_equal)
+      static_assert(can_move,
+                    "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles, GeneralizedAlpha, "
+                    "Newmark and Bdf2 particles and soft bodies, FullNewton soft bodies and rods; take the other sets out of World{...}, or use ImplicitMidpoint");
+    if constexpr (are_equal && can_move)
+      static_assert(is_plain,
+                    "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, "
+                    "without W; take out the scheme, the activity and the listeners that publish the problem");
+    return are_equal && can_move && is_plain;
+  }
+}
+
+/// A step in parts has one detection: who sleeps or wakes between them would be missing in it.
+template <class Scheme, class Activity>
+consteval bool substeps_fit() {
+  constexpr bool fit = !(requires { requires Scheme::divides_step; } && has_dormant<Activity>);
+  static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
+  return fit;
+}
+
+}  // namespace delassus::inner
