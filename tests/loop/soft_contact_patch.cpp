@@ -66,10 +66,10 @@ PatchError press_blocks(Index below, Index above) {
     for (Index e = 0; e < Index(at_rest.tetrahedra.size()); ++e) {
       inner::LinearTetrahedron::Corners x;
       for (int a = 0; a < 4; ++a) x[a] = soft.position(soft.node(body, at_rest.tetrahedra[e][a]));
-      const inner::LinearTetrahedron t(at_rest, e, lame);
-      const double stress = Linear{.young = young, .poisson = 0}.at(t.deformation(x)).stress()(2, 2);
+      const auto point = inner::LinearTetrahedron(at_rest, e, lame).points[0];
+      const double stress = Linear{.young = young, .poisson = 0}.at(point.deformation(x)).stress()(2, 2);
       error.largest = std::max(error.largest, std::abs(stress / pressure + 1));
-      sum += stress * t.volume;
+      sum += stress * point.volume;
     }
     mean = sum / 0.5 / pressure + 1;
   };
