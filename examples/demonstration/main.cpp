@@ -82,7 +82,9 @@ int run(const Options& options) {
     std::printf("\n%s\n%s\n%s: %.1f MB, after %.1f s\n", aligned_text(tables[0]).c_str(),
                 aligned_text(tables[1]).c_str(), path.c_str(), 1e-6 * double(bytes), progress.elapsed());
   }
+  std::fflush(stdout);  // what failed comes last, also in a file
   for (const std::string& sentence : broken) std::fprintf(stderr, "%s.\n", sentence.c_str());
+  if (!broken.empty()) std::fprintf(stderr, "%zu of the demonstration's bounds do not hold.\n", broken.size());
   return broken.empty() ? 0 : 1;
 }
 
