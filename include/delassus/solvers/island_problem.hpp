@@ -130,10 +130,15 @@ class IslandProblem {
   double worst_change() const { return worst_change_; }
   /// A solver asks after each sweep; only `WithDeadline` ever says yes.
   static constexpr bool is_out_of_time() { return false; }
+  /// Whether `tell` reads λ.
+  bool tells_forces() const {
+    if constexpr (requires { observer_.wants_forces(); }) return observer_.wants_forces();
+    return false;
+  }
   void tell(int sweeps, const Measure& m) {
     observer_(sweeps, m);
-    if constexpr (requires { observer_.wants_forces(); })
-      if (observer_.wants_forces())
+    if (tells_forces())
+      if constexpr (requires { observer_.wants_forces(); })
         each([&](auto p, Index i) { observer_.force(sweeps, int(p), i, rows_.template pool<p>().lambda[i], h_); });
   }
 

@@ -107,11 +107,12 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       if (k == 0) first = size;
       report.measure.residual = size;
       report.measure.floor = 64 * std::numeric_limits<T>::epsilon() * load_;
-      // One slow step is no sign: a damped iteration may gain in every other one alone.
+      // What bodies and what rows miss may fall by turns: one slow step is a sign of rounding only near it.
       slow = size > 0.5 * last && size <= 1e-7 ? slow + 1 : 0;
       if (size <= integrator.tolerance)
         report.status = Status::converged;
-      else if ((size <= report.measure.floor && std::isfinite(load_)) || slow == 2)
+      else if ((size <= report.measure.floor && std::isfinite(load_)) ||
+               slow >= (size <= 100 * report.measure.floor ? 1 : 2))
         report.status = Status::stalled;
       // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
       const bool is_lost = !(size <= 1e12 * first) || (!is_damped && k == most_undamped);

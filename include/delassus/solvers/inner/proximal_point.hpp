@@ -98,6 +98,9 @@ class ProximalPoint {
       const double before = size;
       body_.advance(search_line(size));
       measure = body_.measure(problem_);
+      if (problem_.tells_forces())
+        body_.hand_over(
+            problem_, [](const auto& c) -> const auto& { return c.lambda; });
       problem_.tell(sweeps + factorizations, measure);
       if (is_done(measure) || size < 1e-4 * first) break;
       if (!(size <= 0.99 * before)) return false;
