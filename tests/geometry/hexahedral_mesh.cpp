@@ -7,25 +7,9 @@
 
 #include "catch.hpp"
 #include "geometry/closed_surface.hpp"
+#include "geometry/mesh_refusals.hpp"
 
 using namespace delassus;
-
-namespace {
-
-std::string refusal(const HexahedralMesh& mesh) {
-  try {
-    check_mesh(mesh, "soft body #0");
-  } catch (const InvalidArgument& e) {
-    return e.what();
-  }
-  return {};
-}
-
-bool says(const std::string& sentence, const char* words) {
-  return sentence.find(words) != std::string::npos;
-}
-
-}  // namespace
 
 TEST_CASE("the hexahedra of a box fill it, and its surface closes around it") {
   HexahedralMesh mesh = hexahedral_box({2, 1, 3}, {4, 3, 5});
@@ -84,7 +68,7 @@ TEST_CASE("a hexahedron that is flat, folded, inside out or names no point is re
   CHECK(says(refusal(mesh), "point #8 belongs to no hexahedron"));
   mesh.points[1][0] = std::numeric_limits<double>::quiet_NaN();
   CHECK(says(refusal(mesh), "point #1 of the mesh is not finite"));
-  CHECK(says(refusal({}), "has no hexahedron"));
+  CHECK(says(refusal(HexahedralMesh{}), "has no hexahedron"));
   CHECK_THROWS_AS(hexahedral_box({1, 0, 1}, {1, 1, 1}), InvalidArgument);
 }
 
