@@ -7,8 +7,9 @@ namespace demonstration {
 Scene wall(bool is_quick, const Watch& watch) {
   const double h = 1.0 / 240, seconds = is_quick ? 0.15 : 5;
   // The margin is as long as the way of the ball in a step: boxes that it throws meet their neighbours in
-  // that step. To 1e-4 of speeds and masses like the ball's a light box may be a centimetre off in a step;
-  // with 3e-5 overlaps stay at 1.8 to 2.5 mm, whatever the margin.
+  // that step. To 1e-4 of speeds
+  // and masses like the ball's a light box may be a centimetre off in a step: overlaps are 2 to 10 mm, as the
+  // run chances; with 3e-5 they were 1.8 to 2.5 at four margins.
   AnimationLoop loop{World{RigidBodies{}},
                      Constraints{Contact{Coulomb{.friction = 0.5}}},
                      NativeCollision{.margin = 0.034},
