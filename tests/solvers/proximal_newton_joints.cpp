@@ -64,8 +64,8 @@ TEST_CASE("a stack with joints and springs in it converges in every step") {
 
 // Sliding, bouncing, hanging in a closed loop of joints. One run is chance, since its bounces are; of 2400
 // steps of eight accelerated sweeps give up in 260, this method in 161, and both in one chain, the default,
-// in 85.
-TEST_CASE("where sweeps give up Newton's method gives up less often, and the chain of both less than that") {
+// in 19.
+TEST_CASE("where sweeps give up Newton's method gives up less often, and the chain of both much less") {
   int alone = 0, swept = 0, chained = 0;
   for (const double foot : {2.5, 2.7, 2.8, 2.9, 3.0, 3.1, 3.2, 3.3}) {
     auto newton = jointed_loop(ProximalNewton{.tolerance = 1e-9}, foot);
@@ -77,7 +77,7 @@ TEST_CASE("where sweeps give up Newton's method gives up less often, and the cha
   }
   CAPTURE(alone, swept, chained);
   CHECK(alone < swept);
-  CHECK(chained < alone);
+  CHECK(4 * chained < alone);
 }
 
 TEST_CASE("the same start gives the same bits") {

@@ -36,12 +36,12 @@ struct NewtonLimits {
 
 /// Opens when the sweeps so far have cost what it is likely to, and at their pace will cost as much again:
 /// then neither an island that sweeps would have ended soon nor one that they never end takes more than some
-/// twice the better of both. It may spend as much as the sweeps have, and as much again whenever that halved
-/// the error; where it fails it opens again after twice the sweeps that it has cost, and no sooner than after
-/// twice the last wait. From cold the first opening is from λ as it was before the sweeps: they leave it
-/// where each step of Newton's method changes which rows carry, and ten boxes cost 29 factorizations in place
-/// of two. Warm they have helped, and λ from before them is for the second opening. From the sweeps' λ ε
-/// begins large, and grows where it stalls.
+/// twice the better of both. It may spend as much as the sweeps have, with a larger ε where it stalls, and as
+/// much again whenever that halved the error; where it fails it opens again after twice the sweeps that it
+/// has cost, and no sooner than after twice the last wait. From cold the first opening is from λ as it was
+/// before the sweeps: they leave it where each step of Newton's method changes which rows carry, and ten
+/// boxes cost 29 factorizations in place of two. Warm they have helped, and λ from before them is for the
+/// second opening. From the sweeps' λ ε begins large, and grows where it stalls.
 template <class Criterion, class Problem, class Pursuit>
 class NewtonStage {
  public:
@@ -91,13 +91,15 @@ class NewtonStage {
       point.begin();
       const int share = std::max(2 * likely, int(pursuit_.sweeps() / cost_));
       double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(pursuit_.best()));
-      for (limits_.max_iterations = share; !(point.run() && point.is_met());
-           limits_.max_iterations += share) {
+      limits_.max_iterations = share;
+      while (!(point.run() && point.is_met())) {
         point.give_best();
         if (!point.restart()) break;
+        if (point.has_time()) continue;
         const double error = Criterion::sum(point.measure);
         if (!(error < 0.5 * smallest)) break;
         smallest = error;
+        limits_.max_iterations += share;
       }
       if (!(energy() <= allowed)) pursuit_.back_to_best();
       point.measure = problem_.measure();
