@@ -1,3 +1,5 @@
+#include <delassus/solvers/proximal_newton.hpp>
+
 #include "scenes.hpp"
 
 #include "catch.hpp"
@@ -112,6 +114,29 @@ TEST_CASE("a budget counts from the first island of each step, and the report sa
     REQUIRE(r.sweeps == 20);          // the look at 20 s after the first is the twentieth after a sweep
     REQUIRE(time - before == 21.0);   // and the first one, before any
   }
+}
+
+// Gathering, and two factorizations and what goes with them, take as long as some fifty sweeps of ten boxes.
+TEST_CASE("Newton's stage is not begun where it would end after the deadline") {
+  const auto start = problem_of(1, 10);
+  for (const auto& [looks, is_begun] : {std::pair(30, false), std::pair(300, true)}) {
+    auto p = start;
+    double time = 0;
+    const SolveReport r = solve_until(p, AcceleratedGaussSeidel{.tolerance = 1e-12, .max_iterations = 100000},
+                                      looks - 1.0, ScriptedClock{&time, 1});
+    CAPTURE(looks);
+    REQUIRE((r.factorizations > 0) == is_begun);
+    if (!is_begun) REQUIRE(r.status == Status::deadline);
+    if (!is_begun) REQUIRE(r.sweeps >= 20);
+  }
+}
+
+TEST_CASE("Newton's method alone ends at the first look after the deadline, with the status that says so") {
+  auto p = problem_of(1, 10);
+  double time = 0;
+  const SolveReport r = solve_until(p, ProximalNewton{.tolerance = 0}, 2.0, ScriptedClock{&time, 1});
+  REQUIRE(r.status == Status::deadline);
+  REQUIRE(r.factorizations <= 3);
 }
 
 TEST_CASE("a budget below zero and a deadline that is no number are refused") {

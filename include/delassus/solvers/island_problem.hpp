@@ -130,6 +130,8 @@ class IslandProblem {
   double worst_change() const { return worst_change_; }
   /// A solver asks after each sweep; only `WithDeadline` ever says yes.
   static constexpr bool is_out_of_time() { return false; }
+  /// Before what takes as long as so many sweeps.
+  static constexpr bool has_time_for(double) { return true; }
   /// Whether `tell` reads λ.
   bool tells_forces() const {
     if constexpr (requires { observer_.wants_forces(); }) return observer_.wants_forces();

@@ -63,6 +63,7 @@ class NewtonStage {
   /// where Newton's method cannot act nothing is changed.
   bool opens() {
     if (pursuit_.sweeps() < opening_) return false;
+    if (!is_gathered_ && !problem_.has_time_for(gathering)) return false;
     if (!std::exchange(is_gathered_, true)) {
       if (space_.body.gather(problem_)) {
         cost_ = space_.body.cost_in_sweeps();
@@ -71,7 +72,9 @@ class NewtonStage {
         opening_ = never;
       }
     }
-    return pursuit_.sweeps() >= opening_ && pursuit_.likely_left() >= likely * cost_;
+    const double work = likely * cost_;
+    return pursuit_.sweeps() >= opening_ && pursuit_.likely_left() >= work &&
+           problem_.has_time_for(around * work);
   }
 
   /// The rows keep the better of what they had and what was found.
@@ -80,6 +83,7 @@ class NewtonStage {
     pursuit_.name("newton");
     ProximalPoint<Criterion, NewtonLimits, Problem, Body> point(limits_, problem_, space_.body);
     point.sweeps = pursuit_.sweeps();
+    point.work = around * cost_;
     const double allowed = 100 * std::max(energy(), space_.body.energy_of_stopping(problem_));
     const bool from_start = openings_++ == (pursuit_.first_error() > cold ? 0 : 1);
     if (from_start)
@@ -113,8 +117,11 @@ class NewtonStage {
 
  private:
   static constexpr int least = 20, never = std::numeric_limits<int>::max();
-  static constexpr int likely = 2;      ///< factorizations, of a warm stack
-  static constexpr double cold = 1e-2;  ///< an error after the first sweep
+  static constexpr int likely = 2;  ///< factorizations, of a warm stack
+  static constexpr int gathering =
+      20;  ///< sweeps that take as long as gathering an island for the first time
+  static constexpr double around = 1.5;  ///< with what ends an opening, where a deadline is near
+  static constexpr double cold = 1e-2;   ///< an error after the first sweep
 
   /// Σ w_i |λ_i|². Where contacts depend on each other λ may run away along what moves nothing; one ten times
   /// larger than the sweeps', and than what stops all bodies at once, is not taken: its rounding alone would

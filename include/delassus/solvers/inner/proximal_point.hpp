@@ -70,7 +70,7 @@ class ProximalPoint {
   bool has_time() {
     if (std::max(factorizations, rounds_ - 1) >= solver_.max_iterations) return false;
     if (factorizations >= std::max(1, solver_.min_iterations))
-      is_late_ = is_late_ || problem_.is_out_of_time();
+      is_late_ = is_late_ || !problem_.has_time_for(work);
     return !is_late_;
   }
   bool is_late() const { return is_late_; }
@@ -83,6 +83,7 @@ class ProximalPoint {
   int factorizations = 0, sweeps = 0;  ///< sweeps: what the observer is told beside them
   Measure measure{};                   ///< of the last λ
   double epsilon = 0;
+  double work = 0;  ///< of a factorization, in sweeps: what a deadline must leave time for
 
  private:
   /// Newton's method around one λ̂, until F has fallen by 1e4 or λ(u) is good enough; false when it stalls.
