@@ -32,15 +32,8 @@ class CollisionEngine {
     out.clear();
     report_ = {};
     find_pairs(colliders, h, settings, filter);
-    next_memory_.clear();
-    std::size_t last = 0;
-    const RestingPair nothing;
-    for (const Job& job : jobs_) {
-      while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
-      const bool is_known = last < memory_.size() && memory_[last].pair == job.pair;
-      collide(colliders, job, h, settings, is_known ? memory_[last] : nothing, out);
-    }
-    memory_.swap(next_memory_);
+    recall_pairs();
+    for (std::size_t k = 0; k < jobs_.size(); ++k) collide(colliders, jobs_[k], h, settings, memory_[k], out);
     report_.points = Index(out.size());
     return report_;
   }
@@ -63,7 +56,8 @@ class CollisionEngine {
   template <class Filter>
   void find_pairs(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
                   const Filter& filter) {
-    boxes_.clear();
+    boxes_.resize(colliders.size());
+    summary_.resize(colliders.size());
     half_spaces_.clear();
     pairs_.clear();
     jobs_.clear();
@@ -72,9 +66,9 @@ class CollisionEngine {
           !colliders[i].shape.is_kept(),
           "a body has a mesh or a compound for its shape; put the WithMeshes{...} or WithCompounds{...} that "
           "keeps it around this loop's collision backend");
-      const bool is_bounded = colliders[i].shape.kind != ShapeKind::half_space;
-      if (!is_bounded) half_spaces_.push_back(i);
-      boxes_.push_back(is_bounded ? inner::alarm_box(colliders[i], h, settings) : Aabb());
+      summary_[i] = inner::summary_of(colliders[i]);
+      if (is_half_space(colliders[i])) half_spaces_.push_back(i);
+      boxes_[i] = inner::alarm_box(colliders[i], summary_[i], h, settings);
     }
     find_candidates(colliders);
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
@@ -107,23 +101,49 @@ class CollisionEngine {
     jobs_.push_back({pair, a, b});
   }
 
-  /// One pair: distance, patch, choice of points, names. In the frame of A until the points are written.
+  /// Gives every pair of this step its place in the memory. Mostly the pairs are those of the last one, and stay.
+  void recall_pairs() {
+    const auto is_of = [](const RestingPair& m, const Job& job) { return m.pair == job.pair; };
+    if (std::equal(memory_.begin(), memory_.end(), jobs_.begin(), jobs_.end(), is_of)) return;
+    next_memory_.clear();
+    std::size_t last = 0;
+    for (const Job& job : jobs_) {
+      while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
+      if (last < memory_.size() && is_of(memory_[last], job))
+        next_memory_.push_back(memory_[last]);
+      else
+        next_memory_.emplace_back().pair = job.pair;
+    }
+    memory_.swap(next_memory_);
+    next_memory_.reserve(memory_.capacity());  // now, and not when the pairs change next in a warm step
+  }
+
+  /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in full.
   void collide(std::span<const Collider> colliders, const Job& job, double h,
-               const CollisionSettings& settings, const RestingPair& last, std::vector<ContactPoint>& out) {
+               const CollisionSettings& settings, RestingPair& pair, std::vector<ContactPoint>& out) {
     const Collider &a = colliders[job.a], &b = colliders[job.b];
+    const inner::Summary &of_a = summary_[job.a], &of_b = summary_[job.b];
     const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
                       .rotation = a.pose.rotation.transpose() * b.pose.rotation};
-    const double scale = inner::pair_scale(a.shape, b.shape);
-    const double reach = settings.contact_distance + inner::widest_margin(a, b, scale, h, settings);
-    RestingPair& now = next_memory_.emplace_back();
+    const double scale = std::min(of_a.scale, of_b.scale);
+    const double reach =
+        settings.contact_distance + inner::widest_margin(of_a.speed + of_b.speed, scale, h, settings);
+    const std::uint64_t shapes = (of_a.shape * 3 + of_b.shape) * 11 + std::uint64_t(settings.max_points);
+    Vec3 n;
+    if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n))
+      return collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, out);
+    pair.normal = a.pose.rotation * n;
+    for (int k = 0; k < pair.count; ++k)
+      add(a, job, settings, pair.normal, repeated_[k], repeated_[k].name, out);
+  }
+
+  /// Distance, patch, choice of points, names.
+  void collide_in_full(const Collider& a, const Collider& b, const Job& job, const Pose& b_in_a, double scale,
+                       double reach, double h, const CollisionSettings& settings, std::uint64_t shapes,
+                       RestingPair& now, std::vector<ContactPoint>& out) {
+    const RestingPair last = now;
+    now = {};
     now.pair = job.pair;
-    const std::uint64_t shapes = (inner::fingerprint(a.shape) * 3 + inner::fingerprint(b.shape)) * 11 + std::uint64_t(settings.max_points);
-    if (Vec3 n; now.repeat(last, shapes, b_in_a, reach, scale, repeated_, n)) {
-      now.normal = a.pose.rotation * n;
-      for (int k = 0; k < now.count; ++k)
-        add(a, job, settings, now.normal, repeated_[k], now.point[k].id, out);
-      return sort_last(now.count, out);
-    }
     now.owner = last.owner;
     ++report_.queries;
 
@@ -201,6 +221,7 @@ class CollisionEngine {
   CollisionReport report_;
   Patch patch_;
   std::vector<Aabb> boxes_;
+  std::vector<inner::Summary> summary_;
   std::vector<BoxTag> tags_;
   std::vector<Index> half_spaces_;
   std::vector<CandidatePair> pairs_;

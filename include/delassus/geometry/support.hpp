@@ -164,24 +164,26 @@ namespace inner {
 /// rotation is large enough to need std::hypot.
 inline double across(const Mat3& R, int k) { return std::sqrt(R(k, 0) * R(k, 0) + R(k, 1) * R(k, 1)); }
 
-/// How far a shape that is symmetric about its origin reaches along the k-th axis of the world, m.
-inline double half_width(const Shape& s, const Mat3& R, int k) {
-  const double along = std::abs(R(k, 2));
+/// How far a shape that is symmetric about its origin reaches along each axis of the world, m.
+inline Vec3 half_widths(const Shape& s, const Mat3& R) {
+  const auto along = [](const auto& axis) { return Vec3(axis(0), axis(1), axis(2)); };
   switch (s.kind) {
     case ShapeKind::sphere:
-      return s.size[0];
+      return Vec3(s.size[0], s.size[0], s.size[0]);
     case ShapeKind::box:
     case ShapeKind::mesh:
     case ShapeKind::compound:
-      return std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + along * s.size[2];
+      return along([&](int k) {
+        return std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + std::abs(R(k, 2)) * s.size[2];
+      });
     case ShapeKind::capsule:
-      return along * s.size[1] + s.size[0];
+      return along([&](int k) { return std::abs(R(k, 2)) * s.size[1] + s.size[0]; });
     case ShapeKind::cylinder:
-      return along * s.size[1] + across(R, k) * s.size[0];
+      return along([&](int k) { return std::abs(R(k, 2)) * s.size[1] + across(R, k) * s.size[0]; });
     case ShapeKind::ellipsoid:
-      return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm();
+      return along([&](int k) { return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm(); });
     default:
-      return std::numeric_limits<double>::infinity();
+      return Vec3::Constant(std::numeric_limits<double>::infinity());
   }
 }
 
@@ -229,13 +231,8 @@ inline Aabb tight_box(const Shape& s, const Pose& pose) {
   if (s.kind == ShapeKind::none) return Aabb();
   if (s.kind == ShapeKind::convex_hull) return inner::hull_box(*s.hull, pose);
   if (s.kind == ShapeKind::cone) return inner::cone_box(s, pose);
-  Vec3 low, high;
-  for (int k = 0; k < 3; ++k) {
-    const double reach = inner::half_width(s, pose.rotation, k);
-    low[k] = pose.position[k] - reach;
-    high[k] = pose.position[k] + reach;
-  }
-  return Aabb(low, high);
+  const Vec3 reach = inner::half_widths(s, pose.rotation);
+  return Aabb(pose.position - reach, pose.position + reach);
 }
 
 }  // namespace delassus

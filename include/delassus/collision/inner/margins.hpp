@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/half_space.hpp>
+#include <delassus/collision/inner/summary.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/support.hpp>
 
@@ -33,25 +34,17 @@ namespace inner {
 
 inline constexpr double margin_share = 5e-3, margin_limit = 0.5;
 
-inline double pair_scale(const Shape& a, const Shape& b) {
-  if (a.kind == ShapeKind::half_space) return length_scale(b);
-  if (b.kind == ShapeKind::half_space) return length_scale(a);
-  return std::min(length_scale(a), length_scale(b));
-}
-
-/// No point of the body is faster than this, m/s.
-inline double top_speed(const Collider& c) {
-  return c.velocity.norm() + c.angular_velocity.norm() * outer_radius(c.shape);
-}
-
 inline double limited_margin(double way, double scale) {
   return std::min(std::max(margin_share * scale, way), margin_limit * scale);
 }
 
-/// A margin that no contact of the pair exceeds, whatever its normal.
+/// A margin that no contact of a pair exceeds whose speeds sum up to `speed`, whatever its normal.
+inline double widest_margin(double speed, double scale, double h, const CollisionSettings& s) {
+  return s.margin >= 0 ? s.margin : limited_margin(speed * h, scale);
+}
 inline double widest_margin(const Collider& a, const Collider& b, double scale, double h,
                             const CollisionSettings& s) {
-  return s.margin >= 0 ? s.margin : limited_margin((top_speed(a) + top_speed(b)) * h, scale);
+  return widest_margin(top_speed(a) + top_speed(b), scale, h, s);
 }
 
 /// The margin of a contact at `point` with the world normal n; vₙ is the relative normal velocity there.
@@ -64,18 +57,18 @@ inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, 
 }
 
 /// The tight box, wider by the collider's share of any margin: a pair within its margin has boxes that touch.
-/// A body that is not finite has none. (min(x, L_a/2) + min(y, L_b/2) ≥ min(x + y, min(L_a, L_b)/2), and L_a
-/// + L_b ≥ 2 min(L_a, L_b).)
-inline Aabb alarm_box(const Collider& c, double h, const CollisionSettings& s) {
+/// A half-space and a body that is not finite have none. (min(x, L_a/2) + min(y, L_b/2) ≥ min(x + y, min(L_a,
+/// L_b)/2), and L_a + L_b ≥ 2 min(L_a, L_b).)
+inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const CollisionSettings& s) {
+  if (c.shape.kind == ShapeKind::half_space) return Aabb();
   const Aabb box = tight_box(c.shape, c.pose);
   const Vec3 sizes = box.max() - box.min();
-  if (box.isEmpty() || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(top_speed(c)))
+  if (is_empty(box) || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(of.speed))
     return Aabb();
-  const double scale = length_scale(c.shape);
   const double share =
       s.margin >= 0 ? 0.5 * s.margin
-                    : std::min(std::max(0.5 * margin_share * scale, top_speed(c) * h), margin_limit * scale);
-  const double more = 0.5 * s.contact_distance + share + 1e-12 * sizes.maxCoeff();
+                    : std::min(std::max(0.5 * margin_share * of.scale, of.speed * h), margin_limit * of.scale);
+  const double more = 0.5 * s.contact_distance + share + 1e-12 * std::max({sizes[0], sizes[1], sizes[2]});
   const Vec3 diagonal(more, more, more);
   return Aabb(box.min() - diagonal, box.max() + diagonal);
 }
