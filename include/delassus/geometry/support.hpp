@@ -120,7 +120,7 @@ inline double outer_radius(const Shape& s) {
     case ShapeKind::box:
     case ShapeKind::mesh:
     case ShapeKind::compound:
-      return Vec3(s.size[0], s.size[1], s.size[2]).norm();
+      return std::sqrt(s.size[0] * s.size[0] + s.size[1] * s.size[1] + s.size[2] * s.size[2]);
     case ShapeKind::capsule:
       return s.size[0] + s.size[1];
     case ShapeKind::cylinder:

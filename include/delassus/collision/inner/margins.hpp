@@ -61,7 +61,7 @@ inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, 
 /// L_b)/2), and L_a + L_b ≥ 2 min(L_a, L_b).)
 inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const CollisionSettings& s) {
   if (c.shape.kind == ShapeKind::half_space) return Aabb();
-  const Aabb box = tight_box(c.shape, c.pose);
+  Aabb box = tight_box(c.shape, c.pose);
   const Vec3 sizes = box.max() - box.min();
   if (is_empty(box) || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(of.speed))
     return Aabb();
@@ -69,8 +69,8 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
       s.margin >= 0 ? 0.5 * s.margin
                     : std::min(std::max(0.5 * margin_share * of.scale, of.speed * h), margin_limit * of.scale);
   const double more = 0.5 * s.contact_distance + share + 1e-12 * std::max({sizes[0], sizes[1], sizes[2]});
-  const Vec3 diagonal(more, more, more);
-  return Aabb(box.min() - diagonal, box.max() + diagonal);
+  for (int k = 0; k < 3; ++k) box.min()[k] -= more, box.max()[k] += more;
+  return box;
 }
 
 inline Plane plane_of(const Shape& s, const Pose& pose) {
