@@ -38,6 +38,23 @@ TEST_CASE("a warm detect() allocates nothing") {
   CHECK(allocations == before);
 }
 
+TEST_CASE("bodies that part for the first time in a warm detect(), and meet again, allocate nothing") {
+  Scene scene;
+  for (int i = 0; i < 3; ++i) {
+    scene.add(Box{1, 1, 1}, {2.0 * i, 0, 0}, Mat3::Identity(), false);
+    scene.add(Box{1, 1, 1}, {2.0 * i + 0.1, 0, 1 - 1e-5});
+  }
+  for (int step = 0; step < 20; ++step) scene.detect();
+  REQUIRE(scene.report.pairs == 3);
+  const long before = allocations;
+  for (const double way : {0.02, -0.02}) {
+    scene.colliders[3].pose.position[2] += way;
+    scene.detect();
+    CHECK(scene.report.pairs == (way > 0 ? 2 : 3));
+  }
+  CHECK(allocations == before);
+}
+
 TEST_CASE("a warm detect() of meshes on a mesh allocates nothing") {
   MeshScene scene;
   scene.add(scene.collision.add(flat_grid(4, 31, 0.3)), {0, 0, 0}, Mat3::Identity(), false);
