@@ -164,4 +164,35 @@ TEST_CASE("another hull in the place of one that was rested on is noticed, and s
   CHECK(fewer.contacts.size() == 1);
 }
 
+TEST_CASE("pairs go on resting while others part and meet") {
+  Scene scene;
+  for (int i = 0; i < 3; ++i) {
+    scene.add(Box{1, 1, 1}, {2.0 * i, 0, 0}, Mat3::Identity(), false);
+    scene.add(Box{1, 1, 1}, {2.0 * i + 0.1, 0, 1 - 1e-5});
+  }
+  for (int step = 0; step < 3; ++step) scene.detect();
+  const std::vector<ContactPoint> start = scene.contacts;
+  REQUIRE(start.size() == 12);
+  const auto is_kept = [&](std::size_t of, std::size_t at) {
+    bool is_same = true;
+    for (std::size_t k = 0; k < 4; ++k)
+      is_same = is_same && start[of + k].pair == scene.contacts[at + k].pair &&
+                start[of + k].feature == scene.contacts[at + k].feature &&
+                (start[of + k].point_a - scene.contacts[at + k].point_a).norm() < 1e-12;
+    return is_same;
+  };
+  scene.colliders[3].pose.position[2] += 0.02;
+  scene.detect();
+  CHECK(scene.report.queries == 0);
+  REQUIRE(scene.contacts.size() == 8);
+  CHECK(is_kept(0, 0));
+  CHECK(is_kept(8, 4));
+  scene.colliders[3].pose.position[2] -= 0.02;
+  scene.detect();
+  CHECK(scene.report.queries == 1);
+  REQUIRE(scene.contacts.size() == 12);
+  CHECK(is_kept(0, 0));
+  CHECK(is_kept(8, 8));
+}
+
 }  // namespace resting_pair_tests
