@@ -167,7 +167,9 @@ TEST_CASE("no fast body slips through the boxes: broad phase and margin agree") 
     const CollisionSettings settings;
     const double margin = inner::widest_margin(a, b, std::min(small, big), h, settings);
     b.pose.position = (small + big + 0.999999 * margin) * Vec3::UnitX();
-    const auto box = [&](const Collider& c) { return inner::alarm_box(c, inner::summary_of(c), h, settings); };
+    const auto box = [&](const Collider& c) {
+      return inner::alarm_box(c, inner::summary_of(c), h, settings);
+    };
     CHECK(box(a).intersects(box(b)));
   }
 }

@@ -101,7 +101,8 @@ class CollisionEngine {
     jobs_.push_back({pair, a, b});
   }
 
-  /// Gives every pair of this step its place in the memory. Mostly the pairs are those of the last one, and stay.
+  /// Gives every pair of this step its place in the memory. Mostly the pairs are those of the last one, and
+  /// stay.
   void recall_pairs() {
     const auto is_of = [](const RestingPair& m, const Job& job) { return m.pair == job.pair; };
     if (std::equal(memory_.begin(), memory_.end(), jobs_.begin(), jobs_.end(), is_of)) return;
@@ -118,7 +119,8 @@ class CollisionEngine {
     next_memory_.reserve(memory_.capacity());  // now, and not when the pairs change next in a warm step
   }
 
-  /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in full.
+  /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in
+  /// full.
   void collide(std::span<const Collider> colliders, const Job& job, double h,
                const CollisionSettings& settings, RestingPair& pair, std::vector<ContactPoint>& out) {
     const Collider &a = colliders[job.a], &b = colliders[job.b];

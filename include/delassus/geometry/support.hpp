@@ -181,7 +181,8 @@ inline Vec3 half_widths(const Shape& s, const Mat3& R) {
     case ShapeKind::cylinder:
       return along([&](int k) { return std::abs(R(k, 2)) * s.size[1] + across(R, k) * s.size[0]; });
     case ShapeKind::ellipsoid:
-      return along([&](int k) { return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm(); });
+      return along(
+          [&](int k) { return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm(); });
     default:
       return Vec3::Constant(std::numeric_limits<double>::infinity());
   }

@@ -65,9 +65,9 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
   const Vec3 sizes = box.max() - box.min();
   if (is_empty(box) || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(of.speed))
     return Aabb();
-  const double share =
-      s.margin >= 0 ? 0.5 * s.margin
-                    : std::min(std::max(0.5 * margin_share * of.scale, of.speed * h), margin_limit * of.scale);
+  const double share = s.margin >= 0 ? 0.5 * s.margin
+                                     : std::min(std::max(0.5 * margin_share * of.scale, of.speed * h),
+                                                margin_limit * of.scale);
   const double more = 0.5 * s.contact_distance + share + 1e-12 * std::max({sizes[0], sizes[1], sizes[2]});
   for (int k = 0; k < 3; ++k) box.min()[k] -= more, box.max()[k] += more;
   return box;

@@ -40,8 +40,8 @@ struct RestingPair : PairMemory {
               [this](std::uint8_t i, std::uint8_t k) { return point[i].id < point[k].id; });
   }
 
-  /// The points as they are now, in the order of their ids, and the normal n, in the frame of A; false when they
-  /// have to be made in full.
+  /// The points as they are now, in the order of their ids, and the normal n, in the frame of A; false when
+  /// they have to be made in full.
   bool repeat(std::uint64_t of, const Pose& b_in_a, double reach, double scale,
               std::array<PatchPoint, capacity>& now, Vec3& n) const {
     if (!(reach <= margin) || of != shapes) return false;

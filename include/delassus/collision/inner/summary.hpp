@@ -28,7 +28,8 @@ inline double top_speed(const Collider& c) {
   return c.velocity.norm() + c.angular_velocity.norm() * outer_radius(c.shape);
 }
 
-/// The size that a shape brings to its pairs, m, of which the smaller one counts: a half-space leaves it to the other.
+/// The size that a shape brings to its pairs, m, of which the smaller one counts: a half-space leaves it to
+/// the other.
 inline double scale_in_pairs(const Shape& s) {
   return s.kind == ShapeKind::half_space ? std::numeric_limits<double>::infinity() : length_scale(s);
 }
