@@ -72,11 +72,34 @@ TEST_CASE("a face holds the support point, looks outward and lies in its plane")
         const Vec3 edge = face.point[(k + 1) % face.count] - face.point[k];
         CHECK(edge.cross(face.point[(k + 2) % face.count] - face.point[k]).dot(face.normal) > 0);
       }
-      // A cap is an octagon in its rim: it may miss the rim by r (1 − cos 22.5°) < 0.0762 r.
       CHECK(highest <= d.dot(reach) + 1e-15);
-      const bool is_round = s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone;
-      CHECK(highest >= d.dot(reach) - (is_round ? 0.0762 * s.size[0] : 1e-15));
+      CHECK(highest >= d.dot(reach) - 1e-15);
     }
+}
+
+// Up to a slope of 2e-3 the corners stay where they are on the body, but for one within 1e-3 r of the lowest point.
+TEST_CASE("a cap that leans by more than 1e-6 has the lowest point of its rim, and one that lies flat its corners") {
+  const double r = 0.3;
+  for (const Shape& s : {Shape(Cylinder{r, 0.8}), Shape(Cone{r, 0.8})})
+    for (const double slope : {0.9e-6, 1.1e-6, 1.9e-3, 2.1e-3, 0.1})
+      for (int i = 0; i < 720; ++i) {
+        const double angle = i * M_PI / 360 + 1e-4, from_corner = std::remainder(angle, M_PI / 4);
+        const Vec3 d = Vec3(slope * std::cos(angle), slope * std::sin(angle), -1).normalized();
+        const Face flat = face_towards(s, -Vec3::UnitZ()), face = face_towards(s, d);
+        const bool leans = slope > 1e-6, is_beside = leans && std::abs(from_corner) < 1e-3, is_turned = slope > 2e-3;
+        CAPTURE(name(s.kind), slope, angle);
+        REQUIRE(face.count == (leans && !is_beside && !is_turned ? 9 : 8));
+        int corners = 0, lowest = 0;
+        for (int k = 0; k < face.count; ++k) {
+          for (int j = 0; j < 8; ++j)
+            corners += face.corner[k] == flat.corner[j] && face.point[k] == flat.point[j];
+          lowest += face.corner[k] == Face::lowest_of_rim && (face.point[k] - support(s, d)).norm() < 1e-15;
+          const Vec3 edge = face.point[(k + 1) % face.count] - face.point[k];
+          CHECK(edge.cross(face.point[(k + 2) % face.count] - face.point[k]).dot(face.normal) > 0);
+        }
+        if (!is_turned) CHECK(corners == (is_beside ? 7 : 8));
+        CHECK(lowest == (leans ? 1 : 0));
+      }
 }
 
 TEST_CASE("a corner keeps its name in every face it belongs to") {

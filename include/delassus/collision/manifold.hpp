@@ -42,23 +42,24 @@ inline void reverse(Face& face) {
 }
 
 inline bool is_cap(const Shape& s, const Face& face) {
-  return (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone) && face.count == 8;
+  return (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone) && face.count >= 8;
 }
 
-/// Of two round caps, turns the octagon of one so that its corners look where the other's do: the caps have
-/// no corners of their own, and equal caps one on the other shall overlap in an octagon, however they are
-/// turned.
-inline void align_octagons(const Face& cap, Face& other) {
-  Vec3 centre = Vec3::Zero(), other_centre = Vec3::Zero();
-  for (int k = 0; k < 8; ++k) {
-    centre += cap.point[k] / 8;
-    other_centre += other.point[k] / 8;
+/// Of two round caps, gives the other one corners where the first has its own: the caps have none, and equal
+/// caps one on the other shall overlap in all of them, however they are turned. The origins of the bodies lie
+/// on their axes.
+inline void align_octagons(const Face& cap, const Vec3& origin, Face& other, const Vec3& other_origin) {
+  const auto centre = [](const Face& f, const Vec3& on_axis) {
+    return Vec3(on_axis + f.normal * f.normal.dot(f.point[0] - on_axis));
+  };
+  const Vec3 from = centre(cap, origin), to = centre(other, other_origin);
+  const double radius = (other.point[0] - to).norm();
+  for (int k = 0; k < cap.count; ++k) {
+    const Vec3 spoke = cap.point[k] - from;
+    other.point[k] = to + radius * (spoke - other.normal * other.normal.dot(spoke)).normalized();
+    other.corner[k] = cap.corner[k];
   }
-  const double radius = (other.point[0] - other_centre).norm();
-  for (int k = 0; k < 8; ++k) {
-    const Vec3 spoke = cap.point[k] - centre;
-    other.point[k] = other_centre + radius * (spoke - other.normal * other.normal.dot(spoke)).normalized();
-  }
+  other.count = cap.count;
 }
 
 /// The corners of the overlap, lifted along n from the subject to the plane of the polygon `clip`.
@@ -146,7 +147,8 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
   } else if (face_a.count >= 2 && face_b.count >= 2 && std::max(slope_a, slope_b) > steepest) {
     const bool clip_is_a = slope_a >= slope_b;
     if (inner::is_cap(a, face_a) && inner::is_cap(b, face_b))
-      clip_is_a ? inner::align_octagons(face_b, face_a) : inner::align_octagons(face_a, face_b);
+      clip_is_a ? inner::align_octagons(face_b, b_in_a.position, face_a, Vec3::Zero())
+                : inner::align_octagons(face_a, Vec3::Zero(), face_b, b_in_a.position);
     inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
                             slack, patch);
   }

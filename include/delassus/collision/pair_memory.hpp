@@ -29,7 +29,8 @@ namespace inner {
 
 /// For each point of the patch the remembered one it continues, or −1: first by name, then by place. The
 /// place may have moved by 2e-2 of the scale on one of the bodies: a corner that slides over a face stays
-/// where it is on its own.
+/// where it is on its own. The lowest point of a rim that has come to lie flat leaves its place to the corner
+/// next to it, over which the body had tipped.
 struct Continuation {
   std::array<std::int8_t, Patch::capacity> of;
 
@@ -42,7 +43,8 @@ struct Continuation {
     for (int k = 0; k < last.count; ++k) {
       if (is_taken[k]) continue;
       int nearest = -1;
-      double best = 4e-4 * scale * scale;
+      double best = is_lowest_of_rim(last.point[k].name) ? std::numeric_limits<double>::infinity()
+                                                         : 4e-4 * scale * scale;
       for (int i = 0; i < patch.count; ++i) {
         if (of[i] >= 0) continue;
         const double on_a = (patch.point[i].a - last.point[k].local_a).squaredNorm();

@@ -9,9 +9,11 @@
 namespace delassus {
 
 /// Up to 16 corners in order around the face; 2 for an edge, 0 when the shape only offers a point. Body
-/// frame, m. `corner` names each corner: the same material point keeps its name in every face it belongs to.
+/// frame, m. `corner` names each corner: the same material point keeps its name in every face it belongs to,
+/// and the lowest point of a rim, which moves on the body as that leans, has a name of its own.
 struct Face {
   static constexpr int capacity = 16;
+  static constexpr int lowest_of_rim = 0x8000;
   std::array<Vec3, capacity> point;
   std::array<std::uint16_t, capacity> corner;
   int count = 0;
@@ -50,22 +52,37 @@ inline void mantle_line(double radius, double half, const Vec3& d, int name, Fac
   face.add({x, y, -half}, name + 1);
 }
 
-/// A cap that leans by less lies on its face: its contacts stay where they are on the body.
+/// A cap that leans by less lies on its face: its corners stay where they are on the body.
 inline constexpr double flat_slope = 2e-3;
+/// One that leans by less, as what rests does, has no lowest point.
+inline constexpr double level_slope = 1e-6;
 
-/// The disc of radius r at height z as an octagon, counter-clockwise seen from `side`. It is turned with the body where
-/// the disc lies flat across d, else so that its first corner is the farthest point of the rim along d: a rim that rolls
-/// touches there, not at a corner of the body nearby.
+/// The disc of radius r at height z as an octagon, counter-clockwise seen from `side`, and the farthest point
+/// of its rim along d: what rolls touches there, not at a corner nearby. The octagon is turned with the body
+/// where the disc lies flat across d, else so that this point is its first corner, for corners beside it
+/// would catch a rim that rolls. Of two within 1e-3 r of each other the corner goes.
 inline void octagon(double r, double z, const Vec3& d, int side, int name, Face& face) {
   face.normal = side * unit_axis(2);
-  const double across = std::hypot(d[0], d[1]);
-  const bool is_flat = across <= flat_slope * std::abs(d[2]);
-  const double x = is_flat ? r : r * d[0] / across, y = is_flat ? 0 : r * d[1] / across;
   constexpr double c = 0.70710678118654752440;
   constexpr double corners[8][2] = {{1, 0}, {c, c}, {0, 1}, {-c, c}, {-1, 0}, {-c, -c}, {0, -1}, {c, -c}};
+  const double across = std::hypot(d[0], d[1]);
+  const bool is_flat = across <= flat_slope * std::abs(d[2]),
+             is_level = across <= level_slope * std::abs(d[2]);
+  const double x = is_level ? 1 : d[0] / across, y = is_level ? 0 : side * d[1] / across;
+  int nearest = 0;
+  if (is_flat)
+    for (int k = 1; k < 8; ++k)
+      if (corners[k][0] * x + corners[k][1] * y > corners[nearest][0] * x + corners[nearest][1] * y)
+        nearest = k;
+  const double past =
+      is_flat ? corners[nearest][0] * y - corners[nearest][1] * x : 0;  // sine of the angle to there
   for (int k = 0; k < 8; ++k) {
-    const double along = corners[k][0], beside = side * corners[k][1];
-    face.add({x * along - y * beside, y * along + x * beside, z}, name + k);
+    const auto [along, beside] = corners[k];
+    const double u = is_flat ? along : x * along - y * beside, v = is_flat ? beside : y * along + x * beside;
+    const bool has_lowest = k == nearest && !is_level;
+    if (has_lowest && past < 0) face.add({r * x, side * r * y, z}, Face::lowest_of_rim);
+    if (!has_lowest || std::abs(past) >= 1e-3) face.add({r * u, side * r * v, z}, name + k);
+    if (has_lowest && past >= 0) face.add({r * x, side * r * y, z}, Face::lowest_of_rim);
   }
 }
 

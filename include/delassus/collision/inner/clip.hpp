@@ -30,6 +30,7 @@ struct ClipPolygon {
 inline std::uint32_t corner_name(bool is_of_a, std::uint32_t corner) {
   return (is_of_a ? 1u : 2u) << 30 | corner;
 }
+inline bool is_lowest_of_rim(std::uint32_t name) { return (name & 0x3fffffffu) == Face::lowest_of_rim; }
 inline std::uint32_t edge_name(const Face& f, int k) {
   const std::uint32_t u = f.corner[k], v = f.corner[(k + 1) % f.count];
   return (std::min(u, v) * 31u + std::max(u, v)) & 0x7fffu;

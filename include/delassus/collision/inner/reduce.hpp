@@ -8,9 +8,9 @@
 
 namespace delassus::inner {
 
-/// Chosen points of a patch, by index.
+/// Chosen points of a patch, by index; one more than stay while they are chosen.
 struct Choice {
-  std::array<std::int8_t, PairMemory::capacity> index{};
+  std::array<std::int8_t, PairMemory::capacity + 1> index{};
   int count = 0;
 
   void add(int i) { index[count++] = std::int8_t(i); }
@@ -80,6 +80,18 @@ inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
   return c;
 }
 
+/// Drops the chosen point that is nearest to another, the first of two.
+inline void drop_crowded(const Patch& patch, Choice& c) {
+  int crowded = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < c.count; ++i)
+    for (int j = 0; j < c.count; ++j) {
+      const double apart = (patch.point[c.index[i]].a - patch.point[c.index[j]].a).squaredNorm();
+      if (i != j && apart < least) least = apart, crowded = i;
+    }
+  c.index[crowded] = c.index[--c.count];
+}
+
 inline void drop_highest(const Patch& patch, Choice& c) {
   int highest = 0;
   for (int k = 1; k < c.count; ++k)
@@ -89,6 +101,8 @@ inline void drop_highest(const Patch& patch, Choice& c) {
 
 /// At most `limit` points. Last step's stay; when they miss the deepest by more than 5e-5 of the scale, it
 /// takes the place of the highest, so that the two on which a round cap tips remain on either side of it.
+/// The lowest point of a rim does so however little they miss: a body that rolls is held where it touches.
+/// Where there is room for all eight corners of an octagon they stay, to the same 5e-5.
 /// When they span less than 0.55 of what a new choice would (three corners of an octagon in a row and one
 /// across span 0.6), all are chosen anew. A choice that changes every step makes a stack walk.
 inline Choice reduce(const Patch& patch, const Continuation& continues, const Vec3& n, double scale,
@@ -98,15 +112,21 @@ inline Choice reduce(const Patch& patch, const Continuation& continues, const Ve
     for (int i = 0; i < patch.count; ++i) kept.add(i);
     return kept;
   }
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < patch.count && kept.count < limit; ++i) {
-    if (continues.of[i] < 0) continue;
-    kept.add(i);
-    least = std::min(least, patch.point[i].gap);
-  }
-  const Choice anew = choose_anew(patch, n, limit);
   const int lowest = deepest(patch);
-  if (!(least <= patch.point[lowest].gap + 5e-5 * scale)) {
+  const bool is_of_rim = is_lowest_of_rim(patch.point[lowest].name),
+             is_besides = is_of_rim && limit == PairMemory::capacity;
+  if (is_besides) kept.add(lowest);
+  for (int i = 0; i < patch.count && kept.count < limit + is_besides; ++i)
+    if (continues.of[i] >= 0 && !kept.has(i)) kept.add(i);
+  if (is_besides) {
+    fill(patch, limit + 1, kept);
+    drop_crowded(patch, kept);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kept.count; ++k) least = std::min(least, patch.point[kept.index[k]].gap);
+  const Choice anew = choose_anew(patch, n, limit);
+  const bool rolls_here = is_of_rim && !is_besides;
+  if (rolls_here ? !kept.has(lowest) : !(least <= patch.point[lowest].gap + 5e-5 * scale)) {
     if (kept.count == limit) drop_highest(patch, kept);
     kept.add(lowest);
   }
