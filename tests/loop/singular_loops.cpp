@@ -132,3 +132,67 @@ TEST_CASE("a parallel five-bar passes through the pose in which its rods are one
   CHECK(skew <= 1e-6);  // nothing tells left from right on the way there
   CHECK(lowest <= -0.2);
 }
+
+namespace {
+
+/// Rods of 1 m and 1 kg on ball joints, in one line between two hooks, under their weight.
+struct TautChain {
+  AnimationLoop<World<RigidBodies>, Constraints<BallJoint>, NewtonMidpoint> loop{
+      World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+  RigidBodies& rigid = bodies<RigidBodies>(loop.world());
+
+  explicit TautChain(int links) {
+    Anchor end = world_anchor(Vec3::Zero());
+    for (int k = 0; k < links; ++k) {
+      const auto rod = rigid.add({.position = {k + 0.5, 0, 0},
+                                  .mass = 1.0,
+                                  .inertia = Mat3(Vec3(1e-3, 1. / 12, 1. / 12).asDiagonal())});
+      loop.add(BallJoint::Item{end, anchor(rigid, rod, {-0.5, 0, 0})});
+      end = anchor(rigid, rod, {0.5, 0, 0});
+    }
+    loop.add(BallJoint::Item{world_anchor({double(links), 0, 0}), end});
+  }
+};
+
+}  // namespace
+
+// No tension holds a straight chain: its rows yield by R = 1e-10 W_kk h/2 a unit of impulse. Two rods hang at
+// θ where the tension is F = m g/(2 θ) and the joints, W_kk = 1/m at the hooks and 2/m between, are apart by
+// θ² = 4/m · 1e-10 h/2 · F h in all: θ³ = 1e-10 h² g, and half of it between the rods.
+TEST_CASE("two rods drawn straight between two hooks hang") {
+  for (const double h : {1e-2, 1e-3}) {
+    TautChain chain(2);
+    double gap = 0;
+    for (int n = 0; n < 500; ++n) {
+      const StepReport report = chain.loop.step(h);
+      REQUIRE(report.status <= Status::stalled);
+      gap = report.max_joint_violation;
+    }
+    const double sag = std::cbrt(1e-10 * h * h * 9.81);
+    double fast = 0;
+    for (const auto& v : chain.rigid.velocity()) fast = std::max(fast, v.norm());
+    CAPTURE(h, sag, gap, fast);
+    CHECK(chain.rigid.pose(0).position.z() == Approx(-sag / 2).epsilon(1e-3));
+    CHECK(gap == Approx(sag * sag / 2).epsilon(1e-2));
+    CHECK(fast <= 1e-3 * 9.81 * h);
+  }
+}
+
+// As many weights as links, L metres of them, on a parabola of slope α at its ends: F = L m g/(2 α), and its
+// length is L α²/6 more than the straight line's, of which each of L joints has 2/m · 1e-10 h/2 · F h: α³ =
+// 3e-10 L h² g. It is L α/4 deep. The polygon is within 1/L of the parabola, and what still swings of the
+// chain as much again.
+TEST_CASE("twenty rods drawn straight between two hooks hang on a parabola") {
+  const double h = 0.01, L = 20;
+  TautChain chain(20);
+  double gap = 0;
+  for (int n = 0; n < 500; ++n) {
+    const StepReport report = chain.loop.step(h);
+    REQUIRE(report.status <= Status::stalled);
+    gap = report.max_joint_violation;
+  }
+  const double slope = std::cbrt(3e-10 * L * h * h * 9.81), pull = L * 9.81 / (2 * slope);
+  CAPTURE(slope, pull);
+  CHECK(chain.rigid.pose(9).position.z() == Approx(-L * slope / 4).epsilon(2 / L));
+  CHECK(gap == Approx(1e-10 * h * h * pull).epsilon(2 / L));
+}

@@ -15,7 +15,7 @@ namespace delassus {
 
 /// One solve by `MidpointNewton`; where that does not converge, two of half the step, each of which may be
 /// halved again. A chain that snaps taut is a shock in a step, and has to be met in its time; every part
-/// keeps what the rule keeps.
+/// keeps what the rule keeps. A step that cannot be made so is begun again with rows that yield.
 template <class World, class Laws, class Rows>
 class MidpointHold;
 
@@ -26,8 +26,8 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   using T = typename Rows::Scalar;
 
   /// Leaves q₊ and v_next in the sets and the sum of the parts' λ in `rows`, which is linearised at the start
-  /// on entry, with λ a guess. Where a part is no number, or far from its equations, every body stays where
-  /// it was: what it misses would come back as energy.
+  /// on entry, with λ a guess. Where a part is no number, or far from its equations, rows that yield too,
+  /// every body stays where it was: what it misses would come back as energy.
   template <class I>
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
     keep(world);
@@ -40,29 +40,46 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
       }
     });
     report_ = {.ended_by = "Newton"};
-    const bool is_done = go(world, laws, rows, integrator, h, integrator.max_halvings);
+    bool is_done = false;
+    for (const Way way : {Way::exact, Way::yielding, Way::near}) {
+      if (way != Way::exact) begin_again(world, laws, rows);
+      is_done = go(world, laws, rows, integrator, h, integrator.max_halvings, way);
+      if (is_done) break;
+    }
     if (!is_done) report_.status = Status::quarantined;
     leave(world, rows, is_done);
     return report_;
   }
 
  private:
+  /// How a step is made: by the equations, by those of rows that yield, by the equations to `acceptable`.
+  enum class Way { exact, yielding, near };
+
   /// A step of h from where the bodies are; false when it could not be made.
   template <class I>
-  bool go(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, int halvings) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = std::get<p>(newton_.impulses.pools);
-      lambda = std::get<p>(force_.pools);
-      for (auto& x : lambda) x *= T(h);
-    });
-    const SolveReport part = newton_.solve(world, laws, rows, integrator, h);
+  bool go(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, int halvings, Way way) {
+    SolveReport part{.status = Status::max_iterations};
+    if (way != Way::yielding) {
+      guess(h);
+      part = newton_.solve(world, laws, rows, integrator, h);
+    }
+    // Where the last step yielded, this one will have to.
+    const bool yields = part.status == Status::max_iterations && !newton_.is_cut_short(integrator, part) &&
+                        (way == Way::yielding || newton_.began_open(integrator, h));
+    if (yields) {
+      report_.ended_by = "yielding rows";
+      report_.factorizations += part.factorizations;
+      guess(h);
+      linearize(world, laws, rows);
+      part = newton_.solve_yielding(world, laws, rows, integrator, h);
+    }
     report_.factorizations += part.factorizations;
     const bool is_solved = part.status != Status::max_iterations || newton_.is_cut_short(integrator, part);
     if (!is_solved && halvings > 0) {
       report_.ended_by = "halved steps";
       for (int half = 0; half < 2; ++half) {
         linearize(world, laws, rows);
-        if (!go(world, laws, rows, integrator, h / 2, halvings - 1)) return false;
+        if (!go(world, laws, rows, integrator, h / 2, halvings - 1, way)) return false;
       }
       return true;
     }
@@ -71,8 +88,8 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     if (!(part.measure.residual <= report_.measure.residual))
       report_.measure.residual = part.measure.residual;
     if (!std::isfinite(part.measure.residual)) return false;
-    if (!is_solved && part.measure.residual > integrator.acceptable) return false;
-    if (part.factorizations > 0) newton_.take_least(world, rows);
+    if (!is_solved && (way == Way::exact || part.measure.residual > integrator.acceptable)) return false;
+    if (part.factorizations > 0 && !yields) newton_.take_least(world, rows);
     newton_.go(world, h);
     for_each_index<Rows::pool_count>([&](auto p) {
       const auto& lambda = std::get<p>(newton_.impulses.pools);
@@ -84,6 +101,26 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     return true;
   }
 
+  /// λ of a step of h by the forces of the last part.
+  void guess(double h) {
+    for_each_index<Rows::pool_count>([&](auto p) {
+      auto& lambda = std::get<p>(newton_.impulses.pools);
+      lambda = std::get<p>(force_.pools);
+      for (auto& x : lambda) x *= T(h);
+    });
+  }
+  /// Bodies where the step starts, and rows of there.
+  void begin_again(World& world, const Laws& laws, Rows& rows) {
+    world.each([&](auto& set, auto s) {
+      set.velocity() = std::get<s>(velocity_);
+      for (const Index b : set.active()) set.state().take_pose_back(b);
+    });
+    linearize(world, laws, rows);
+    for_each_index<Rows::pool_count>([&](auto p) {
+      for (auto& x : std::get<p>(total_.pools)) x.setZero();
+    });
+    report_ = {.factorizations = report_.factorizations, .ended_by = "Newton"};
+  }
   void keep(World& world) {
     world.each([&](auto& set, auto s) {
       set.state().keep_poses();

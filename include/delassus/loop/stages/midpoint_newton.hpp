@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/loop/stages/equalities.hpp>
 #include <delassus/loop/stages/least_impulses.hpp>
 #include <delassus/loop/stages/linearize.hpp>
 #include <delassus/math/twist.hpp>
@@ -46,14 +47,12 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   /// [Levenberg1944], [YamashitaFukushima2001].
   template <class I>
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      start_.resize_like(rows);
-      std::get<p>(start_.pools) = rows.template pool<p>().phi;
-    });
+    keep_start(rows);
     SolveReport report{.status = Status::max_iterations, .ended_by = "Newton"};
     for (const bool is_damped : {false, true}) {
       begin(world, integrator, h);
-      iterate(world, laws, rows, integrator, h, is_damped, report);
+      iterate(world, laws, rows, integrator, h, is_damped,
+              is_damped ? integrator.max_iterations : most_undamped, report);
       if (report.status != Status::max_iterations || is_cut_short(integrator, report)) break;
       if (!is_damped)
         for_each_index<Rows::pool_count>([&](auto p) {
@@ -61,6 +60,34 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
         });
     }
     return report;
+  }
+
+  /// The same with φ + R λ = 0 in place of φ = 0, R = 1e-10 of W_kk where the step begins. A chain drawn
+  /// straight bears no load across: φ = θ² and θ λ = c have no solution, and Newton's method halves θ for
+  /// ever; θ² = R λ has one: θ³ = R c. Ends as `stalled`, the residual being what the joints are apart.
+  template <class I>
+  SolveReport solve_yielding(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
+    keep_start(rows);
+    SolveReport report{.status = Status::max_iterations, .ended_by = "yielding rows"};
+    begin(world, integrator, h);
+    linearize_both(world, laws, rows, h);
+    assemble_masses(world, rows);
+    system_.each([&](auto p, Index k) {
+      auto& yield = std::get<p>(yield_.pools)[system_.node(k).item];
+      for (int r = 0; r < yield.size(); ++r) yield[r] = T(1e-10 * h / 2 * system_.node(k).scale[r]);
+    });
+    iterate(world, laws, rows, integrator, h, false, integrator.max_iterations, report);
+    const double apart = Equalities<Rows>::worst(rows) / h / (speed_ > 0 ? speed_ : 1);
+    if (!(report.measure.residual >= apart)) report.measure.residual = apart;
+    const bool is_near = report.status != Status::max_iterations && apart <= integrator.acceptable;
+    report.status = is_near ? Status::stalled : Status::max_iterations;
+    return report;
+  }
+
+  /// Whether the joints were further apart where the last `solve` began than a solved step leaves them.
+  template <class I>
+  bool began_open(const I& integrator, double h) const {
+    return apart_ > 10 * integrator.tolerance * h * speed_;
   }
 
   /// Ended by its own small number of factorizations, near enough to be taken.
@@ -74,10 +101,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   void take_least(World& world, Rows& rows) {
     const auto lambda = [&](auto p, Index i) -> auto& { return std::get<p>(impulses.pools)[i]; };
     if (least_.are_least(system_, lambda)) return;
-    // By the masses alone: the stiffness of a large idle share would weigh the rows.
-    assemble(world, rows, [](const auto& set, auto, Index b, const auto& X) {
-      return set.template solve_block<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
-    });
+    assemble_masses(world, rows);
     least_.find(system_, lambda);
   }
 
@@ -96,9 +120,19 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
  private:
   static constexpr int most_undamped = 10;
 
+  /// φ where the step begins; no row yields.
+  void keep_start(const Rows& rows) {
+    apart_ = Equalities<Rows>::worst(rows);
+    for (auto* all : {&start_, &yield_}) all->resize_like(rows);
+    for_each_index<Rows::pool_count>([&](auto p) {
+      std::get<p>(start_.pools) = rows.template pool<p>().phi;
+      for (auto& x : std::get<p>(yield_.pools)) x.setZero();
+    });
+  }
+
   template <class I>
   void iterate(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, bool is_damped,
-               SolveReport& report) {
+               int most, SolveReport& report) {
     double first = 0, last = std::numeric_limits<double>::infinity();
     int slow = 0;
     for (int k = 0;; ++k) {
@@ -115,8 +149,8 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
                slow >= (size <= 100 * report.measure.floor ? 1 : 2))
         report.status = Status::stalled;
       // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
-      const bool is_lost = !(size <= 1e12 * first) || (!is_damped && k == most_undamped);
-      if (report.status != Status::max_iterations || is_lost || k == integrator.max_iterations) return;
+      const bool is_lost = !(size <= 1e12 * first) || k == std::min(most, integrator.max_iterations);
+      if (report.status != Status::max_iterations || is_lost) return;
       last = size;
       ++report.factorizations;
       if (!improve(world, rows, is_damped ? std::clamp(1e-2 * size / first, 1e-9, 1e-2) : 1e-12)) return;
@@ -169,6 +203,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
         world.each(
             [&](auto& set, auto s) { push<p>(set, s, laws.template pool<p>().item(i), i, lambda, h); });
         for (int k = 0; k < pool.rows; ++k) {
+          pool.compliance[i][k] = std::get<p>(yield_.pools)[i][k];
           soften(pool, i, k, double(std::get<p>(start_.pools)[i][k]), h);
           pool.bias[i][k] += pool.phi[i][k] + pool.compliance[i][k] * lambda[k];
           most = std::max(most, std::abs(double(pool.bias[i][k])) / h);
@@ -249,6 +284,12 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     });
     system_.analyse(0);
   }
+  /// By the masses alone: the stiffness of a large idle share would weigh the rows.
+  void assemble_masses(World& world, Rows& rows) {
+    assemble(world, rows, [](const auto& set, auto, Index b, const auto& X) {
+      return set.template solve_block<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
+    });
+  }
   /// φ + R λ + c − H₊ C (P − h f − Hᵀλ).
   template <int p>
   Vec<Rows::template rows_of<p>, T> gap(const World& world, const Rows& rows, Index i) const {
@@ -287,10 +328,10 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   std::tuple<typename Sets::Midpoint...> bodies_;
   std::tuple<std::vector<typename Sets::Velocity>...> force_, impulse_;
   Rows middle_;
-  Impulses<Rows> start_;
+  Impulses<Rows> start_, yield_;
   inner::DirectSystem<Rows> system_;
   LeastImpulses<inner::DirectSystem<Rows>> least_;
-  double speed_ = 0, load_ = 0;  ///< load: of the impulses over the masses, in units of the speed
+  double apart_ = 0, speed_ = 0, load_ = 0;  ///< load: of the impulses over the masses, in units of the speed
 };
 
 }  // namespace delassus
