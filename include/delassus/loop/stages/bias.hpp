@@ -68,6 +68,15 @@ Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& 
   return rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
 }
 
+/// A tenth of u, H v at the start, less where the rows of the middle have s, H v too, that is smaller: min(1, s²/u²) of it.
+/// Rows that depend on each other in the middle, and not at the start, could follow the rest of u by enormous impulses alone.
+template <class V>
+V fading(const V& u, const V& s) {
+  using T = typename V::Scalar;
+  const T at_start = u.squaredNorm(), in_middle = s.squaredNorm();
+  return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
+}
+
 template <std::size_t rows>
 constexpr bool are_equalities(const std::array<RowKind, rows>& kinds) {
   for (const RowKind kind : kinds)
@@ -106,7 +115,8 @@ void drive(Pool& pool, Index i, double speed, double h) {
 /// the start of the step, where H is not those.
 ///
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there without a tenth of
-/// what it has across the joints at the start, which is of order h² and for which only the rows of the start will do.
+/// what it has across the joints at the start (`inner::fading`), which is of order h² and for which only the rows of the
+/// start will do.
 template <class World, class Laws, class Rows, class S, class Bounce, class AtStart>
 void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h, double theta,
                Bounce& bounce, const AtStart& at_start) {
@@ -124,7 +134,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
       Vec<Law::rows, T> kept = start;
       if constexpr (requires { at_start.pools; })
         if constexpr (!ContactLaw<Law>)
-          kept -= T(0.1) * inner::rate_at_start(at_start.template pool<p>(), i, world);
+          kept -= inner::fading(inner::rate_at_start(at_start.template pool<p>(), i, world), start);
       const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
       pool.d[i] = free;
       for (int k = 0; k < Law::rows; ++k) {
