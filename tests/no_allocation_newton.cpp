@@ -41,3 +41,17 @@ TEST_CASE("a warm step of a chain that lies on the ground allocates nothing unde
 TEST_CASE("a warm step of a swinging chain allocates nothing under the midpoint rule by Newton's method") {
   REQUIRE(allocations_of_swinging_chain(NewtonMidpoint{}) == 0);
 }
+
+TEST_CASE("a warm step of a chain drawn straight, whose rows yield, allocates nothing under the midpoint rule by Newton's method") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+  auto& set = rigid_bodies(loop);
+  Anchor end = world_anchor({0, 0, 0});
+  for (int k = 0; k < 3; ++k) {
+    const auto rod = set.add({.position = {k + 0.5, 0, 0}, .mass = 1.0, .shape = Box{1, 0.1, 0.1}});
+    loop.add(BallJoint::Item{end, anchor(set, rod, {-0.5, 0, 0})});
+    end = anchor(set, rod, {0.5, 0, 0});
+  }
+  loop.add(BallJoint::Item{end, world_anchor({3, 0, 0})});
+  REQUIRE(allocations_of(loop, 10, 100) == 0);
+  REQUIRE(loop.report().status == Status::stalled);
+}
