@@ -1,6 +1,7 @@
 // A program of its own: it counts every call of operator new.
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
+#include <delassus/linear/sparse_lu.hpp>
 
 #include <vector>
 
@@ -32,6 +33,22 @@ TEST_CASE("factoring, refactoring, solving and compliances allocate nothing the 
     f.set_zero(region);
     for (const Index i : region) f.add_diagonal(i, 1e3 * Mat3::Identity());
     REQUIRE(f.refactor(region));
+  }
+  CHECK(allocations == before);
+}
+
+TEST_CASE("an LU by fronts allocates nothing the second time") {
+  const Net net(24);
+  SparseLu<3, double> f;
+  f.analyse(net.joints(), net.pairs);
+  REQUIRE(f.has_fronts());
+  std::vector<Vec3> x(net.joints(), Vec3(1, 2, 3));
+  long before = 0;
+  for (int n = 0; n < 2; ++n) {
+    before = allocations;
+    f.set_identity();
+    f.factor();
+    f.solve(x);
   }
   CHECK(allocations == before);
 }

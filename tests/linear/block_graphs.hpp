@@ -80,4 +80,28 @@ Blocks<w> grid(Index nx, Index ny, Index nz, unsigned seed) {
   return g;
 }
 
+/// The joints of n × n bodies in a square net, along and then down from each; joints meet where they share a
+/// body.
+struct Net {
+  Index joints() const { return Index(positions.size()); }
+  Pairs pairs = {};
+  std::vector<Vec3> positions = {};
+
+  explicit Net(Index n) {
+    std::vector<std::vector<Index>> of(n * n);  // the joints of each body
+    for (Index i = 0; i < n; ++i)
+      for (Index k = 0; k < n; ++k)
+        for (const auto& [di, dk] : {std::pair<Index, Index>(0, 1), {1, 0}}) {
+          if (i + di >= n || k + dk >= n) continue;
+          of[i * n + k].push_back(Index(positions.size()));
+          of[(i + di) * n + k + dk].push_back(Index(positions.size()));
+          positions.push_back(Vec3(k + 0.5 * dk, i + 0.5 * di, 0));
+        }
+    for (const auto& body : of)
+      for (const Index a : body)
+        for (const Index b : body)
+          if (a < b) pairs.emplace_back(a, b);
+  }
+};
+
 }  // namespace block_graphs

@@ -25,14 +25,12 @@ class BlockLu {
     diagonal_.resize(blocks);
     pivot_.resize(blocks);
     work_.resize(blocks);
-    lower_.resize(pattern_.entries());
-    upper_.resize(pattern_.entries());
   }
 
   void set_identity() {
     for (Block& b : diagonal_) b.setIdentity();
-    for (Block& b : lower_) b.setZero();
-    for (Block& b : upper_) b.setZero();
+    lower_.assign(pattern_.entries(), Block::Zero());
+    upper_.assign(pattern_.entries(), Block::Zero());
   }
   /// A_ij, to be added to.
   Block& at(Index i, Index j) {

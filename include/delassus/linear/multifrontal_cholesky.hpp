@@ -3,9 +3,8 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
-#include <delassus/linear/inner/front_layout.hpp>
+#include <delassus/linear/inner/front_triangle.hpp>
 #include <delassus/linear/node_compliance.hpp>
-#include <delassus/linear/supernodes.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -31,24 +30,17 @@ class MultifrontalCholesky {
   /// each named once, are eliminated last, so that `refactor` can begin there.
   void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs,
                std::span<const Vec3> positions = {}, std::span<const Index> region = {}) {
-    std::vector<std::pair<Index, Index>> unique;
-    for (auto [i, j] : pairs) unique.emplace_back(std::minmax(i, j));
-    std::sort(unique.begin(), unique.end());
-    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
-    const NodeGraph graph(blocks, unique);
-    pattern_.analyse(graph, NestedDissection{}.order(graph, positions, region), Index(region.size()));
-    entries_.analyse(graph, pattern_);
-    layout_.analyse(pattern_, w);
-    A_.resize(blocks + entries_.row.size());
+    plan_.analyse(w, blocks, pairs, positions, region);
+    A_.resize(blocks + plan_.entries.row.size());
     is_factored_ = false;
     path_.clear();
     for (Index s = 0; s < fronts(); ++s)
-      if (pattern_.is_last(supernode(s).first)) path_.emplace_back(s, false);
+      if (pattern().is_last(plan_.supernode(s).first)) path_.emplace_back(s, false);
   }
 
-  Index blocks() const { return pattern_.nodes(); }
+  Index blocks() const { return plan_.blocks(); }
   /// Numbers stored for L.
-  std::size_t size() const { return layout_.factor_size; }
+  std::size_t size() const { return plan_.layout.factor_size; }
 
   void set_zero() {
     for (Block& b : A_) b.setZero();
@@ -69,9 +61,9 @@ class MultifrontalCholesky {
   };
   /// Looked up once, the places of an element's blocks are a table by which it is added without a search.
   BlockPlace find(Index i, Index j) const {
-    const Index row = pattern_.place(i), column = pattern_.place(j);
+    const Index row = pattern().place(i), column = pattern().place(j);
     if (row == column) return {row, false};
-    const Index e = entries_.find(std::max(row, column), std::min(row, column));
+    const Index e = plan_.entries.find(std::max(row, column), std::min(row, column));
     return {e < 0 ? e : blocks() + e, row < column};
   }
   /// A_ij += block, and A_ji += blockᵀ, at the place of (i, j), which the pattern has.
@@ -82,15 +74,13 @@ class MultifrontalCholesky {
       A_[at.index] += block;
   }
   /// A_ii += block.
-  void add_diagonal(Index i, const Block& block) { A_[pattern_.place(i)] += block; }
+  void add_diagonal(Index i, const Block& block) { A_[pattern().place(i)] += block; }
   /// A_ij += block and A_ji += blockᵀ, i ≠ j.
   void add_pair(Index i, Index j, const Block& block) { add(find(i, j), block); }
 
   /// Makes the factor of A; false when A is not positive definite or not finite: then nothing may be solved.
   bool factor() {
-    factor_.resize(layout_.factor_size);
-    stack_.resize(layout_.stack_size);
-    kept_.resize(layout_.kept_size);
+    L_.resize(plan_);
     is_factored_ = false;
     for (Index s = 0; s < fronts(); ++s)
       if (!factor_front(s)) return false;
@@ -105,11 +95,11 @@ class MultifrontalCholesky {
     if (!is_factored_) return factor();
     is_factored_ = false;
     for (auto& [s, is_changed] : path_) is_changed = false;
-    for (const Index i : nodes) is_on_path(pattern_.supernode_of(pattern_.place(i))) = true;
+    for (const Index i : nodes) is_on_path(pattern().supernode_of(pattern().place(i))) = true;
     for (const auto& [s, is_changed] : path_) {
       if (!is_changed) continue;
       if (!factor_front(s)) return false;
-      if (supernode(s).parent >= 0) is_on_path(supernode(s).parent) = true;
+      if (plan_.supernode(s).parent >= 0) is_on_path(plan_.supernode(s).parent) = true;
     }
     return is_factored_ = true;
   }
@@ -117,21 +107,19 @@ class MultifrontalCholesky {
   /// x ← A⁻¹ x.
   void solve(std::vector<Vec<w, T>>& x) const {
     y_.resize(std::size_t(w) * blocks());
-    for (Index i = 0; i < blocks(); ++i) Line(&y_[w * pattern_.place(i)], w) = x[i].array();
+    for (Index i = 0; i < blocks(); ++i) Line(&y_[w * pattern().place(i)], w) = x[i].array();
     for (Index s = 0; s < fronts(); ++s) forward(s);
     for (Index s = fronts(); s-- > 0;) backward(s);
-    for (Index i = 0; i < blocks(); ++i) x[i] = ConstLine(&y_[w * pattern_.place(i)], w).matrix();
+    for (Index i = 0; i < blocks(); ++i) x[i] = ConstLine(&y_[w * pattern().place(i)], w).matrix();
   }
 
   /// The rows and columns of A⁻¹ of some nodes, each named once: C is (w n) × (w n) by columns. See
   /// `NodeCompliance`.
   void compliance(std::span<const Index> nodes, std::span<T> C) const { compliance_.find(*this, nodes, C); }
 
-  const SupernodalPattern& pattern() const { return pattern_; }
+  const SupernodalPattern& pattern() const { return plan_.pattern; }
   /// The columns of L of a supernode, with its rows.
-  inner::Columns<const T> columns_of(Index s) const {
-    return {&factor_[layout_.fronts[s].factor], std::size_t(w) * supernode(s).rows.size()};
-  }
+  inner::Columns<const T> columns_of(Index s) const { return L_.columns(plan_, s); }
 
  private:
   template <class U>
@@ -139,78 +127,35 @@ class MultifrontalCholesky {
   using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
   using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
-  Index fronts() const { return Index(layout_.fronts.size()); }
-  const Supernode& supernode(Index s) const { return pattern_.supernodes()[s]; }
+  Index fronts() const { return plan_.fronts(); }
   /// Of a supernode of the region.
   bool& is_on_path(Index s) {
     return std::lower_bound(path_.begin(), path_.end(), std::pair(s, false))->second;
   }
   void expect_in_region(Index i) const {
     DELASSUS_EXPECT(
-        i >= 0 && i < blocks() && pattern_.is_last(pattern_.place(i)),
+        i >= 0 && i < blocks() && pattern().is_last(pattern().place(i)),
         "node " + std::to_string(i) +
             " is to be factored again, but is not in the region that the pattern was analysed with");
   }
 
   bool factor_front(Index s) {
-    const Supernode& x = supernode(s);
-    const inner::FrontPlace& front = layout_.fronts[s];
-    const Index height = w * Index(x.rows.size()), width = w * x.width, below = height - width;
-    const Columns<T> L{&factor_[front.factor], std::size_t(height)};
-    const Columns<T> U = part(s);
-    std::fill_n(L.data, std::size_t(height) * width, T(0));
-    enter(x, L);
-    for (const Index child : x.children) add_child(child, L, 0, width);
+    const Index height = w * Index(plan_.supernode(s).rows.size()), width = w * plan_.supernode(s).width,
+                below = height - width;
+    const Columns<T> L = L_.columns(plan_, s);
+    L_.open(
+        plan_, s, [&](Index place) -> const Block& { return A_[place]; },
+        [&](Index entry) -> const Block& { return A_[blocks() + entry]; });
     if (!kernel_.factor(L, height, width)) return false;
     const Columns<const T> L21{L.at(width, 0), L.stride};
-    kernel_.negated_product(U, L21, L21, below, below, width, true);
-    for (const Index child : x.children) add_child(child, U, width, height);
+    kernel_.negated_product(L_.part(plan_, s), L21, L21, below, below, width, true);
+    L_.pass_on(plan_, s);
     return true;
-  }
-
-  Index below_of(Index s) const { return w * supernode(s).below(); }
-  /// What a front leaves its parent, (w below) × (w below), lower triangle.
-  Columns<T> part(Index s) {
-    return {(layout_.fronts[s].is_kept ? kept_ : stack_).data() + layout_.fronts[s].update,
-            std::size_t(below_of(s))};
-  }
-
-  /// A's own entries of the front's columns.
-  void enter(const Supernode& x, Columns<T> L) const {
-    for (Index c = 0; c < x.width; ++c) {
-      const Index j = x.first + c;
-      put(L.from(w * c, w * c), A_[j]);
-      for (Index e = entries_.start[j], at = c; e < entries_.start[j + 1]; ++e) {
-        while (x.rows[at] != entries_.row[e]) ++at;
-        put(L.from(w * at, w * c), A_[blocks() + e]);
-      }
-    }
-  }
-  static void put(Columns<T> to, const Block& block) {
-    for (int c = 0; c < w; ++c) std::copy_n(block.data() + w * c, w, to.at(0, c));
-  }
-
-  /// The front's columns first … last − 1 += what a child left, lower triangle; `to` begins with entry
-  /// (first, first).
-  void add_child(Index child, Columns<T> to, Index first, Index last) {
-    const auto& runs = layout_.fronts[child].runs;
-    const Columns<T> from = part(child);
-    for (std::size_t b = 0; b < runs.size(); ++b)
-      for (Index c = 0; c < w * runs[b].length; ++c) {
-        const Index column = w * runs[b].to + c;
-        if (column < first || column >= last) continue;
-        const T* source = from.at(0, w * runs[b].from + c);
-        T* target = to.at(0, column - first) - first;
-        for (std::size_t a = b; a < runs.size(); ++a) {
-          const Index skip = a == b ? c : 0, length = w * runs[a].length - skip;
-          Line(target + w * runs[a].to + skip, length) += ConstLine(source + w * runs[a].from + skip, length);
-        }
-      }
   }
 
   /// y ← L⁻¹ y, the share of one supernode; rows are gathered so that columns of L are read from end to end.
   void forward(Index s) const {
-    const Supernode& x = supernode(s);
+    const Supernode& x = plan_.supernode(s);
     const Index height = w * Index(x.rows.size()), width = w * x.width;
     const Columns<const T> L = columns_of(s);
     gather_.assign(height, T(0));
@@ -225,7 +170,7 @@ class MultifrontalCholesky {
   }
   /// y ← L⁻ᵀ y.
   void backward(Index s) const {
-    const Supernode& x = supernode(s);
+    const Supernode& x = plan_.supernode(s);
     const Index height = w * Index(x.rows.size());
     const Columns<const T> L = columns_of(s);
     gather_.resize(height);
@@ -239,11 +184,9 @@ class MultifrontalCholesky {
     std::copy_n(gather_.begin(), w * x.width, &y_[w * x.first]);
   }
 
-  SupernodalPattern pattern_;
-  LowerEntries entries_;
-  inner::FrontLayout layout_;
+  inner::FrontPlan plan_;
   std::vector<Block> A_;  ///< the diagonal blocks by place, then those below by entry
-  std::vector<T> factor_, stack_, kept_;
+  inner::FrontTriangle<w, T> L_;
   std::vector<std::pair<Index, bool>> path_;  ///< the supernodes of the region; true: has to be made anew
   bool is_factored_ = false;
   inner::DenseKernel<T> kernel_;

@@ -37,8 +37,10 @@ struct NodeGraph {
 };
 
 /// A. George, "Nested dissection of a regular finite element mesh". A part is cut at the median of x, y or z,
-/// whichever needs the fewest nodes between the halves; without positions, at the median distance from a node
-/// far out. Parts of at most `leaf` nodes are not cut.
+/// whichever needs the fewest nodes between the halves. Without positions x is the distance, in edges, from a
+/// node a far out, y and z are those from a and from its opposite b less that from a node c far from both: of
+/// a square net with corners a, b and c, whose distance from a has diagonals for level lines, they are its
+/// sides. Parts of at most `leaf` nodes are not cut.
 struct NestedDissection {
   Index leaf = 12;
 
@@ -46,9 +48,7 @@ struct NestedDissection {
   /// `last`, each named once, come after all others.
   std::vector<Index> order(const NodeGraph& graph, std::span<const Vec3> positions = {},
                            std::span<const Index> last = {}) const {
-    Work work{
-        graph, positions, std::vector<Index>(graph.nodes()), std::vector<Index>(graph.nodes(), 0), {}, {},
-        {},    0};
+    Work work{graph, positions, std::vector<Index>(graph.nodes()), std::vector<Index>(graph.nodes(), 0)};
     std::iota(work.order.begin(), work.order.end(), 0);
     for (const Index i : last) work.mark[i] = 1;
     std::stable_partition(work.order.begin(), work.order.end(), [&](Index i) { return work.mark[i] == 0; });
@@ -64,20 +64,23 @@ struct NestedDissection {
     const NodeGraph& graph;
     std::span<const Vec3> positions;
     std::vector<Index> order, mark;  ///< mark: which half a node is in, as a number never used before
-    std::vector<std::pair<double, Index>> key;
-    std::vector<Index> best, trial;
-    Index last_mark;
+    std::vector<std::pair<double, Index>> key = {};
+    std::vector<Index> best = {}, trial = {};
+    std::array<std::vector<double>, 3> far = {};  ///< by node: edges from a, b and c
+    Index last_mark = 0;
   };
 
   /// Orders the nodes order[first … last − 1] in place.
   void cut(Work& w, Index first, Index last) const {
     const Index n = last - first;
     if (n <= leaf) return;
+    if (w.positions.empty()) find_far_nodes(w, first, last);
     Index best_between = n, best_left = 0;
-    for (int axis = 0; axis < (w.positions.empty() ? 1 : 3); ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       set_keys(w, first, last, axis);
       const auto [left, between] = split(w, n);
       if (between >= best_between) continue;
+      if (w.positions.empty() && axis > 0 && std::min(left, n - left - between) < n / 5) continue;
       best_between = between;
       best_left = left;
       w.best.swap(w.trial);
@@ -90,13 +93,28 @@ struct NestedDissection {
 
   static void set_keys(Work& w, Index first, Index last, int axis) {
     w.key.clear();
-    if (!w.positions.empty()) {
-      for (Index k = first; k < last; ++k) w.key.emplace_back(w.positions[w.order[k]][axis], w.order[k]);
-    } else {
-      const Index far = distances(w, first, last, w.order[first]);
-      distances(w, first, last, far);
+    for (Index k = first; k < last; ++k) {
+      const Index i = w.order[k];
+      w.key.emplace_back(!w.positions.empty() ? w.positions[i][axis]
+                         : axis == 0          ? w.far[0][i]
+                                              : w.far[axis - 1][i] - w.far[2][i],
+                         i);
     }
     std::sort(w.key.begin(), w.key.end());
+  }
+
+  /// a is far from any node, b the farthest from a, c the farthest from both.
+  static void find_far_nodes(Work& w, Index first, Index last) {
+    Index node = distances(w, first, last, w.order[first]);
+    for (int which = 0; which < 3; ++which) {
+      const Index farthest = distances(w, first, last, node);
+      w.far[which].resize(w.order.size());
+      for (const auto& [distance, i] : w.key) w.far[which][i] = distance;
+      node = farthest;
+      const auto from_both = [&](Index i) { return std::min(w.far[0][i], w.far[1][i]); };
+      for (Index k = first; which == 1 && k < last; ++k)
+        if (k == first || from_both(w.order[k]) > from_both(node)) node = w.order[k];
+    }
   }
 
   /// Keys = number of edges from a node inside the part (beyond all for nodes it cannot reach); returns the

@@ -49,6 +49,19 @@ class PivotedLu {
     }
   }
 
+  /// X ← X A⁻ᵀ for a matrix X of any height: column(k), k < w, are its columns, to be written to.
+  template <class Column>
+  void solve_rows(const Column& column) const {
+    for (int k = 0; k < w; ++k)
+      if (swap_[k] != k) column(k).swap(column(swap_[k]));
+    for (int k = 0; k < w; ++k)
+      for (int i = k + 1; i < w; ++i) column(i) -= lu_(i, k) * column(k);
+    for (int k = w; k-- > 0;) {
+      column(k) *= over_[k];
+      for (int i = 0; i < k; ++i) column(i) -= lu_(i, k) * column(k);
+    }
+  }
+
   /// Whether det A < 0, of the last A that was factored.
   bool is_negative() const {
     bool is = false;

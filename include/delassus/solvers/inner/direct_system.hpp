@@ -1,7 +1,7 @@
 /// The bilateral rows of an island as one sparse matrix, factored whatever their rank.
 #pragma once
 
-#include <delassus/linear/block_lu.hpp>
+#include <delassus/linear/sparse_lu.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <algorithm>
@@ -192,7 +192,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   struct Graph {
     Index size = -1;
     std::vector<std::pair<Index, Index>> pairs;
-    BlockLu<w, double> matrix;
+    SparseLu<w, double> matrix;
   };
 
   Index number(int s, Index b) {

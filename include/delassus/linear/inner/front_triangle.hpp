@@ -1,0 +1,118 @@
+/// One triangle of the fronts of a multifrontal factorization: the columns of its factor, and what each front
+/// leaves its parent.
+#pragma once
+
+#include <delassus/linear/inner/dense_kernel.hpp>
+#include <delassus/linear/inner/front_layout.hpp>
+#include <delassus/linear/supernodes.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace delassus::inner {
+
+/// What is known of the fronts before any number is: made once a pattern.
+struct FrontPlan {
+  SupernodalPattern pattern;
+  LowerEntries entries;
+  FrontLayout layout;
+
+  /// All diagonal blocks, w numbers each way, and the pairs (i, j), i ≠ j, in any order, repeats allowed. See
+  /// `NestedDissection::order`.
+  void analyse(int w, Index blocks, std::span<const std::pair<Index, Index>> pairs,
+               std::span<const Vec3> positions = {}, std::span<const Index> region = {}) {
+    std::vector<std::pair<Index, Index>> unique;
+    for (auto [i, j] : pairs) unique.emplace_back(std::minmax(i, j));
+    std::sort(unique.begin(), unique.end());
+    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+    const NodeGraph graph(blocks, unique);
+    pattern.analyse(graph, NestedDissection{}.order(graph, positions, region), Index(region.size()));
+    entries.analyse(graph, pattern);
+    layout.analyse(pattern, w);
+  }
+  Index blocks() const { return pattern.nodes(); }
+  Index fronts() const { return Index(layout.fronts.size()); }
+  const Supernode& supernode(Index s) const { return pattern.supernodes()[s]; }
+};
+
+/// A front of m rows is its first columns, m high, and the part below them, which is the parent's to add: of
+/// both only the lower triangle, with whole blocks on the diagonal, is meant.
+template <int w, class T>
+class FrontTriangle {
+  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
+  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
+
+ public:
+  void resize(const FrontPlan& plan) {
+    factor_.resize(plan.layout.factor_size);
+    stack_.resize(plan.layout.stack_size);
+    kept_.resize(plan.layout.kept_size);
+  }
+
+  Columns<T> columns(const FrontPlan& plan, Index s) {
+    return {&factor_[plan.layout.fronts[s].factor], w * plan.supernode(s).rows.size()};
+  }
+  Columns<const T> columns(const FrontPlan& plan, Index s) const {
+    return {&factor_[plan.layout.fronts[s].factor], w * plan.supernode(s).rows.size()};
+  }
+  /// What a front leaves its parent, (w below) × (w below).
+  Columns<T> part(const FrontPlan& plan, Index s) {
+    const FrontPlace& front = plan.layout.fronts[s];
+    return {(front.is_kept ? kept_ : stack_).data() + front.update,
+            std::size_t(w) * plan.supernode(s).below()};
+  }
+
+  /// The columns of front s ← the matrix's own entries, diagonal(place) and below(entry) by blocks, and what
+  /// its children left there.
+  template <class Diagonal, class Below>
+  void open(const FrontPlan& plan, Index s, const Diagonal& diagonal, const Below& below) {
+    const Supernode& x = plan.supernode(s);
+    const Columns<T> L = columns(plan, s);
+    std::fill_n(L.data, L.stride * w * x.width, T(0));
+    for (Index c = 0; c < x.width; ++c) {
+      const Index j = x.first + c;
+      put(L.from(w * c, w * c), diagonal(j));
+      for (Index e = plan.entries.start[j], at = c; e < plan.entries.start[j + 1]; ++e) {
+        while (x.rows[at] != plan.entries.row[e]) ++at;
+        put(L.from(w * at, w * c), below(e));
+      }
+    }
+    for (const Index child : x.children) add(plan, child, L, 0, w * x.width);
+  }
+  /// The part for the parent += what the children left there.
+  void pass_on(const FrontPlan& plan, Index s) {
+    const Supernode& x = plan.supernode(s);
+    for (const Index child : x.children)
+      add(plan, child, part(plan, s), w * x.width, w * Index(x.rows.size()));
+  }
+
+ private:
+  template <class Block>
+  static void put(Columns<T> to, const Block& block) {
+    for (int c = 0; c < w; ++c) std::copy_n(block.data() + w * c, w, to.at(0, c));
+  }
+
+  /// The parent's columns first … last − 1 += what a child left; `to` begins with entry (first, first).
+  void add(const FrontPlan& plan, Index child, Columns<T> to, Index first, Index last) {
+    const auto& runs = plan.layout.fronts[child].runs;
+    const Columns<T> from = part(plan, child);
+    for (std::size_t b = 0; b < runs.size(); ++b)
+      for (Index c = 0; c < w * runs[b].length; ++c) {
+        const Index column = w * runs[b].to + c;
+        if (column < first || column >= last) continue;
+        const T* source = from.at(0, w * runs[b].from + c);
+        T* target = to.at(0, column - first) - first;
+        for (std::size_t a = b; a < runs.size(); ++a) {
+          const Index skip = a == b ? c : 0, length = w * runs[a].length - skip;
+          Line(target + w * runs[a].to + skip, length) += ConstLine(source + w * runs[a].from + skip, length);
+        }
+      }
+  }
+
+  std::vector<T> factor_, stack_, kept_;
+};
+
+}  // namespace delassus::inner
