@@ -80,7 +80,7 @@ namespace {
 // n × n small bodies in a square net, 0.5 m apart, held at two corners.
 template <class... Policies>
 void climb_grid(Ladder& ladder, const Policies&... policies) {
-  for (const int n : {5, 10, 20, 40})
+  for (const int n : {5, 10, 20, 40, 100})
     ladder.rung(format("%d × %d", n, n), [&]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());

@@ -165,6 +165,9 @@ void four_bars(Ladder& ladder) {
 void four_bars_midpoint(Ladder& ladder) {
   climb_four_bars(ladder, ladder.is_quick() ? 1 : 20, NewtonMidpoint{});
 }
+void four_bars_midpoint_in_parts(Ladder& ladder) {
+  climb_four_bars(ladder, ladder.is_quick() ? 1 : 20, NewtonMidpoint{}, Substeps{.count = 4});
+}
 void gear_train(Ladder& ladder) {
   climb_gears<true>(ladder, AcceleratedGaussSeidel{.tolerance = 1e-9, .max_iterations = 2000});
 }

@@ -55,6 +55,7 @@ void heap(Ladder&);
 void heap_loose(Ladder&);
 void four_bars(Ladder&);
 void four_bars_midpoint(Ladder&);
+void four_bars_midpoint_in_parts(Ladder&);
 void gear_train(Ladder&);
 void gear_train_direct(Ladder&);
 void gear_train_rattle(Ladder&);
@@ -118,6 +119,8 @@ inline constexpr Row rows[] = {
     {"HC-21", "four-bars through their singular pose", "ProximalNewton, WholeViolation", four_bars,
      Level::bronze},
     {"HC-21", "four-bars through their singular pose", "NewtonMidpoint", four_bars_midpoint, Level::silver},
+    {"HC-21", "four-bars through their singular pose", "NewtonMidpoint, Substeps{.count = 4}",
+     four_bars_midpoint_in_parts, Level::gold},
     {"HC-22", "bar without room", "", no_room, Level::gold},
     {"HC-22", "opposed motors", "", opposed_motors, Level::gold},
     {"HC-23", "a rod that is pushed on its tip", "", painleve, Level::gold},

@@ -29,8 +29,10 @@ class BlockLu {
 
   void set_identity() {
     for (Block& b : diagonal_) b.setIdentity();
-    lower_.assign(pattern_.entries(), Block::Zero());
-    upper_.assign(pattern_.entries(), Block::Zero());
+    for (auto* entries : {&lower_, &upper_}) {
+      entries->resize(pattern_.entries());
+      for (Block& b : *entries) b.setZero();
+    }
   }
   /// A_ij, to be added to.
   Block& at(Index i, Index j) {
