@@ -149,7 +149,7 @@ inline constexpr Row rows[] = {
     {"HC-37", "crowding",
      "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}, NativeCollision{.margin = 0.1}",
      crowding_foreseen, Level::gold},
-    {"HC-38", "stiff drive", "", drives, Level::silver},
+    {"HC-38", "stiff drive", "", drives, Level::gold},
     {"HC-39", "grip", "ProximalNewton", grip, Level::silver},
     {"HC-40", "rigid on soft", "HexahedralFem, ImplicitEuler", rigid_on_soft, Level::silver},
     {"HC-41", "long spin", "", long_spin, Level::gold},
