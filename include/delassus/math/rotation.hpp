@@ -118,6 +118,13 @@ T lengthened(T h, const Vec<3, T>& rate, const Vec<3, T>& momentum) {
   return turn < T(12) ? h * (T(1) + turn / T(12)) : T(2) * h;
 }
 
+/// Q = exp(h Ω·e ê), e = c/|c|: a turn about the momentum, so that Qᵀ c = c. Ω₊ = I⁻¹ c has the energy that it had.
+template <class T>
+Eigen::Quaternion<T> turn_about_momentum(const Vec<3, T>& rate, const Vec<3, T>& c, T h) {
+  const Vec<3, T> axis = c.stableNormalized();
+  return exponential<T>(std::remainder(h * rate.dot(axis), T(4 * EIGEN_PI)) * axis);
+}
+
 /// `midpoint_turn` of a step that may be halved `halvings` times more.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
@@ -126,9 +133,10 @@ Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Ve
   const MidpointRate<T> mid = midpoint_rate<T>(inertia, rate, a, c, longer);
   // The products that make the residual are of size h |Ω̄| |c|, and as many roundings off.
   const T enough = T(128) * mid.rounding;
-  if (mid.residual <= enough) [[likely]] return cayley<T>(longer * mid.rate);
-  if (halvings == 0 || mid.residual <= enough * (T(1) + longer * mid.rate.norm()))
-    return cayley<T>(longer * mid.rate);
+  if (mid.residual <= enough && enough <= std::numeric_limits<T>::max()) [[likely]] return cayley<T>(longer * mid.rate);
+  if (!(h * rate.norm() <= T(16384))) return turn_about_momentum<T>(rate, c, h);
+  if (mid.residual <= enough * (T(1) + longer * mid.rate.norm())) return cayley<T>(longer * mid.rate);
+  if (halvings == 0) return turn_about_momentum<T>(rate, c, h);
   return midpoint_turn_in_halves<T>(inertia, rate, a, c, h, halvings - 1);
 }
 
@@ -145,8 +153,9 @@ Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const 
 
 }  // namespace inner
 
-/// cay(s h Ω̄) of `midpoint_rate` for a step of s h, as a quaternion. Where that finds no root, a body that turns by many radians in a step, the step
-/// is made of halves, of which each keeps what the rule keeps; at most 2¹⁰ of them.
+/// cay(s h Ω̄) of `midpoint_rate` for a step of s h, as a quaternion. Where that finds no root, a body that turns by many
+/// radians in a step, the step is made of halves, of which each keeps what the rule keeps; at most 2¹⁰ of them. Where
+/// these would not do either (2¹⁴ radians in a step and more) the body turns about its momentum, which keeps as much.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c,
                                    T h) {
