@@ -43,19 +43,29 @@ class Bytes {
 
   /// One of the numbers that programs forget.
   double odd() {
+    ++odd_count_;
     constexpr double inf = std::numeric_limits<double>::infinity(),
                      tiny = std::numeric_limits<double>::denorm_min();
     constexpr double list[] = {0,     -0.0,   1,    -1,     1e-30, 1e30,
                                -1e30, 1e-300, tiny, inf,    -inf,  1e300,
                                1e16,  1e-16,  1e-8, 1e8,    1e4,   1e-4,
                                -1e-4, 0.5,    2,    -1e300, 1e150, std::numeric_limits<double>::quiet_NaN()};
-    return list[below(int(std::size(list)))];
+    const double number = list[below(int(std::size(list)))];
+    gave_nan_ = gave_nan_ || std::isnan(number);
+    return number;
   }
-  /// In [−size, size], or now and then an odd one where `is_wild`.
+  /// How many odd numbers there were so far, and whether NaN was among them since `forget_nan`.
+  int odd_count() const { return odd_count_; }
+  bool gave_nan() const { return gave_nan_; }
+  void forget_nan() { gave_nan_ = false; }
+
+  /// In [−size, size], or an odd one (three of ten) where `is_wild`.
   double number(double size, bool is_wild) { return is_wild && chance(77) ? odd() : between(-size, size); }
 
  private:
   const std::uint8_t *at_, *end_;
+  int odd_count_ = 0;
+  bool gave_nan_ = false;
 };
 
 }  // namespace fuzz

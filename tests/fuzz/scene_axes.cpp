@@ -26,6 +26,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         to.add(Drive<Turn>::Item{.a = a, .b = b, .stiffness = one, .damping = other});
     }
   };
-  fuzz::Scene(std::move(loop), add, data, size).run();
-  return 0;
+  return fuzz::play(loop, add, data, size);
 }

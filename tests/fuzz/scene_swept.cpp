@@ -17,6 +17,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     to.add(DistanceJoint::Item{
         .a = a, .b = b, .length = length, .stiffness = bytes.chance(128) ? 0 : fuzz::amount(bytes)});
   };
-  fuzz::Scene(std::move(loop), add, data, size).run();
-  return 0;
+  return fuzz::play(loop, add, data, size);
 }

@@ -21,9 +21,14 @@ inline Vec3 vector(Bytes& bytes, double size, bool is_wild = false) {
   return v;
 }
 
-/// Any rotation, or one of those by quarter turns, where faces and edges are parallel.
-inline Quat rotation(Bytes& bytes) {
+/// Any rotation, or one of those by quarter turns, where faces and edges are parallel; or now and then none
+/// at all where `is_wild`.
+inline Quat rotation(Bytes& bytes, bool is_wild = false) {
   constexpr double s = 0.70710678118654752;
+  if (is_wild && bytes.chance(32)) {
+    const double w = bytes.odd(), x = bytes.odd();
+    return Quat(w, x, 0, 0);
+  }
   switch (bytes.below(4)) {
     case 0:
       return Quat::Identity();
@@ -40,10 +45,13 @@ inline Quat rotation(Bytes& bytes) {
 class Shapes {
  public:
   /// A shape of about `size`; `stretch` is how far its lengths may differ, in powers of ten. May be refused.
-  Shape any(Bytes& bytes, double size, double stretch, bool with_half_spaces) {
+  Shape any(Bytes& bytes, double size, double stretch, bool with_half_spaces, bool is_wild = false) {
     const auto length = [&] { return size * bytes.magnitude(-stretch, 0); };
-    const double a = length(), b = length(), c = length();
-    switch (bytes.below(with_half_spaces ? 8 : 7)) {
+    double a = length();
+    const double b = length(), c = length();
+    const int kind = bytes.below(with_half_spaces ? 8 : 7);
+    if (is_wild && kind < 7 && bytes.chance(77)) a = bytes.odd();
+    switch (kind) {
       case 0:
         return Sphere{a};
       case 1:
@@ -59,7 +67,7 @@ class Shapes {
       case 6:
         return hull(bytes, Vec3(a, b, c));
       default:
-        return HalfSpace{vector(bytes, 1), bytes.between(-1, 1)};
+        return HalfSpace{vector(bytes, 1, is_wild), bytes.between(-1, 1)};
     }
   }
 
