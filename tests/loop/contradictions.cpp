@@ -207,17 +207,6 @@ TEST_CASE("after something was taken out the last problem is empty, and a copied
   REQUIRE(count(loop) == 5);
 }
 
-TEST_CASE("a material that nobody gave out leaves the law its own parameters") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
-  auto& set = rigid_bodies(loop);
-  const Index ice = loop.materials().add({.friction = 0});
-  REQUIRE(ice == 1);
-  set.add({.shape = HalfSpace{}, .motion = Motion::fixed, .material = 77});
-  const auto box = set.add({.position = {0, 0, 0.5}, .velocity = {1, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 1}, .material = 78});
-  for (int n = 0; n < 10; ++n) loop.step(h);
-  REQUIRE(set.velocity(box).x() == Approx(1 - 0.5 * g * 10 * h).epsilon(1e-4));
-}
-
 TEST_CASE("a ball that rolls keeps its speed under the midpoint rule") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ImplicitMidpoint{}};
   auto& set = rigid_bodies(loop);

@@ -1,3 +1,8 @@
+#include <delassus/bodies/elasticity/corotational.hpp>
+#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/geometry/box_mesh.hpp>
+#include <delassus/io/checkpoint.hpp>
+
 #include "scenes.hpp"
 
 #include "catch.hpp"
@@ -97,6 +102,50 @@ TEST_CASE("a friction or restitution that cannot be is refused by its value") {
   REQUIRE_THROWS_WITH(loop.materials().add({.friction = -1}), Catch::Contains("friction -1 must be finite and >= 0"));
   REQUIRE_THROWS_WITH(loop.materials().add({.restitution = 1.5}), Catch::Contains("restitution 1.5 must be in [0, 1]"));
   REQUIRE_THROWS_WITH(loop.materials().set_pair(1, 2, {}), Catch::Contains("no material has this number"));
+}
+
+TEST_CASE("a body of a material that nobody added is refused by the step, which then has done nothing") {
+  for (const Index number : {1, 7, -1}) {
+    auto loop = make_loop();
+    auto& set = rigid_bodies(loop);
+    add_ground(set, 0);
+    const auto box = set.add({.position = {0, 0, 1}, .mass = 1.0, .shape = Box{1, 1, 1}, .material = number});
+    const std::string sentence = "delassus: rigid body #1: material " + std::to_string(number) + " is not among the 0 of the "
+                                 "loop; give it what loop.materials().add({...}) returns, or none";
+    REQUIRE_THROWS_WITH(loop.step(h), sentence);
+    REQUIRE(loop.time() == 0);
+    REQUIRE(set.position(box).z() == 1);
+    auto mended = loop;
+    while (mended.materials().count() < number) mended.materials().add({});
+    if (number > 0) REQUIRE_NOTHROW(mended.step(h));
+    loop.remove(box);
+    REQUIRE_NOTHROW(loop.step(h));
+  }
+}
+
+TEST_CASE("every kind of body is refused with its material, and a loop without contact laws asks for none") {
+  AnimationLoop loop{World{Particles{}}, Constraints{Contact{Coulomb{}}}};
+  bodies<Particles>(loop.world()).add({.mass = 1.0, .radius = 0.1, .material = 2});
+  loop.materials().add({});
+  REQUIRE_THROWS_WITH(loop.step(h), Catch::Contains("particle #0: material 2 is not among the 1 of the loop"));
+  using Soft = TetrahedralFem<Corotational>;
+  AnimationLoop soft{World{Soft{}}, Constraints{Contact{Coulomb{}}}, ImplicitEuler{}};
+  bodies<Soft>(soft.world()).add({.mesh = box_mesh({1, 1, 1}, {1, 1, 1}), .elasticity = {.young = 1e6, .poisson = 0.3}, .material = 1});
+  REQUIRE_THROWS_WITH(soft.step(h), Catch::Contains("#0: material 1 is not among the 0 of the loop"));
+  AnimationLoop alone{World{RigidBodies{}}};
+  rigid_bodies(alone).add({.mass = 1.0, .shape = Box{1, 1, 1}, .material = 7});
+  REQUIRE_NOTHROW(alone.step(h));
+}
+
+TEST_CASE("a checkpoint brings the materials of its bodies, and one without them is refused as the bodies are") {
+  auto loop = make_loop(), other = make_loop();
+  loop.materials().add({.friction = 0.2});
+  add_ground(rigid_bodies(loop), 1);
+  loop.step(h);
+  restore(other, checkpoint(loop));
+  REQUIRE_NOTHROW(other.step(h));
+  other.materials() = {};
+  REQUIRE_THROWS_WITH(other.step(h), Catch::Contains("rigid body #0: material 1 is not among the 0 of the loop"));
 }
 
 TEST_CASE("two contact laws share the contacts by their materials") {

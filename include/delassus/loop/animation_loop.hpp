@@ -42,8 +42,8 @@ class AnimationLoop {
 
   explicit AnimationLoop(Policies... policies);
 
-  /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0, or a number of a policy was made
-  /// invalid; never for what happens inside.
+  /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0, a number of a policy was made
+  /// invalid, or a body's material was never added; never for what happens inside.
   StepReport step(double h);
 
   WorldType& world() { return part<role::World>(); }

@@ -6,9 +6,11 @@
 #include <delassus/core/slots.hpp>
 #include <delassus/math/linear.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace delassus::inner {
@@ -56,6 +58,8 @@ class Places {
 
   Index collider_count() const { return blocks(); }
   Index material(Index b) const { return material_[b]; }
+  /// Whether every body that was ever added has a material from 0 to `count`.
+  bool keeps_to_materials(Index count) const { return least_material_ >= 0 && most_material_ <= count; }
   std::uint32_t group(Index b) const { return group_[b]; }
   std::uint32_t collides_with(Index b) const { return collides_with_[b]; }
 
@@ -79,6 +83,7 @@ class Places {
     v_[b] = v_free[b] = v_next[b] = velocity;
     load_[b].setZero();
     material_[b] = body.material;
+    note_material(body.material);
     group_[b] = body.group;
     collides_with_[b] = body.collides_with;
     return b;
@@ -87,6 +92,8 @@ class Places {
   /// What outlives a step; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
     archive(gravity, slots_, v_, load_, v_free, v_next, material_, group_, collides_with_);
+    if constexpr (std::remove_reference_t<decltype(archive)>::reads)
+      for (const Index material : material_) note_material(material);
   }
 
   Slots slots_;
@@ -94,7 +101,13 @@ class Places {
   std::vector<Velocity> v_, load_;
 
  private:
+  void note_material(Index material) {
+    least_material_ = std::min(least_material_, material);
+    most_material_ = std::max(most_material_, material);
+  }
+
   std::uint32_t owner_ = next_owner();
+  Index least_material_ = 0, most_material_ = 0;
   std::vector<Index> material_;
   std::vector<std::uint32_t> group_, collides_with_;
 };

@@ -27,12 +27,12 @@ class Materials {
   Index add(const Material& material) {
     check(material, "material");
     materials_.push_back(material);
-    return Index(materials_.size());
+    return count();
   }
 
   void set_pair(Index a, Index b, const Material& material) {
     check(material, "material pair");
-    DELASSUS_EXPECT(std::min(a, b) >= 0 && std::max(a, b) <= Index(materials_.size()),
+    DELASSUS_EXPECT(std::min(a, b) >= 0 && std::max(a, b) <= count(),
                     "material pair: no material has this number; add it first");
     const auto [low, high] = std::minmax(a, b);
     for (Pair& p : pairs_)
@@ -48,13 +48,15 @@ class Materials {
     const auto [low, high] = std::minmax(a, b);
     for (const Pair& p : pairs_)
       if (p.a == low && p.b == high) return p.material;
-    if (low <= 0 || high > Index(materials_.size())) return {};  // a number that nobody gave out says nothing
+    if (low <= 0 || high > count()) return {};
     const Material &x = materials_[low - 1], &y = materials_[high - 1];
     return Material{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution)};
   }
 
   bool empty() const { return materials_.empty() && pairs_.empty(); }
-  bool contains(Index material) const { return material >= 0 && material <= Index(materials_.size()); }
+  bool contains(Index material) const { return material >= 0 && material <= count(); }
+  /// Their numbers go from 1 to this.
+  Index count() const { return Index(materials_.size()); }
 
   void memory(auto& archive) { archive(materials_, pairs_); }
 

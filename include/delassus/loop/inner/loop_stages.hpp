@@ -24,6 +24,7 @@ namespace delassus {
 template <class... Policies>
 void AnimationLoop<Policies...>::begin(double h) {
   DELASSUS_EXPECT(std::isfinite(h) && h > 0, "step: h = " + inner::text(h) + " s must be finite and > 0");
+  if constexpr (Laws::has_contacts) check_materials(std::as_const(*this).world(), work_.materials);
   if (h != h_) {
     start_ = time();
     steps_ = 0;

@@ -6,12 +6,14 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
+#include <delassus/core/expect.hpp>
 #include <delassus/loop/stages/contact_memory.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -127,6 +129,19 @@ CollisionReport detect_awake(World& world, Laws& laws, State& activity, ContactB
   }
   activity.drop_points(book);
   return found;
+}
+
+/// Refuses a body whose material nobody added. Materials may come after the bodies: a step is the first to know.
+template <class World>
+void check_materials(const World& world, const Materials& materials) {
+  const Index count = materials.count();
+  world.each([&](const auto& set, auto) {
+    if (set.keeps_to_materials(count)) return;
+    for (Index b = 0; b < set.blocks(); ++b)
+      DELASSUS_EXPECT(!set.is_alive(b) || materials.contains(set.material(b)),
+                      set.who(b) + ": material " + std::to_string(set.material(b)) + " is not among the " +
+                          std::to_string(count) + " of the loop; give it what loop.materials().add({...}) returns, or none");
+  });
 }
 
 /// Gives each record to the first contact law that takes its materials; returns how many nobody took.
