@@ -133,7 +133,7 @@ class Recorder {
       steps.residual.push_back(report.residual);
       steps.sweeps.push_back(report.sweeps);
     }
-    if constexpr (requires { loop.template get<Stopwatch>(); })
+    if constexpr (std::remove_cvref_t<decltype(loop)>::template has<Stopwatch>)
       add_times(loop.template get<Stopwatch>().last());
   }
 

@@ -174,17 +174,16 @@ class AnimationLoop {
   const auto& part() const {
     return part_of<Role>(*this);
   }
+  /// The part of this type among the arguments; `has` asks whether there is one.
   template <class P>
-  P& get()
-    requires(has<P>)
-  {
-    return std::get<P>(policies_);
+  P& get() {
+    if constexpr (names<P>()) return std::get<P>(policies_);
+    else return inner::no_part<P>();
   }
   template <class P>
-  const P& get() const
-    requires(has<P>)
-  {
-    return std::get<P>(policies_);
+  const P& get() const {
+    if constexpr (names<P>()) return std::get<P>(policies_);
+    else return inner::no_part<P>();
   }
   /// Where a listener that publishes meets other threads. It stays where it is when the loop moves.
   template <class Listener>
@@ -266,6 +265,13 @@ class AnimationLoop {
       inner::Workspace<WorldType, Constraints<>, void, void, void, void, void, void>>;
   using Channels = typename inner::channels_of_loop<sound, Parts, Policies...>::type;
 
+  template <class P>
+  static consteval bool names() {
+    static_assert(has<P>,
+                  "delassus: this AnimationLoop has no part of this type; name it among the arguments, or ask for the part "
+                  "of a role, loop.part<role::Solver>(), which finds the defaults too");
+    return has<P>;
+  }
   template <class Role, class Self>
   static auto& part_of(Self& self) {
     using Part = typename inner::part_type<Parts, Role>::type;

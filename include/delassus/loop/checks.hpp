@@ -13,6 +13,7 @@
 #include <delassus/loop/scheme.hpp>
 #include <delassus/loop/stage.hpp>
 #include <delassus/loop/workspace.hpp>
+#include <delassus/rows/body_set.hpp>
 #include <delassus/rows/writer.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/law_book.hpp>
@@ -21,6 +22,7 @@
 
 #include <concepts>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -34,12 +36,30 @@ concept CollisionBackend = Plays<C, role::Collision> &&
 
 namespace inner {
 
+/// What belongs into one of the policies of a loop, and is no policy itself.
+template <class P>
+concept LawOfConstraints = ConstraintLaw<P> || requires { typename P::no_contact_law; } ||
+                           requires { P::rows, P::kinds, typename P::Parameters{}; };
+
 template <class P>
 consteval bool has_role() {
   constexpr bool has = requires { typename P::plays; };
-  static_assert(has,
-                "delassus: every argument of AnimationLoop is a policy that says its role; add `using plays = "
-                "role::...;` to this type, or take it out of the list");
+  if constexpr (LawOfConstraints<P>)
+    static_assert(has,
+                  "delassus: a constraint law is no argument of AnimationLoop by itself; put it into Constraints{...}, as in "
+                  "Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}");
+  else if constexpr (BodySet<P>)
+    static_assert(has,
+                  "delassus: a set of bodies is no argument of AnimationLoop by itself; put it into World{...}, as in "
+                  "World{RigidBodies{}}");
+  else if constexpr (std::is_arithmetic_v<P>)
+    static_assert(has,
+                  "delassus: a plain number is no argument of AnimationLoop; write it into the policy it is meant for, as in "
+                  "GaussSeidel{.tolerance = 1e-6}, or give it to step(h) if it is the step");
+  else
+    static_assert(has,
+                  "delassus: every argument of AnimationLoop is a policy that says its role; add `using plays = "
+                  "role::...;` to this type, or take it out of the list");
   return has;
 }
 

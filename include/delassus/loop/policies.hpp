@@ -19,4 +19,8 @@ struct pick<Role, Default, P, Rest...>
 template <class Role, class... Policies>
 inline constexpr int count_of = (0 + ... + int(Plays<Policies, Role>));
 
+/// In place of a part that is not there: the sentence has been said.
+template <class P>
+P& no_part();
+
 }  // namespace delassus::inner

@@ -215,10 +215,10 @@ class Audit {
 /// What the Audit{} in the list of a loop has seen so far.
 template <class Loop>
 AuditReport audit(const Loop& loop) {
-  static_assert(
-      requires { loop.template get<Audit>(); },
-      "delassus: audit(loop) asks the listener Audit{}; add it to the arguments of this AnimationLoop");
-  return loop.template get<Audit>().report();
+  static_assert(Loop::template has<Audit>,
+                "delassus: audit(loop) asks the listener Audit{}; add it to the arguments of this AnimationLoop");
+  if constexpr (Loop::template has<Audit>) return loop.template get<Audit>().report();
+  else return {};
 }
 
 }  // namespace delassus

@@ -154,6 +154,12 @@ struct Contact<Law> {
 template <class Law>
 Contact(Law) -> Contact<Law>;
 
+namespace inner {
+/// Of `Contact{}`: the loop's checks say what it lacks.
+struct NoLaw {};
+}  // namespace inner
+Contact() -> Contact<inner::NoLaw>;
+
 /// A contact law for the material pairs that `Pairs::takes(a, b)` names.
 template <class Law, class Pairs>
 struct ContactFor : Contact<Law> {
