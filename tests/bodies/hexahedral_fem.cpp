@@ -1,72 +1,24 @@
 #include <delassus/bodies/hexahedral_fem.hpp>
 
-#include <limits>
-#include <string>
+#include <array>
 
 #include "catch.hpp"
+#include "fem_tests.hpp"
 #include "hexahedral_scenes.hpp"
 
 namespace hexahedral_fem_tests {
 
 using namespace delassus;
-using namespace soft_scenes;
-
-namespace {
-
-const Mat3 stretch = columns<double>({1.1, 0.02, -0.03}, {0.05, 0.93, 0.04}, {-0.02, 0.01, 1.06});
-
-/// Moves every node by up to `size` in each direction.
-void scatter(auto& set, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> draw(-size, size);
-  for (Index b = 0; b < set.blocks(); ++b) {
-    Vec3 by;
-    for (int k = 0; k < 3; ++k) by[k] = draw(random);
-    set.displace(b, by);
-  }
-}
-
-}  // namespace
+using namespace fem_tests;
 
 TEMPLATE_TEST_CASE("patch test: inside distorted hexahedra the nodes follow what their surface does", "",
                    Linear, Corotational, StableNeoHookean) {
-  HexahedralFem<TestType> set;
-  set.gravity.setZero();
-  const auto body = set.add({.mesh = bricks(3, 0.25), .elasticity = {.young = 1000, .poisson = 0.4}});
-  const auto rest = set.mesh(body).points;
-  set.fix(body, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
-  for (Index k = 0; k < set.node_count(body); ++k)
-    if (!set.moves(k)) set.place(set.node(body, k), stretch * rest[k]);
-  settle(set, 12);
-  double worst = 0;
-  int inner = 0;
-  for (Index k = 0; k < set.node_count(body); ++k)
-    if (set.moves(k))
-      worst = std::max(worst, (set.position(set.node(body, k)) - stretch * rest[k]).norm()), ++inner;
-  CHECK(inner == 8);
-  CHECK(worst < 1e-12);
-  // Constant stress: no force inside, and the energy of the material times the volume.
-  const auto f = elastic_forces(set);
-  for (Index k = 0; k < set.blocks(); ++k)
-    if (set.moves(k))
-      CHECK(f[k].norm() < 1e-11);  // E times the area of a face, times ε and some tens of terms
-  CHECK(std::abs(set.elastic_energy() - TestType{.young = 1000, .poisson = 0.4}.at(stretch).energy()) <
-        1e-11);
+  check_patch<HexahedralFem<TestType>, TestType>(bricks(3, 0.25), 8);
 }
 
 TEMPLATE_TEST_CASE("hexahedra turned and moved as a whole have no elastic force and no energy", "",
                    Corotational, StableNeoHookean) {
-  for (const double angle : {0.3, 179 * M_PI / 180}) {
-    HexahedralFem<TestType> set;
-    const auto body = set.add({.mesh = bricks(2, 0.25), .elasticity = {.young = 1}});
-    const Quat turn = exponential(Vec3(angle * Vec3(1, 2, -2) / 3));
-    for (Index k = 0; k < set.node_count(body); ++k) {
-      const auto node = set.node(body, k);
-      set.place(node, Vec3(3, -1, 2) + turn * set.position(node));
-    }
-    for (const Vec3& f : elastic_forces(set)) CHECK(f.norm() < 1e-14);
-    CHECK(std::abs(set.elastic_energy()) < 1e-15);
-  }
+  check_rigid_motion<HexahedralFem<TestType>>(bricks(2, 0.25));
 }
 
 TEST_CASE("forces of hexahedra are the derivative of their energy, their sum and their moment vanish") {
@@ -76,27 +28,8 @@ TEST_CASE("forces of hexahedra are the derivative of their energy, their sum and
     const Quat turn = exponential(Vec3(2 * Vec3(1, 2, -2) / 3));
     for (Index b = 0; b < set.blocks(); ++b) set.place(set.handle(b), turn * set.position(set.handle(b)));
     scatter(set, 0.2, seed);  // bends and twists as much as it strains
-    const auto f = elastic_forces(set);
-    const double step = 1e-5;
-    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-    double size = 0;
-    for (Index b = 0; b < set.blocks(); ++b) {
-      for (int k = 0; k < 3; ++k) {
-        set.displace(b, step * unit_axis(k));
-        const double up = set.elastic_energy();
-        set.displace(b, -2 * step * unit_axis(k));
-        const double down = set.elastic_energy();
-        set.displace(b, step * unit_axis(k));
-        CHECK(std::abs(f[b][k] + (up - down) / (2 * step)) <
-              1e-9);  // step² of the third derivative, ε Ψ/step
-      }
-      sum += f[b];
-      moment += set.position(set.handle(b)).cross(f[b]);
-      size += f[b].norm();
-    }
-    CHECK(size > 0.1);
-    CHECK(sum.norm() < 1e-14 * size);
-    CHECK(moment.norm() < 1e-14 * size);
+    check_derivative(set, 1e-9);
+    check_balance(set, 0.1);
   }
 }
 
@@ -144,11 +77,8 @@ TEMPLATE_TEST_CASE("A = M + h^2 K of hexahedra is the derivative of their forces
   HexahedralFem<TestType> set;
   set.gravity.setZero();
   const auto body = set.add({.mesh = bricks(2, 0.25), .elasticity = {.young = 1e4}, .density = 800});
-  const auto rest = set.mesh(body).points;
-  for (Index k = 0; k < set.node_count(body); ++k) set.place(set.node(body, k), 1.15 * (stretch * rest[k]));
-  const double worst = error_of_stiffness(set);
-  CHECK(worst > 0);
-  CHECK(worst < 1e-7);  // step² of the third derivative
+  stretch_all(set, body, 0);
+  check_tangent(set, 1e-7);
 }
 
 TEST_CASE("a hexahedron that is bent resists no turn as a whole") {
@@ -192,17 +122,10 @@ TEST_CASE("a body of hexahedra that cannot be one is refused, and says why") {
 TEST_CASE("an anchor in a hexahedron moves with the point of the body it was put on") {
   HexahedralFem<Corotational> set;
   const auto body = set.add({.mesh = bricks(2, 0.25), .position = {1, 0, 0}});
-  const auto rest = set.mesh(body).points;
-  const Vec3 place(1.3, 0.6, 0.2);
-  const Anchor a = set.anchor_at(body, place);
-  CHECK((set.point(a) - place).norm() < 1e-15);
-  for (Index k = 0; k < set.blocks(); ++k) set.place(set.node(body, k), stretch * rest[k]);
-  CHECK((set.point(a) - stretch * place).norm() < 1e-15);
-  // The same point found again in the deformed body; and the shares of its nodes are one in all.
-  CHECK((set.anchor_at(body, stretch * place).local - a.local).norm() < 1e-14);
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
-  CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-14);
+  const Anchor a = set.anchor_at(body, {1.3, 0.6, 0.2});
+  check_anchor(set, body, 1e-15, 1e-14);
+  // The same point found again in the deformed body.
+  CHECK((set.anchor_at(body, stretch * Vec3(1.3, 0.6, 0.2)).local - a.local).norm() < 1e-14);
 }
 
 }  // namespace hexahedral_fem_tests

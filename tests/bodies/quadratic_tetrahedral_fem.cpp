@@ -1,18 +1,16 @@
 #include <delassus/bodies/quadratic_tetrahedral_fem.hpp>
 
-#include <string>
+#include <utility>
 
 #include "catch.hpp"
-#include "soft_scenes.hpp"
+#include "fem_tests.hpp"
 
 namespace quadratic_tetrahedral_fem_tests {
 
 using namespace delassus;
-using namespace soft_scenes;
+using namespace fem_tests;
 
 namespace {
-
-const Mat3 stretch = columns<double>({1.1, 0.02, -0.03}, {0.05, 0.93, 0.04}, {-0.02, 0.01, 1.06});
 
 /// The unit cube, its inner points moved, and inner edges bent by up to `bend` of a cell.
 QuadraticTetrahedralMesh bent_cube(Index n, double bend) {
@@ -25,60 +23,20 @@ QuadraticTetrahedralMesh bent_cube(Index n, double bend) {
   return mesh;
 }
 
-/// Moves every node by up to `size` in each direction.
-void scatter(auto& set, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> draw(-size, size);
-  for (Index b = 0; b < set.blocks(); ++b) {
-    Vec3 by;
-    for (int k = 0; k < 3; ++k) by[k] = draw(random);
-    set.displace(b, by);
-  }
-}
-
 }  // namespace
 
 TEMPLATE_TEST_CASE("patch test: inside ten-node tetrahedra with bent edges the nodes follow their surface",
                    "", Linear, Corotational, StableNeoHookean, StVenantKirchhoff) {
-  QuadraticTetrahedralFem<TestType> set;
-  set.gravity.setZero();
-  const auto body = set.add({.mesh = bent_cube(2, 0.08), .elasticity = {.young = 1000, .poisson = 0.4}});
-  const auto rest = set.mesh(body).points;
-  set.fix(body, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
-  for (Index k = 0; k < set.node_count(body); ++k)
-    if (!set.moves(k)) set.place(set.node(body, k), stretch * rest[k]);
-  settle(set, 12);
-  double worst = 0;
-  int inner = 0;
-  for (Index k = 0; k < set.node_count(body); ++k)
-    if (set.moves(k))
-      worst = std::max(worst, (set.position(set.node(body, k)) - stretch * rest[k]).norm()), ++inner;
-  CHECK(inner == 27);  // 125 nodes less the 98 of the surface
-  CHECK(worst < 1e-12);
-  const auto f = elastic_forces(set);
-  for (Index k = 0; k < set.blocks(); ++k)
-    if (set.moves(k))
-      CHECK(f[k].norm() < 1e-11);  // E times the area of a face, times ε and some tens of terms
-  double V = 0;                    // bent edges inside give to one element what they take from others
-  for (Index e = 0; e < Index(set.mesh(body).tetrahedra.size()); ++e) V += volume(set.mesh(body), e);
+  const QuadraticTetrahedralMesh mesh = bent_cube(2, 0.08);
+  check_patch<QuadraticTetrahedralFem<TestType>, TestType>(mesh, 27);  // 125 nodes less the 98 of the surface
+  double V = 0;  // bent edges inside give to one element what they take from others
+  for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e) V += volume(mesh, e);
   CHECK(std::abs(V - 1) < 1e-14);
-  CHECK(std::abs(set.elastic_energy() - TestType{.young = 1000, .poisson = 0.4}.at(stretch).energy()) <
-        1e-11);
 }
 
 TEMPLATE_TEST_CASE("ten-node tetrahedra turned and moved as a whole have no elastic force and no energy", "",
                    Corotational, StableNeoHookean, StVenantKirchhoff) {
-  for (const double angle : {0.3, 179 * M_PI / 180}) {
-    QuadraticTetrahedralFem<TestType> set;
-    const auto body = set.add({.mesh = bent_cube(2, 0.08), .elasticity = {.young = 1}});
-    const Quat turn = exponential(Vec3(angle * Vec3(1, 2, -2) / 3));
-    for (Index k = 0; k < set.node_count(body); ++k) {
-      const auto node = set.node(body, k);
-      set.place(node, Vec3(3, -1, 2) + turn * set.position(node));
-    }
-    for (const Vec3& f : elastic_forces(set)) CHECK(f.norm() < 1e-14);
-    CHECK(std::abs(set.elastic_energy()) < 1e-15);
-  }
+  check_rigid_motion<QuadraticTetrahedralFem<TestType>>(bent_cube(2, 0.08));
 }
 
 TEMPLATE_TEST_CASE("forces of ten-node tetrahedra are the derivative of their energy, and balance", "",
@@ -86,26 +44,8 @@ TEMPLATE_TEST_CASE("forces of ten-node tetrahedra are the derivative of their en
   QuadraticTetrahedralFem<TestType> set;
   set.add({.mesh = bent_cube(1, 0), .elasticity = {.young = 1, .poisson = 0.4}});
   scatter(set, 0.06, 3);
-  const auto f = elastic_forces(set);
-  const double step = 1e-5;
-  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-  double size = 0;
-  for (Index b = 0; b < set.blocks(); ++b) {
-    for (int k = 0; k < 3; ++k) {
-      set.displace(b, step * unit_axis(k));
-      const double up = set.elastic_energy();
-      set.displace(b, -2 * step * unit_axis(k));
-      const double down = set.elastic_energy();
-      set.displace(b, step * unit_axis(k));
-      CHECK(std::abs(f[b][k] + (up - down) / (2 * step)) < 1e-8);  // step² of the third derivative, ε Ψ/step
-    }
-    sum += f[b];
-    moment += set.position(set.handle(b)).cross(f[b]);
-    size += f[b].norm();
-  }
-  CHECK(size > 0.1);
-  CHECK(sum.norm() < 1e-14 * size);
-  CHECK(moment.norm() < 1e-14 * size);
+  check_derivative(set, 1e-8);
+  check_balance(set, 0.1);
 }
 
 TEMPLATE_TEST_CASE("A = M + h^2 K of ten-node tetrahedra is the derivative of their forces", "", Linear,
@@ -113,15 +53,9 @@ TEMPLATE_TEST_CASE("A = M + h^2 K of ten-node tetrahedra is the derivative of th
   QuadraticTetrahedralFem<TestType> set;
   set.gravity.setZero();
   const auto body = set.add({.mesh = bent_cube(2, 0.08), .elasticity = {.young = 1e4}, .density = 800});
-  const auto rest = set.mesh(body).points;
-  // Stretched in every direction: nothing of K is cut.
-  for (Index k = 0; k < set.node_count(body); ++k)
-    set.place(set.node(body, k), 1.15 * (stretch * rest[k]) +
-                                     0.003 * Vec3(std::sin(9 * rest[k][1]), std::cos(7 * rest[k][0]), 0));
+  stretch_all(set, body, 0.003);
   set.fix(body, [](const Vec3& x) { return x[0] < 0.1; });
-  const double worst = error_of_stiffness(set);
-  CHECK(worst > 0);
-  CHECK(worst < 1e-6);  // step² of the third derivative, gradients four times those of a linear element's
+  check_tangent(set, 1e-6);  // gradients are four times those of a linear element's
 }
 
 TEST_CASE("no node has a negative mass, and all have that of the body") {
@@ -187,14 +121,7 @@ TEST_CASE("a bar of ten-node tetrahedra hangs by rho g L^2/2E where its weight p
 TEST_CASE("a point of a ten-node tetrahedron is found by its place, and moves with its nodes") {
   QuadraticTetrahedralFem<Corotational> set;
   const auto body = set.add({.mesh = bent_cube(2, 0.08), .position = {1, 0, 0}});
-  const auto rest = set.mesh(body).points;
-  const Anchor a = set.anchor_at(body, {1.3, 0.6, 0.2});
-  CHECK((set.point(a) - Vec3(1.3, 0.6, 0.2)).norm() < 1e-14);
-  for (Index k = 0; k < set.blocks(); ++k) set.place(set.node(body, k), stretch * rest[k]);
-  CHECK((set.point(a) - stretch * Vec3(1.3, 0.6, 0.2)).norm() < 1e-14);
-  Vec3 sum = Vec3::Zero();  // of the shares of the ten nodes
-  for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
-  CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-14);
+  check_anchor(set, body, 1e-14, 1e-14);
   CHECK_THROWS_AS(set.anchor_at(body, {9, 0, 0}), InvalidArgument);
 }
 

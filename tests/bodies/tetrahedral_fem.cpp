@@ -5,81 +5,29 @@
 #include <string>
 
 #include "catch.hpp"
-#include "soft_scenes.hpp"
+#include "fem_tests.hpp"
 
 namespace tetrahedral_fem_tests {
 
 using namespace delassus;
-using namespace soft_scenes;
-
-namespace {
-
-const Mat3 stretch = columns<double>({1.1, 0.02, -0.03}, {0.05, 0.93, 0.04}, {-0.02, 0.01, 1.06});
-
-}  // namespace
+using namespace fem_tests;
 
 TEMPLATE_TEST_CASE("patch test: inside a cube whose surface is deformed affinely the nodes follow", "",
                    Linear, Corotational, StableNeoHookean, StVenantKirchhoff) {
-  TetrahedralFem<TestType> set;
-  set.gravity.setZero();
-  const auto body = set.add({.mesh = cube(4, 0.2), .elasticity = {.young = 1000, .poisson = 0.4}});
-  const auto rest = set.mesh(body).points;
-  set.fix(body, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
-  for (Index k = 0; k < set.node_count(body); ++k)
-    if (!set.moves(k)) set.place(set.node(body, k), stretch * rest[k]);
-  settle(set, 12);  // from rest; Newton's method doubles its digits
-  double worst = 0;
-  int inner = 0;
-  for (Index k = 0; k < set.node_count(body); ++k) {
-    if (!set.moves(k)) continue;
-    worst = std::max(worst, (set.position(set.node(body, k)) - stretch * rest[k]).norm());
-    ++inner;
-  }
-  CHECK(inner == 27);
-  CHECK(worst < 1e-12);
-  // A homogeneous state has no force inside, and every element the same energy per volume.
-  const auto f = elastic_forces(set);
-  for (Index k = 0; k < set.blocks(); ++k)
-    if (set.moves(k))
-      CHECK(f[k].norm() < 1e-11);  // E times the area of a face, times ε and some tens of terms
-  CHECK(std::abs(set.elastic_energy() - TestType{.young = 1000, .poisson = 0.4}.at(stretch).energy()) <
-        1e-11);
+  check_patch<TetrahedralFem<TestType>, TestType>(cube(4, 0.2), 27);
 }
 
 TEMPLATE_TEST_CASE("a body turned and moved as a whole has no elastic force and no energy", "", Corotational,
                    StableNeoHookean, StVenantKirchhoff) {
-  for (const double angle : {0.3, 179 * M_PI / 180}) {
-    TetrahedralFem<TestType> set;
-    const auto body = set.add({.mesh = cube(2, 0.2), .elasticity = {.young = 1}});
-    const Quat turn = exponential(Vec3(angle * Vec3(1, 2, -2) / 3));
-    for (Index k = 0; k < set.node_count(body); ++k) {
-      const auto node = set.node(body, k);
-      set.place(node, Vec3(3, -1, 2) + turn * set.position(node));
-    }
-    for (const Vec3& f : elastic_forces(set)) CHECK(f.norm() < 1e-14);
-    CHECK(std::abs(set.elastic_energy()) < 1e-15);
-  }
+  check_rigid_motion<TetrahedralFem<TestType>>(cube(2, 0.2));
 }
 
 TEMPLATE_TEST_CASE("elastic forces sum to nothing, and their moments too", "", Corotational, StableNeoHookean,
                    StVenantKirchhoff) {
   TetrahedralFem<TestType> set;
-  const auto body = set.add({.mesh = cube(2), .elasticity = {.young = 1}});
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> draw(-0.3, 0.3);
-  for (Index k = 0; k < set.node_count(body); ++k)
-    set.displace(k, {draw(random), draw(random), draw(random)});
-  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-  double size = 0;
-  const auto f = elastic_forces(set);
-  for (Index k = 0; k < set.blocks(); ++k) {
-    sum += f[k];
-    moment += set.position(set.handle(k)).cross(f[k]);
-    size += f[k].norm();
-  }
-  CHECK(size > 1);
-  CHECK(sum.norm() < 1e-14 * size);
-  CHECK(moment.norm() < 1e-14 * size);
+  set.add({.mesh = cube(2), .elasticity = {.young = 1}});
+  scatter(set, 0.3, 2);
+  check_balance(set, 1);
 }
 
 TEMPLATE_TEST_CASE("A = M + h^2 K of the nodes is the derivative of their forces", "", Linear, Corotational,
@@ -87,15 +35,9 @@ TEMPLATE_TEST_CASE("A = M + h^2 K of the nodes is the derivative of their forces
   TetrahedralFem<TestType> set;
   set.gravity.setZero();
   const auto body = set.add({.mesh = cube(2, 0.2), .elasticity = {.young = 1e4}, .density = 800});
-  const auto rest = set.mesh(body).points;
-  // Stretched in every direction: nothing of K is cut.
-  for (Index k = 0; k < set.node_count(body); ++k)
-    set.place(set.node(body, k), 1.15 * (stretch * rest[k]) +
-                                     0.005 * Vec3(std::sin(9 * rest[k][1]), std::cos(7 * rest[k][0]), 0));
+  stretch_all(set, body, 0.005);
   set.fix(body, [](const Vec3& x) { return x[0] < 0.1; });
-  const double worst = error_of_stiffness(set);
-  CHECK(worst > 0);
-  CHECK(worst < 1e-7);  // step² of the third derivative
+  check_tangent(set, 1e-7);
 }
 
 TEMPLATE_TEST_CASE(
@@ -253,14 +195,7 @@ TEST_CASE("a body that cannot be one is refused, and says why") {
 TEST_CASE("an anchor in an element moves with the point of the body it was put on") {
   TetrahedralFem<Corotational> set;
   const auto body = set.add({.mesh = cube(2, 0.2), .position = {1, 0, 0}});
-  const auto rest = set.mesh(body).points;
-  Anchor a = set.anchor_at(body, {1.3, 0.6, 0.2});
-  CHECK((set.point(a) - Vec3(1.3, 0.6, 0.2)).norm() < 1e-15);
-  for (Index k = 0; k < set.blocks(); ++k) set.place(set.node(body, k), stretch * rest[k]);
-  CHECK((set.point(a) - stretch * Vec3(1.3, 0.6, 0.2)).norm() < 1e-15);
-  Vec3 sum = Vec3::Zero();  // of the shares of the four nodes
-  for (int k = 0; k < set.anchor_blocks(a); ++k) sum += set.along(a, k, set.point(a), {1, 2, 3});
-  CHECK((sum - Vec3(1, 2, 3)).norm() < 1e-15);
+  check_anchor(set, body, 1e-15, 1e-15);
 }
 
 }  // namespace tetrahedral_fem_tests
