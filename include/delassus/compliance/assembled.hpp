@@ -17,7 +17,7 @@ namespace delassus {
 /// Blocks are stored column-major, so that W_ij λ_j is a sum of columns.
 template <int Ra, int Rb, class S>
 struct BlockRows {
-  std::vector<Index> start, column;
+  std::vector<Index> start{0}, column;
   std::vector<Mat<Ra, Rb, S>> block;
 
   static void each_array(auto& self, auto&& f) { f(self.start), f(self.column), f(self.block); }
@@ -175,6 +175,7 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   void build_rows(const World& world, const Rows& rows) {
     const auto& pool = rows.template pool<a>();
     auto& diagonal = std::get<a>(diagonal_);
+    if (pool.items() == 0 && diagonal.empty()) return;  // a law without items, step after step
     diagonal.resize(pool.items());
     for_each_index<pools>([&](auto b) {
       std::get<b>(std::get<a>(blocks_)).reset(pool.items());

@@ -47,6 +47,7 @@ struct PoolRows {
 
   /// The rows of `items` items, all zero and without entries. The items are closed one by one, in order.
   void reset(Index items) {
+    if (items == 0 && phi.empty()) return;  // a law without items, step after step
     std::apply([](auto&... s) { (s.reset(), ...); }, sets);
     for (auto* array : fields(*this)) {
       array->resize(items);

@@ -67,7 +67,7 @@ class IslandProblem {
 
   int row_count() const {
     int count = 0;
-    for_each_index<pools>([&](auto p) { count += Rows::template rows_of<p> * int(islands_.items(p, island_).size()); });
+    each_pool([&](auto p, auto items) { count += Rows::template rows_of<p> * int(items.size()); });
     return count;
   }
 
@@ -115,9 +115,9 @@ class IslandProblem {
 
   Measure measure() {
     MeasureSums sums;
-    for_each_index<pools>([&](auto p) {
+    each_pool([&](auto p, auto items) {
       MeasureSums here = sums;
-      for (const Index i : islands_.items(p, island_)) add<p>(i, local<p>(i), here);
+      for (const Index i : items) add<p>(i, local<p>(i), here);
       sums = here;
     });
     Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
@@ -188,8 +188,8 @@ class IslandProblem {
   /// f(p, i) for every constraint, in order.
   template <class F>
   void each(F&& f) const {
-    for_each_index<pools>([&](auto p) {
-      for (const Index i : islands_.items(p, island_)) f(p, i);
+    each_pool([&](auto p, auto items) {
+      for (const Index i : items) f(p, i);
     });
   }
 
@@ -220,6 +220,14 @@ class IslandProblem {
   }
 
  private:
+  /// f(p, items of the island) for every pool. One without items anywhere costs one look; the only pool has some.
+  template <class F>
+  void each_pool(F&& f) const {
+    for_each_index<pools>([&](auto p) {
+      if (pools == 1 || rows_.template pool<p>().items() > 0) f(p, islands_.items(p, island_));
+    });
+  }
+
   /// A contact without impulse that goes on opening, of which its normal row tells.
   template <int p>
   bool stays_open(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) const {
@@ -253,9 +261,9 @@ class IslandProblem {
   template <bool tells_change, class See>
   Moved visit_all(double relaxation, const See& see) {
     Moved moved;
-    for_each_index<pools>([&](auto p) {
+    each_pool([&](auto p, auto items) {
       Moved here = moved;
-      for (const Index i : islands_.items(p, island_)) visit<p, tells_change>(i, T(relaxation), see, here);
+      for (const Index i : items) visit<p, tells_change>(i, T(relaxation), see, here);
       moved = here;
     });
     if constexpr (tells_change) {

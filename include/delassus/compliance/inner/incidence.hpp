@@ -23,6 +23,7 @@ class Incidence {
     for_each_index<Rows::pool_count>([&](auto p) {
       const auto& set = std::get<s>(rows.template pool<p>().sets);
       List& list = lists_[s * Rows::pool_count + p];
+      if (set.block.empty()) return;  // nobody asks `at`
       list.start.assign(blocks + 1, 0);
       for (const Index b : set.block) ++list.start[b + 1];
       for (Index b = 0; b < blocks; ++b) list.start[b + 1] += list.start[b];
@@ -33,6 +34,7 @@ class Incidence {
     });
   }
 
+  /// Pre: pool p acts on set s.
   template <int s, int p>
   std::span<const Entry> at(Index block) const {
     const List& list = lists_[s * Rows::pool_count + p];
