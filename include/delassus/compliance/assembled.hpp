@@ -156,7 +156,7 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
  private:
   /// Large terms cancel here: the sum runs in double whatever is stored.
   template <int p>
-  Vec<Rows::template rows_of<p>, Sum> others(const Rows& rows, Index i) const {
+  [[gnu::always_inline]] Vec<Rows::template rows_of<p>, Sum> others(const Rows& rows, Index i) const {
     Vec<Rows::template rows_of<p>, Sum> r = rows.template pool<p>().d[i].template cast<Sum>();
     for_each_index<pools>([&](auto b) {
       const auto& W = std::get<b>(std::get<p>(blocks_));

@@ -51,7 +51,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   }
 
   template <int p>
-  Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
+  [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     const auto& pool = rows.template pool<p>();
     constexpr int Ra = Rows::template rows_of<p>;
     Vec<Ra, Sum> r = pool.d[i].template cast<Sum>();
@@ -65,7 +65,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   }
 
   template <int p>
-  void commit(const Rows& rows, Index i, const Vec<Rows::template rows_of<p>, T>& change) {
+  [[gnu::always_inline]] void commit(const Rows& rows, Index i, const Vec<Rows::template rows_of<p>, T>& change) {
     const auto& pool = rows.template pool<p>();
     for_each_index<Rows::set_count>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);

@@ -152,7 +152,8 @@ inline Eigen::Matrix<T, 3, 3>& operator/=(Eigen::Matrix<T, 3, 3>& a, S s) {
 
 /// A x and A B.
 template <class T>
-inline inner::Small<T, 1> operator*(const Eigen::Matrix<T, 3, 3>& A, const Eigen::Matrix<T, 3, 1>& x) {
+[[gnu::always_inline]] inline inner::Small<T, 1> operator*(const Eigen::Matrix<T, 3, 3>& A,
+                                                           const Eigen::Matrix<T, 3, 1>& x) {
   const T *a = A.data(), *b = x.data();
   return {inner::row_times(a[0], a[3], a[6], b), inner::row_times(a[1], a[4], a[7], b),
           inner::row_times(a[2], a[5], a[8], b)};

@@ -242,7 +242,7 @@ class IslandProblem {
 
   /// The impulse that meets the law of item i while the others stand still.
   template <int p>
-  Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
+  [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
     constexpr int R = Rows::template rows_of<p>;
     if constexpr (requires { requires Book::template meets<p>(); W_.template free_velocity<p>(rows_, i); }) {
       return book_.template meet<p>(i, W_.template free_velocity<p>(rows_, i));
@@ -273,8 +273,10 @@ class IslandProblem {
     return moved;
   }
 
+  // What a visit does is inlined by order, here and in the operators: whether compilers do it by themselves depends
+  // on what else a program holds, and one call a visit costs a fifth of a sweep.
   template <int p, bool tells_change, class See>
-  void visit(Index i, T relaxation, const See& see, Moved& moved) {
+  [[gnu::always_inline]] void visit(Index i, T relaxation, const See& see, Moved& moved) {
     constexpr int R = Rows::template rows_of<p>;
     auto& lambda = rows_.template pool<p>().lambda[i];
     if (stays_open<p>(i, lambda)) return;
