@@ -92,6 +92,10 @@ void project(const L& law, const Item& item, C& local, M& memory) {
   else law.project(item, local);
 }
 
+/// What `Contact` is put around: friction and the like, without items of its own.
+template <class L>
+concept LawOfContact = requires { L::rows, L::kinds, typename L::Parameters{}; } && !ConstraintLaw<L>;
+
 /// One sentence for the first thing a law lacks.
 template <class L>
 consteval bool law_is_sound() {
@@ -99,8 +103,10 @@ consteval bool law_is_sound() {
   static_assert(is_around_a_law,
                 "delassus: Contact{...} takes a contact law, as in Contact{Coulomb{.friction = 0.5}}; this type lacks "
                 "`rows`, `kinds` or `Parameters`");
-  constexpr bool has_shape = ConstraintLaw<L>;
-  if constexpr (is_around_a_law)
+  constexpr bool has_shape = ConstraintLaw<L>, is_bare = LawOfContact<L>;
+  static_assert(!is_bare,
+                "delassus: the law of a contact stands within Contact{...}, as in Constraints{Contact{Coulomb{.friction = 0.5}}}");
+  if constexpr (is_around_a_law && !is_bare)
     static_assert(has_shape,
                   "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
   if constexpr (has_shape) {

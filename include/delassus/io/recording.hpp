@@ -18,8 +18,8 @@ namespace delassus {
 /// pointed at.
 struct RecordedBody {
   Shape shape;
-  std::vector<Vec3> vertices;             ///< of a convex hull, m
-  std::vector<std::vector<Index>> faces;  ///< of a convex hull, counter-clockwise from outside
+  std::vector<Vec3> vertices{};             ///< of a convex hull, m
+  std::vector<std::vector<Index>> faces{};  ///< of a convex hull, counter-clockwise from outside
   bool is_static = false;                 ///< drawn where the first frame has it
   bool is_particle = false;               ///< its rotation is not kept
   int colour = -1;  ///< place in the page's palette (0 … 7), −1: one after the other

@@ -38,8 +38,7 @@ namespace inner {
 
 /// What belongs into one of the policies of a loop, and is no policy itself.
 template <class P>
-concept LawOfConstraints = ConstraintLaw<P> || requires { typename P::no_contact_law; } ||
-                           requires { P::rows, P::kinds, typename P::Parameters{}; };
+concept LawOfConstraints = ConstraintLaw<P> || LawOfContact<P> || requires { typename P::no_contact_law; };
 
 template <class P>
 consteval bool has_role() {
