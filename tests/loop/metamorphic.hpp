@@ -89,6 +89,7 @@ struct State {
   std::vector<Vec3> x, v, w;
   std::vector<Quat> q;
   std::size_t contacts = 0;  ///< of the last step
+  int hard_solves = 0;       ///< in which momentum was not enough
 };
 
 inline State run(const Scene& scene, int steps) {
@@ -106,8 +107,12 @@ inline State run(const Scene& scene, int steps) {
   };
   for (const Link& link : scene.links)
     loop.add(BallJoint::Item{end(link.a, link.local_a), end(link.b, link.local_b)});
-  for (int n = 0; n < steps; ++n) loop.step(scene.h);
-  State state{.contacts = loop.contacts().size()};
+  State state{};
+  for (int n = 0; n < steps; ++n) {
+    loop.step(scene.h);
+    for (const SolveReport& r : loop.island_reports()) state.hard_solves += r.factorizations > 0;
+  }
+  state.contacts = loop.contacts().size();
   for (const auto body : handles) {
     state.x.push_back(set.position(body));
     state.q.push_back(set.orientation(body));
