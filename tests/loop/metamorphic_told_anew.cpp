@@ -110,7 +110,7 @@ TEST_CASE("which end of a joint is called a and which b changes nothing") {
 }
 
 // Powers of ten are not exact in binary: every number starts with another last bit. A solve for which momentum was not enough
-// may leave more than the rest: of 5400 runs one did, 2.4e-9 after 856 sweeps and 40 factorizations, nobody has looked why.
+// may leave more than the rest: of 5400 runs one did, 2.4e-9 after 856 sweeps and 40 factorizations, the cause is not known.
 TEST_CASE(
     "lengths, masses and times a thousand times larger or smaller give the same motion in their units") {
   unsigned apart = 0;
