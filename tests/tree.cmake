@@ -29,7 +29,8 @@ endforeach()
 
 function(delassus_tree_test name)
   add_test(NAME ${name} COMMAND ${ARGN} COMMAND_EXPAND_LISTS)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 1500 LABELS tree)
+  # COST: the long ones first, so that none of them runs on alone at the end.
+  set_tests_properties(${name} PROPERTIES TIMEOUT 1500 LABELS tree COST 100)
 endfunction()
 
 # --- rooms and levels -----------------------------------------------------------------------------------------------
