@@ -59,6 +59,15 @@ TEST_CASE("a solve whose movement falls with its error ends in the very sweep th
   REQUIRE(problem.measures <= 45);
 }
 
+// 0.1^8 is within 2e-8. After the first sweep, after the fifth, and at the end.
+TEST_CASE("a solve of eight sweeps looks at its error three times") {
+  Given problem{[](int k) { return std::pow(0.1, k); }};
+  const SolveReport r = follow(problem, 2e-8);
+  REQUIRE(r.status == Status::converged);
+  REQUIRE(r.sweeps == 8);
+  REQUIRE(problem.measures == 3);
+}
+
 // The error dips for one sweep; at intervals of 32 nobody would look there.
 TEST_CASE("an error that dips below the tolerance for a single sweep is caught") {
   Given problem{[](int k) { return k == 201 ? 0.5e-3 : 2e-3 + std::pow(0.9, k); }};
