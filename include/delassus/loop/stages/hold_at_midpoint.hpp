@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
-#include <delassus/loop/stages/midpoint_newton.hpp>
+#include <delassus/loop/stages/yielding_midpoint.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -147,7 +147,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     });
   }
 
-  MidpointNewton<World, Laws, Rows> newton_;
+  YieldingMidpoint<World, Laws, Rows> newton_;
   std::tuple<std::vector<typename Sets::Velocity>...> velocity_;
   Impulses<Rows> force_, total_;  ///< λ/h of the last part, and Σ λ
   SolveReport report_;

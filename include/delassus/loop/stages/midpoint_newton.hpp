@@ -4,7 +4,6 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/loop/stages/equalities.hpp>
-#include <delassus/loop/stages/least_impulses.hpp>
 #include <delassus/loop/stages/linearize.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
@@ -62,28 +61,6 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     return report;
   }
 
-  /// The same with φ + R λ = 0 in place of φ = 0, R = 1e-10 of W_kk where the step begins. A chain drawn
-  /// straight bears no load across: φ = θ² and θ λ = c have no solution, and Newton's method halves θ for
-  /// ever; θ² = R λ has one: θ³ = R c. Ends as `stalled`, the residual being what the joints are apart.
-  template <class I>
-  SolveReport solve_yielding(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
-    keep_start(rows);
-    SolveReport report{.status = Status::max_iterations, .ended_by = "yielding rows"};
-    begin(world, integrator, h);
-    linearize_both(world, laws, rows, h);
-    assemble_masses(world, rows);
-    system_.each([&](auto p, Index k) {
-      auto& yield = std::get<p>(yield_.pools)[system_.node(k).item];
-      for (int r = 0; r < yield.size(); ++r) yield[r] = T(1e-10 * h / 2 * system_.node(k).scale[r]);
-    });
-    iterate(world, laws, rows, integrator, h, false, integrator.max_iterations, report);
-    const double apart = Equalities<Rows>::worst(rows) / h / (speed_ > 0 ? speed_ : 1);
-    if (!(report.measure.residual >= apart)) report.measure.residual = apart;
-    const bool is_near = report.status != Status::max_iterations && apart <= integrator.acceptable;
-    report.status = is_near ? Status::stalled : Status::max_iterations;
-    return report;
-  }
-
   /// Whether the joints were further apart where the last `solve` began than a solved step leaves them.
   template <class I>
   bool began_open(const I& integrator, double h) const {
@@ -95,14 +72,6 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   static bool is_cut_short(const I& integrator, const SolveReport& report) {
     return integrator.max_iterations <= most_undamped && report.factorizations >= integrator.max_iterations &&
            report.measure.residual <= integrator.acceptable;
-  }
-
-  /// Of rows that depend on each other: λ without the share that no body feels, which else wanders.
-  void take_least(World& world, Rows& rows) {
-    const auto lambda = [&](auto p, Index i) -> auto& { return std::get<p>(impulses.pools)[i]; };
-    if (least_.are_least(system_, lambda)) return;
-    assemble_masses(world, rows);
-    least_.find(system_, lambda);
   }
 
   /// q ← q₊ and v ← v₊ of the bodies that move; the others go on with the velocity they have.
@@ -117,7 +86,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     });
   }
 
- private:
+ protected:  // `YieldingMidpoint` begins, iterates and assembles the same equations
   static constexpr int most_undamped = 10;
 
   /// φ where the step begins; no row yields.
@@ -284,12 +253,6 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     });
     system_.analyse(0);
   }
-  /// By the masses alone: the stiffness of a large idle share would weigh the rows.
-  void assemble_masses(World& world, Rows& rows) {
-    assemble(world, rows, [](const auto& set, auto, Index b, const auto& X) {
-      return set.template solve_block<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
-    });
-  }
   /// φ + R λ + c − H₊ C (P − h f − Hᵀλ).
   template <int p>
   Vec<Rows::template rows_of<p>, T> gap(const World& world, const Rows& rows, Index i) const {
@@ -330,7 +293,6 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   Rows middle_;
   Impulses<Rows> start_, yield_;
   inner::DirectSystem<Rows> system_;
-  LeastImpulses<inner::DirectSystem<Rows>> least_;
   double apart_ = 0, speed_ = 0, load_ = 0;  ///< load: of the impulses over the masses, in units of the speed
 };
 
