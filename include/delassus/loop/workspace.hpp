@@ -124,6 +124,7 @@ struct Workspace {
   ContactBook contacts;
   Materials materials;
   [[no_unique_address]] std::conditional_t<at_midpoint, Rows, Nothing<1>> at_start;
+  [[no_unique_address]] std::conditional_t<at_midpoint, Impulses<Rows>, Nothing<10>> fade;
   [[no_unique_address]] std::conditional_t<restitutes, Impulses<Rows>, Nothing<2>> bounce;
   [[no_unique_address]] std::conditional_t<restitutes || projects_position, std::array<Impulses<Rows>, 2>, Nothing<3>> aside;
   [[no_unique_address]] typename activity_state<Activity, World, Laws>::type activity;

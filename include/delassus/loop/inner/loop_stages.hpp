@@ -138,8 +138,9 @@ void AnimationLoop<Policies...>::make_bias() {
         for (auto& b : std::get<p>(work_.bounce.pools)) b.setZero();
       });
     }
+    if constexpr (Work::at_midpoint) work_.fade.resize_like(work_.rows);
     delassus::make_bias(std::as_const(*this).world(), laws(), work_.rows, part<role::Stabilisation>(), h_,
-                        theta<typename Parts::Integrator>(), work_.bounce, work_.at_start);
+                        theta<typename Parts::Integrator>(), work_.bounce, work_.at_start, work_.fade);
   }
   tell<stage::Bias>();
 }

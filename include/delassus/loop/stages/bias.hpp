@@ -55,6 +55,18 @@ Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, co
   return u;
 }
 
+/// The same of arrays x, one for each set.
+template <int R, class T, int... w, class... Arrays>
+Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const std::tuple<Arrays...>& x) {
+  Vec<R, T> u = Vec<R, T>::Zero();
+  for_each_index<int(sizeof...(Arrays))>([&](auto s) {
+    const auto& blocks = std::get<s>(pool.sets);
+    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+      u.noalias() += blocks.H[e] * std::get<s>(x)[blocks.block[e]];
+  });
+  return u;
+}
+
 /// H v of item i where a step starts; zero where it holds a body that is led, whose v is the mean of the step to come.
 template <int R, class T, int... w, class World>
 Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& world) {
@@ -110,16 +122,16 @@ void drive(Pool& pool, Index i, double speed, double h) {
 
 }  // namespace inner
 
-/// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity, all other
-/// rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes; `at_start` has the rows of
-/// the start of the step, where H is not those.
+/// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
+/// all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
+/// `at_start` has the rows of the start of the step, where H is not those, and `fade` takes what fades.
 ///
-/// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there without a tenth of
-/// what it has across the joints at the start (`inner::fading`), which is of order h² and for which only the rows of the
-/// start will do.
-template <class World, class Laws, class Rows, class S, class Bounce, class AtStart>
-void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h, double theta,
-               Bounce& bounce, const AtStart& at_start) {
+/// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there
+/// without a tenth of what it has across the joints at the start (`inner::fading`), which is of order h² and
+/// for which only the rows of the start will do. Where that gives energy it is withheld, see `withhold_fade`.
+template <class World, class Laws, class Rows, class S, class Bounce, class AtStart, class Fade>
+void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h,
+               double theta, Bounce& bounce, const AtStart& at_start, Fade& fade) {
   using T = typename Rows::Scalar;
   for_each_index<Laws::pool_count>([&](auto p) {
     const auto& constraints = laws.template pool<p>();
@@ -131,10 +143,11 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
       Vec<Law::rows, T> start = Vec<Law::rows, T>::Zero();
       if (theta != 1 || !inner::are_equalities(kinds))
         start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
-      Vec<Law::rows, T> kept = start;
+      Vec<Law::rows, T> fades = Vec<Law::rows, T>::Zero();
       if constexpr (requires { at_start.pools; })
         if constexpr (!ContactLaw<Law>)
-          kept -= inner::fading(inner::rate_at_start(at_start.template pool<p>(), i, world), start);
+          fades = inner::fading(inner::rate_at_start(at_start.template pool<p>(), i, world), start);
+      if constexpr (requires { fade.pools; }) std::get<p>(fade.pools)[i].setZero();
       const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
       pool.d[i] = free;
       for (int k = 0; k < Law::rows; ++k) {
@@ -143,7 +156,9 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
           inner::soften(pool, i, k, h);
         } else if (kinds[k] == RowKind::equality) {
           pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
-          pool.d[i][k] += T((1 - theta) / theta) * kept[k];
+          pool.d[i][k] += T((1 - theta) / theta) * (start[k] - fades[k]);
+          if constexpr (requires { fade.pools; })
+            std::get<p>(fade.pools)[i][k] = T((1 - theta) / theta) * fades[k];
           if constexpr (requires { stabilisation.joint_compliance(h); })
             pool.compliance[i][k] = T(stabilisation.joint_compliance(h));
         } else {

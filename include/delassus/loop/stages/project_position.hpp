@@ -92,6 +92,47 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
   });
 }
 
+/// What of w an island takes. Joints of the midpoint rule are closed by H, the rows of the middle, which need
+/// not see what a gap at the end asks for: H w = −φ₊/h of a chain drawn straight is as long as H is blind. E,
+/// the rows of the end, say what w does there. An island whose gaps would grow by them takes of w what closes
+/// most,
+///
+///   s = argmin Σ (φ₊ + s h E w)²/W_kk = −Σ φ₊ (h E w)/W_kk / Σ (h E w)²/W_kk ≥ 0,   s < ½ where they grow.
+template <class Laws, class Work, class S>
+double share_that_closes(const Laws& laws, const Work& work, const S& stabilisation, Index island, double h) {
+  double closed = 0, square = 0;
+  inner::each_item(work.islands, island, [&](auto p, Index i) {
+    using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
+    constexpr auto kinds = row_kinds<Law>();
+    const auto& at_end = work.at_start.template pool<p>();
+    const auto u = inner::rate(at_end, i, work.displacement);
+    for (int k = 0; k < Law::rows; ++k) {
+      const double W = double(work.W.template diagonal<p>(i)(k, k));
+      const bool is_soft = at_end.stiffness[i][k] > 0 || at_end.damping[i][k] > 0;
+      if (kinds[k] != RowKind::equality || is_soft || !(W > 0)) continue;
+      closed -= stabilisation.close(double(at_end.phi[i][k]), h) * double(u[k]) / W;
+      square += double(u[k]) * double(u[k]) / W;
+    }
+  });
+  return closed < 0.5 * square ? std::max(0.0, closed / square) : 1;
+}
+
+/// w of every island becomes the share of it that closes its joints.
+template <class World, class Laws, class Work, class S>
+void bound_displacements(const World& world, const Laws& laws, Work& work, const S& stabilisation, double h) {
+  for (Index k = 0; k < work.islands.count(); ++k) {
+    const double share = share_that_closes(laws, work, stabilisation, k, h);
+    if (share == 1) continue;
+    Index first = 0;
+    world.each([&](const auto& set, auto s) {
+      for (const Index b : set.active())
+        if (work.islands.island_of(first + b) == k)
+          std::get<s>(work.displacement)[b] *= typename World::Scalar(share);
+      first += set.blocks();
+    });
+  }
+}
+
 /// w = A⁻¹ Hᵀ μ of the position problem, into `work.displacement`; returns how its solve ended where that
 /// was far from closing the gaps (they are what is left of the last step's, and small): the worst island's. λ and d of the step are put back.
 template <class World, class Laws, class Work, class S, class Solver, class Scratch>
@@ -119,6 +160,7 @@ Status find_displacements(World& world, const Laws& laws, Work& work, const S& s
     for (auto& x : to) x.setZero();
     add_impulses<s>(inner::inverse_of<s>(work.W, set, 1), work.rows, to, std::get<s>(scratch));
   });
+  if constexpr (requires { work.at_start.pools; }) bound_displacements(world, laws, work, stabilisation, h);
   for_each_index<Laws::pool_count>([&](auto p) {
     std::swap(std::get<p>(work.aside[0].pools), work.rows.template pool<p>().lambda);
     std::swap(std::get<p>(work.aside[1].pools), work.rows.template pool<p>().d);
