@@ -66,13 +66,13 @@ TEST_CASE(
         if (is_finite(asked.point))
           asked.point += 0.5 * reach * Vec3(0, std::round(2 * x) / 2, std::round(2 * y) / 2);
         const Vec3 expected = looked_up(entries, asked, reach);
-        REQUIRE(memory.take(asked.pair, asked.feature, asked.point, reach) == expected);
+        REQUIRE(memory.take(asked.pair, asked.feature, asked.point, [&] { return reach; }) == expected);
         (is_zero(expected) ? none : k % 2 == 1 ? near : named) += 1;
       }
       CHECK(named > 50);
       CHECK(near > 50);
       CHECK(none > 5);
-      CHECK(is_zero(memory.take(77, 0, Vec3::Zero(), reach)));  // a pair that is new
+      CHECK(is_zero(memory.take(77, 0, Vec3::Zero(), [&] { return reach; })));  // a pair that is new
     }
 }
 

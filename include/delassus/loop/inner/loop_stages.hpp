@@ -84,7 +84,7 @@ void AnimationLoop<Policies...>::linearize() {
     follow(std::as_const(*this).world(), laws());
     if constexpr (Work::at_midpoint) linearize_at_midpoint(world(), laws(), work_.rows, work_.at_start, h_);
     else delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
-    warm_start(laws(), work_.rows, work_.contacts, h_ / last_h_);
+    warm_start(laws(), work_.rows, work_.contacts, h_, last_h_);
     if constexpr (Work::passes_impacts_on)
       pass_on_impacts(world(), laws(), work_.rows, work_.impacts, work_.contacts.results.size(), h_);
     report_.rows = work_.rows.row_count();

@@ -40,16 +40,17 @@ class ContactMemory {
       std::sort(entries_.begin(), entries_.end(), before);
   }
 
-  /// The impulse of the contact of this name, or the nearest unclaimed one of its pair within `reach` (m).
-  /// Zero when there is none.
-  Vec3 take(std::uint64_t pair, std::uint32_t feature, const Vec3& point, double reach) {
+  /// The impulse of the contact of this name, or the nearest unclaimed one of its pair within `reach()`, m,
+  /// which is asked for there alone. Zero when there is none.
+  template <class Reach>
+  Vec3 take(std::uint64_t pair, std::uint32_t feature, const Vec3& point, const Reach& reach) {
     const auto is_before = [](const Entry& e, const std::pair<std::uint64_t, std::uint32_t>& name) {
       return e.pair != name.first ? e.pair < name.first : e.feature < name.second;
     };
     for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(pair, feature), is_before);
          e != entries_.end() && e->pair == pair && e->feature == feature; ++e)
       if (!e->is_taken) return claim(*e);
-    Entry* const nearest = find_near(pair, point, reach);
+    Entry* const nearest = find_near(pair, point, reach());
     return nearest ? claim(*nearest) : Vec3::Zero();
   }
 

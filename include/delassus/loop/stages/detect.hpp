@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/summary.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
@@ -85,10 +86,14 @@ class ContactBook {
     }
   }
 
-  /// The impulse that the contact of this id had last step, or the nearest unclaimed one of its pair within `reach` (m).
-  /// Zero when there is none.
-  Vec3 remembered(const ContactRecord& record, double reach) {
-    return memory_.take(record.pair, record.feature, record.point(), reach);
+  /// The impulse that result `i` had last step, by the id of its contact, or the nearest unclaimed one of its pair within
+  /// what both can have moved in a step of h (s) and 2e-2 of the smaller one's size. Zero when there is none.
+  Vec3 remembered(Index i, double h) {
+    const ContactRecord& record = results[i].record;
+    return memory_.take(record.pair, record.feature, record.point(), [&] {
+      const Collider &a = colliders[points[i].a], &b = colliders[points[i].b];
+      return 0.02 * inner::pair_scale(a.shape, b.shape) + h * (inner::top_speed(a) + inner::top_speed(b));
+    });
   }
 
   /// Keeps this step's impulses for the next one.

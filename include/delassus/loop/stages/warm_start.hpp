@@ -12,9 +12,10 @@
 namespace delassus {
 
 /// λ ← h/h_last · λ of the last step, by contact id or by item; contacts carry theirs as a world vector, brought back
-/// into the cone of the new frame.
+/// into the cone of the new frame. h and h_last are this step and the last one, s.
 template <class Laws, class Rows>
-void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double step_ratio) {
+void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double h, double last_h) {
+  const double step_ratio = h / last_h;
   using T = typename Rows::Scalar;
   for_each_index<Laws::pool_count>([&](auto p) {
     const auto& pool = laws.template pool<p>();
@@ -26,7 +27,7 @@ void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double step_rat
         else lambda[i] = (step_ratio * pool.impulse[place]).template cast<T>();
       } else {
         const auto& item = pool.item(i);
-        const Vec3 impulse = step_ratio * book.remembered(item.record, 0.02);
+        const Vec3 impulse = step_ratio * book.remembered(item.result, h);
         if (is_zero(impulse)) continue;
         constexpr int R = Rows::template rows_of<p>;
         constexpr int along = inner::rows_along<R>;

@@ -54,8 +54,10 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     pairs_.clear();
     bool is_sound = true;
     problem.each([&](auto p, Index i) { is_sound &= take<p>(problem, i); });
-    if (is_sound) analyse(problem.island());
-    return is_sound;
+    if (!is_sound) return false;
+    balance();
+    analyse(problem.island());
+    return true;
   }
 
   std::size_t blocks() const { return blocks_.size(); }
@@ -206,6 +208,35 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     return c.weight > 0 && std::isfinite(c.weight);
   }
 
+  /// Unknown k of a block in units of 1/√A_kk, A_kk ≈ |H_k|/|G_k| over its rows: of J's entries, which are in
+  /// m, 1 and 1/m, the pivots inside a block are then the largest in any unit of length. To a power of two:
+  /// that rounds nothing.
+  void balance() {
+    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks_.size(), Velocities::value_type::Zero());
+    const auto each_entry = [&](const auto& f) {  // f(item, H_jk, G_kj, block, k)
+      each([&](auto, auto& c, auto& sides) {
+        for (Index s = c.first; s < c.last; ++s)
+          for (int k = 0; k < width; ++k)
+            for (int j = 0; j < c.lambda.size(); ++j)
+              f(c, sides[s].H(j, k), sides[s].G(k, j), std::size_t(sides[s].block), k);
+      });
+    };
+    each_entry([&](const auto& c, double H, double G, std::size_t b, int k) {
+      unit_[b][k] += H * H / c.weight;
+      moved_[b][k] += G * G / c.weight;
+    });
+    for (std::size_t b = 0; b < unit_.size(); ++b)
+      for (int k = 0; k < width; ++k) {
+        const double square = unit_[b][k] / moved_[b][k];  // A_kk²
+        const bool is_sound = square > 0 && std::isfinite(square);
+        unit_[b][k] = is_sound ? std::ldexp(1.0, std::ilogb(square) >> 2) : 1;
+      }
+    each_entry([&](const auto&, double& H, double& G, std::size_t b, int k) {
+      H /= unit_[b][k];
+      G *= unit_[b][k];
+    });
+  }
+
   /// The matrix of the island keeps its analysis while the graph of its bodies stands.
   void analyse(Index island) {
     std::sort(pairs_.begin(), pairs_.end());
@@ -227,6 +258,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   BlockLu<width, double>* matrix_ = nullptr;
   std::vector<Index> count_;  ///< of sides on each block
   std::vector<double> mass_;
+  Velocities unit_, moved_;  ///< of each unknown Σ |H_k|²/w, then √A_kk; Σ |G_k|²/w
   std::tuple<std::vector<Item<R>>...> items_;
   std::tuple<std::vector<NewtonSide<R, width>>...> sides_;
 };
