@@ -115,4 +115,56 @@ TEST_CASE("a rigid ball and a box that fall on soft cubes stay on them, and all 
   CHECK(std::abs(s.force_from(ball)[2] + 30 * 9.81) < 1);
 }
 
+namespace {
+
+/// A soft cube that falls aslant with a box upon it, told in other units, told back.
+std::vector<double> fallen(double length, double mass, double time) {
+  Scene s;
+  const double speed = length / time, density = mass / (length * length * length);
+  s.loop.part<role::Stabilisation>().max_speed *= speed;
+  s.loop.get<ImplicitEuler>().rayleigh_stiffness *= time;
+  s.loop.get<NativeCollision>().margin *= length;
+  s.rigid.gravity *= speed / time;
+  s.soft.gravity *= speed / time;
+  s.rigid.add_fixed(HalfSpace{});
+  TetrahedralMesh mesh = cube(2);
+  for (Vec3& x : mesh.points) x *= length;
+  s.soft.add({.mesh = mesh,
+              .elasticity = {.young = 1e5 * mass / (length * time * time)},
+              .density = 1000 * density,
+              .position = length * Vec3(0, 0, 0.05),
+              .orientation = exponential<double>(Vec3(.02, .03, 0)),
+              .velocity = speed * Vec3(.5, .1, -1),
+              .contact_radius = length * Scene::radius});
+  const auto box = s.rigid.add({.position = length * Vec3(.4, .6, 1.4),
+                                .velocity = speed * Vec3(.1, .2, -1),
+                                .angular_velocity = Vec3(.3, .2, .1) / time,
+                                .density = 500 * density,
+                                .shape = Box{.6 * length, .6 * length, .5 * length}});
+  std::vector<double> out;
+  for (int n = 0; n < 40; ++n) {
+    s.loop.step(Scene::h * time);
+    for (int k = 0; k < 3; ++k) {
+      out.push_back(s.rigid.position(box)[k] / length);
+      out.push_back(s.rigid.angular_velocity(box)[k] * time);
+      for (Index b = 0; b < s.soft.blocks(); ++b) out.push_back(s.soft.velocity()[b][k] / speed);
+    }
+  }
+  REQUIRE(s.loop.contacts().size() > 5);
+  return out;
+}
+
+}  // namespace
+
+// Powers of four round nothing, nor do their roots.
+TEST_CASE("lengths, masses and times 1024 times larger or smaller change no bit of a soft body that falls") {
+  const std::vector<double> usual = fallen(1, 1, 1);
+  constexpr double more = 1024, less = 1 / more;
+  CHECK((fallen(more, 1, 1) == usual));
+  CHECK((fallen(less, 1, 1) == usual));
+  CHECK((fallen(1, more, 1) == usual));
+  CHECK((fallen(1, 1, less) == usual));
+  CHECK((fallen(more, less, more) == usual));
+}
+
 }  // namespace soft_contacts_tests

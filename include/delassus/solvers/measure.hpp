@@ -11,6 +11,10 @@ namespace delassus {
 ///   residual = √Σ|F_i(w_i)|² / max(|d|, |u|)          in velocity units, free of scale;
 ///   siconos  = √Σ|F_i(1)|²  / max(|d|, |u|, |λ|)      the measure of Siconos, which mixes units.
 ///
+/// Rows of different kinds are summed as they stand: in a law with rows in m/s and in rad/s, as a hinge has,
+/// both and w depend on the unit of length, and with them when a solve ends. Of contacts and ball joints
+/// nothing depends on units.
+///
 /// `worst` is the largest share of one constraint in `residual`. `floor` is what rounding leaves of it.
 /// Source: [AcaryBremondHuber2018] for the natural map; the normalisation by the maximum is Siconos'.
 struct Measure {
