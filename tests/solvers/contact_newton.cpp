@@ -62,6 +62,20 @@ TEST_CASE("with too few factorizations the best iterate is kept and the status s
   REQUIRE(before <= 1e-9);
 }
 
+TEST_CASE("velocities 1024 times larger or smaller change no bit of the impulses") {
+  auto usual = tower({1, 1e4});
+  const ContactNewton solver{.tolerance = 1e-9, .max_sweeps = 100};
+  REQUIRE(solve(usual, solver).factorizations > 0);
+  for (const double factor : {1024.0, 1 / 1024.0}) {
+    auto other = tower({1, 1e4});
+    for (Vec3& d : other.rows.pool<0>().d) d *= factor;
+    solve(other, solver);
+    CAPTURE(factor);
+    const auto &a = usual.rows.pool<0>().lambda, &b = other.rows.pool<0>().lambda;
+    for (std::size_t i = 0; i < a.size(); ++i) REQUIRE(Vec3(factor * a[i]) == b[i]);
+  }
+}
+
 TEST_CASE("a number of the contact-space Newton solver that cannot be is refused in one sentence") {
   REQUIRE_THROWS_WITH(ContactNewton{.tolerance = -1}.check(), Catch::Contains("ContactNewton: tolerance -1"));
   REQUIRE_THROWS_WITH(ContactNewton{.first_sweeps = 0}.check(),

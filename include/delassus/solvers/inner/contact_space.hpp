@@ -140,8 +140,9 @@ class ContactSpace {
       });
     };
     read(d_.data());
-    double scale = 1;
+    double scale = 0;
     for (const double x : d_) scale = std::max(scale, std::abs(x));
+    if (scale == 0) scale = 1;
     std::size_t column = 0;
     problem.each([&](auto p, Index i) {
       constexpr int R = Rows::template rows_of<p>;
