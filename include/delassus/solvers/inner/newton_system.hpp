@@ -53,6 +53,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
     pairs_.clear();
     bool is_sound = true;
+    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks_.size(), Velocities::value_type::Zero());
     problem.each([&](auto p, Index i) { is_sound &= take<p>(problem, i); });
     if (!is_sound) return false;
     balance();
@@ -201,6 +202,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
       side.G.template topRows<narrow>() = set.G[e].template cast<double>();
       for (Index t = c.first; t < Index(sides.size()); ++t)
         if (sides[t].block != side.block) pairs_.push_back(std::minmax({sides[t].block, side.block}));
+      add_to_balance(side, 1 / c.weight);
       sides.push_back(side);
     });
     c.last = Index(sides.size());
@@ -212,29 +214,30 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   /// m, 1 and 1/m, the pivots inside a block are then the largest in any unit of length. To a power of two:
   /// that rounds nothing.
   void balance() {
-    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks_.size(), Velocities::value_type::Zero());
-    const auto each_entry = [&](const auto& f) {  // f(item, H_jk, G_kj, block, k)
-      each([&](auto, auto& c, auto& sides) {
-        for (Index s = c.first; s < c.last; ++s)
-          for (int k = 0; k < width; ++k)
-            for (int j = 0; j < c.lambda.size(); ++j)
-              f(c, sides[s].H(j, k), sides[s].G(k, j), std::size_t(sides[s].block), k);
-      });
-    };
-    each_entry([&](const auto& c, double H, double G, std::size_t b, int k) {
-      unit_[b][k] += H * H / c.weight;
-      moved_[b][k] += G * G / c.weight;
-    });
     for (std::size_t b = 0; b < unit_.size(); ++b)
       for (int k = 0; k < width; ++k) {
         const double square = unit_[b][k] / moved_[b][k];  // A_kk²
         const bool is_sound = square > 0 && std::isfinite(square);
-        unit_[b][k] = is_sound ? std::ldexp(1.0, std::ilogb(square) >> 2) : 1;
+        const int power = is_sound ? std::ilogb(square) >> 2 : 0;
+        unit_[b][k] = std::ldexp(1.0, power);
+        moved_[b][k] = std::ldexp(1.0, -power);
       }
-    each_entry([&](const auto&, double& H, double& G, std::size_t b, int k) {
-      H /= unit_[b][k];
-      G *= unit_[b][k];
+    for_each_index<pools>([&](auto p) {
+      for (auto& side : std::get<p>(sides_)) {
+        const auto b = std::size_t(side.block);
+        for (int k = 0; k < width; ++k) side.H.col(k) *= moved_[b][k];
+        side.G.array().colwise() *= unit_[b].array();
+      }
     });
+  }
+  /// What `side` of a constraint with 1/w = `over` adds to the sums.
+  template <int r>
+  void add_to_balance(const NewtonSide<r, width>& side, double over) {
+    const auto b = std::size_t(side.block);
+    for (int k = 0; k < width; ++k) {
+      unit_[b][k] += over * side.H.col(k).squaredNorm();
+      moved_[b][k] += over * side.G.row(k).squaredNorm();
+    }
   }
 
   /// The matrix of the island keeps its analysis while the graph of its bodies stands.
@@ -258,7 +261,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   BlockLu<width, double>* matrix_ = nullptr;
   std::vector<Index> count_;  ///< of sides on each block
   std::vector<double> mass_;
-  Velocities unit_, moved_;  ///< of each unknown Σ |H_k|²/w, then √A_kk; Σ |G_k|²/w
+  Velocities unit_, moved_;  ///< of each unknown Σ |H_k|²/w and Σ |G_k|²/w, then √A_kk and its inverse
   std::tuple<std::vector<Item<R>>...> items_;
   std::tuple<std::vector<NewtonSide<R, width>>...> sides_;
 };
