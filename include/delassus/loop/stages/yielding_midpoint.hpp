@@ -35,7 +35,8 @@ class YieldingMidpoint : public MidpointNewton<World, Laws, Rows> {
     });
     this->iterate(world, laws, rows, integrator, h, false, integrator.max_iterations, report);
     const double apart = Equalities<Rows>::worst(rows) / h / (this->speed_ > 0 ? this->speed_ : 1);
-    if (!(report.measure.residual >= apart)) report.measure.residual = apart;
+    if (std::isfinite(report.measure.residual) && !(report.measure.residual >= apart))
+      report.measure.residual = apart;
     const bool is_near = report.status != Status::max_iterations && apart <= integrator.acceptable;
     report.status = is_near ? Status::stalled : Status::max_iterations;
     return report;
