@@ -51,6 +51,7 @@
 #include <delassus/loop/reaction.hpp>
 #include <delassus/loop/sleeping.hpp>
 #include <delassus/loop/solve_until.hpp>
+#include <delassus/loop/why_quarantined.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/with_deadline.hpp>

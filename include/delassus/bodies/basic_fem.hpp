@@ -27,7 +27,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
 
  public:
   using Mesh = typename E::Mesh;
-  using Nodes::gravity, Nodes::v_free, Nodes::v_next;
+  using Nodes::gravity, Nodes::name, Nodes::v_free, Nodes::v_next;
   using typename Nodes::Body, typename Nodes::BodyHandle, typename Nodes::Handle, typename Nodes::Velocity;
   static constexpr const char* body_kind = "soft body";
 
@@ -183,24 +183,24 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   }
   /// x₊ = x + h times the mean velocity. A body with a node whose x₊ is not finite stays where it is, whole.
   void advance_with(double h, T old_share) {
-    held_ = 0;
+    held_ = {};
     each_body([&](const auto& body) {
       bool is_sound = true;
       for (const Index b : body.blocks()) {
-        load_[b].setZero();
         if (!moves(b)) continue;
         shifted_x_[b] = x_[b] + T(h) * inner::mean(v_[b], v_next[b], old_share);
         is_sound = is_sound && is_finite(shifted_x_[b]);
       }
-      held_ += is_sound ? 0 : 1;
-      if (!is_sound) return;
-      for (const Index b : body.blocks())
-        if (moves(b)) x_[b] = shifted_x_[b], v_[b] = v_next[b];
+      if (!is_sound) this->note_held(body);
+      for (const Index b : body.blocks()) {
+        load_[b].setZero();
+        if (is_sound && moves(b)) x_[b] = shifted_x_[b], v_[b] = v_next[b];
+      }
     });
   }
 
   using Nodes::bodies_, Nodes::body_slots_, Nodes::scale_;
-  using Nodes::checked, Nodes::checked_body, Nodes::body_name, Nodes::name, Nodes::each_body;
+  using Nodes::checked, Nodes::checked_body, Nodes::body_name, Nodes::each_body;
   using Nodes::slots_, Nodes::held_, Nodes::v_, Nodes::load_, Nodes::is_fixed_;
   std::vector<Velocity> x_, shifted_x_;
   std::vector<T> mass_, inverse_mass_;

@@ -145,7 +145,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
     const T *mass, *inverse_mass;
     Velocity gravity;
     T inverse_scale;
-    Index* held;
+    inner::Held* held;
 
     bool moves(Index b) const { return inverse_mass[b] > T(0); }
     const Velocity& velocity(Index b) const { return v[b]; }
@@ -154,20 +154,17 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
     Velocity solve(Index b, const Velocity& p) const { return (inverse_scale * inverse_mass[b]) * p; }
     /// x and v from v_next; `old_share` of the old velocity in the mean that moves x.
     void advance(Index b, const Velocity& next, double h, T old_share) const {
-      const bool is_moving = moves(b);
-      load[b].setZero();
-      if (!is_moving) return;
-      const Velocity moved = x[b] + T(h) * inner::mean(v[b], next, old_share);
-      if (!is_finite(moved)) {
-        ++*held;
-        return;
+      if (moves(b)) {
+        const Velocity moved = x[b] + T(h) * inner::mean(v[b], next, old_share);
+        if (!is_finite(moved)) [[unlikely]] return held->leave(load, load[b]);
+        x[b] = moved;
+        v[b] = next;
       }
-      x[b] = moved;
-      v[b] = next;
+      load[b].setZero();
     }
   };
   Blocks by_block(SystemScale scale = {}) {
-    held_ = 0;
+    held_ = {};
     return {.x = x_.data(),
             .v = v_.data(),
             .load = load_.data(),
@@ -197,12 +194,11 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   using Path = inner::ParticlePath<T>;
   auto& state() { return x_; }
   void arrive(double) {
-    held_ = 0;
+    held_ = {};
     for (const Index b : slots_.active()) {
+      if (moves(b) && is_finite(v_next[b])) v_[b] = v_next[b];
+      else if (moves(b)) held_.leave(load_.data(), load_[b]);
       load_[b].setZero();
-      if (!moves(b)) continue;
-      if (is_finite(v_next[b])) v_[b] = v_next[b];
-      else ++held_;
     }
   }
 

@@ -174,7 +174,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   };
   Blocks by_block(SystemScale scale) {
     factor(scale);
-    held_ = 0;
+    held_ = {};
     return {*this};
   }
   /// No force acts between bodies: every one moves by itself.
@@ -202,11 +202,15 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   /// What a scheme that finds q and v of the end itself does with each body; it leaves q there, and v_next.
   using Path = inner::RigidPath<T>;
   void arrive(double h) {
-    held_ = 0;
+    held_ = {};
     for (const Index b : slots_.active()) {
-      if (motion_[b] != Motion::dynamic) advance_block(b, v_next[b], h, T(0));
-      else if (load_[b].setZero(); is_finite(v_next[b])) v_[b] = v_next[b];
-      else ++held_;
+      if (motion_[b] != Motion::dynamic) {
+        advance_block(b, v_next[b], h, T(0));
+        continue;
+      }
+      if (is_finite(v_next[b])) v_[b] = v_next[b];
+      else held_.leave(load_.data(), load_[b]);
+      load_[b].setZero();
     }
   }
   auto& targets() { return targets_; }
@@ -237,17 +241,17 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   }
   void set_mass(Index b) { state_.set_mass(b, motion_[b] == Motion::dynamic); }
   void advance_with(double h, auto share) {
-    held_ = 0;
+    held_ = {};
     for (const Index b : slots_.active()) advance_block(b, v_next[b], h, share);
   }
   /// q and v of body b from its v_next.
   void advance_block(Index b, const Velocity& next, double h_, auto share) {
     if (motion_[b] == Motion::fixed) return;
     const T h = T(h_);
-    load_[b].setZero();
     const bool is_done =
         motion_[b] == Motion::kinematic ? follow(b, next, h) : state_.drift(b, v_[b], next, h, share);
-    if (!is_done) ++held_;
+    if (!is_done) [[unlikely]] return held_.leave(load_.data(), load_[b]);
+    load_[b].setZero();
   }
   /// A kinematic body goes where it was told, or on with its velocity.
   bool follow(Index b, const Velocity& next, T h) {

@@ -187,16 +187,14 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
 
   /// Kick and drift, as rigid bodies do. A rod with a velocity that is not finite stays where it is, whole.
   void advance_with(double h, T old_share) {
-    this->held_ = 0;
+    this->held_ = {};
     this->each_body([&](const auto& rod) {
       bool is_sound = true;
-      for (const Index b : rod.blocks()) {
-        load_[b].setZero();
-        is_sound = is_sound && (!moves(b) || is_finite(v_next[b]));
-      }
+      for (const Index b : rod.blocks()) is_sound = is_sound && (!moves(b) || is_finite(v_next[b]));
       for (const Index b : rod.blocks())
         if (is_sound && moves(b)) is_sound = state_.drift(b, v_[b], v_next[b], T(h), old_share);
-      this->held_ += is_sound ? 0 : 1;
+      if (!is_sound) this->note_held(rod);
+      for (const Index b : rod.blocks()) load_[b].setZero();
     });
   }
 

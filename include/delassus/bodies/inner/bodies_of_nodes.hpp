@@ -82,6 +82,8 @@ class BodiesOfNodes : public Places<Set, T, width> {
   void add_stiffness_times_velocity(std::vector<Velocity>& p, double s) const {
     each_body([&](const auto& body) { body.add_stiffness_times_velocity(p, v_, T(s)); });
   }
+  /// "soft body #0, node #7".
+  std::string name(Index b) const { return body_name(body_[b]) + ", " + this->who(b); }
   Index body_of(Index b) const { return body_[b]; }
   /// The number of a block among the nodes of its body.
   Index node_of(Index b) const { return node_[b]; }
@@ -94,7 +96,6 @@ class BodiesOfNodes : public Places<Set, T, width> {
 
  protected:
   static std::string body_name(Index k) { return std::string(Set::body_kind) + " #" + std::to_string(k); }
-  std::string name(Index b) const { return body_name(body_[b]) + ", " + this->who(b); }
   Index checked_body(BodyHandle body) const {
     DELASSUS_EXPECT(body.owner == this->owner(),
                     std::string("this ") + Set::body_kind + "'s handle belongs to another world");
@@ -123,6 +124,14 @@ class BodiesOfNodes : public Places<Set, T, width> {
     bodies_[k] = std::move(body);
     for (const Index b : bodies_[k].blocks()) self().hold(b, false);
     return {k, body_slots_.generation(k), this->owner()};
+  }
+
+  /// A body is held whole: of its nodes those that were loaded badly are noted first.
+  void note_held(const Elastic& body) {
+    ++this->held_.count;
+    for (const Index b : body.blocks())
+      if (!is_finite(this->load_[b])) this->held_.note(b, false);
+    this->held_.note(body.blocks().front(), true);
   }
 
   void each_body(auto&& f) const {

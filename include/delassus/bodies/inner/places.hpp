@@ -1,6 +1,7 @@
 /// What every set keeps of a body besides its state: its place, its velocities and load, and whom it meets.
 #pragma once
 
+#include <delassus/bodies/inner/held.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
@@ -54,7 +55,8 @@ class Places {
   const std::vector<Velocity>& velocity() const { return v_; }
   std::vector<Velocity>& velocity() { return v_; }
   /// How many bodies the last advance left where they were.
-  Index held() const { return held_; }
+  Index held() const { return held_.count; }
+  const Held& who_was_held() const { return held_; }
 
   Index collider_count() const { return blocks(); }
   Index material(Index b) const { return material_[b]; }
@@ -97,7 +99,7 @@ class Places {
   }
 
   Slots slots_;
-  Index held_ = 0;
+  Held held_;
   std::vector<Velocity> v_, load_;
 
  private:
