@@ -93,6 +93,25 @@ TEST_CASE("what belongs to another world is refused") {
   CHECK_FALSE(ours.contains(foreign));
 }
 
+TEST_CASE("a handle that was never assigned is told so, wherever it is given") {
+  AnimationLoop loop{World{RigidBodies{}, Particles{}}, Constraints{BallJoint{}}};
+  auto& set = bodies<RigidBodies>(loop.world());
+  set.add({.mass = 1.0, .shape = Sphere{1}});
+  const RigidBodies::Handle body;
+  const ConstraintHandle<BallJoint> joint;
+  const auto never = [](const char* what, const char* kind) {
+    return std::string("delassus: ") + what + "this " + kind + " handle was never assigned; keep the one that add(...) returns";
+  };
+  CHECK_THROWS_WITH(set.position(body), never("", "rigid body"));
+  CHECK_THROWS_WITH(set.apply_force(body, {1, 0, 0}), never("", "rigid body"));
+  CHECK_THROWS_WITH(bodies<Particles>(loop.world()).position({}), never("", "particle"));
+  CHECK_THROWS_WITH(anchor(set, body), never("anchor: ", "body"));
+  CHECK_THROWS_WITH(loop.remove(body), never("remove: ", "body"));
+  CHECK_THROWS_WITH(loop.remove(joint), never("remove: ", "constraint"));
+  CHECK_THROWS_WITH(loop.impulse(joint), never("impulse: ", "constraint"));
+  CHECK_THROWS_WITH(loop.item(joint), never("item: ", "constraint"));
+}
+
 TEST_CASE("an anchor on a body that is gone is refused") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
   auto& set = bodies<RigidBodies>(loop.world());

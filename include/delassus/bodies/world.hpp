@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/core/handle.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -183,7 +184,9 @@ using scalar_t = typename World::Scalar;
 template <BodySet S>
 Anchor anchor(const S& set, typename S::Handle body, const Vec3& local = Vec3::Zero(),
               const Quat& frame = Quat::Identity()) {
-  DELASSUS_EXPECT(set.contains(body), "anchor: the handle of " + set.who(body.index) + " is stale or of another world");
+  DELASSUS_EXPECT(set.contains(body),
+                  "anchor: " + inner::wrong_handle(body.owner, "body",
+                                                   "the handle of " + set.who(body.index) + " is stale or of another world"));
   DELASSUS_EXPECT(is_finite(local), "anchor: the point on " + set.who(body.index) + " is not finite");
   DELASSUS_EXPECT(inner::fits<typename S::Scalar>(local), "anchor: the point on " + set.who(body.index) + ", " +
                                                               inner::beyond<typename S::Scalar>(local, "m"));

@@ -103,10 +103,14 @@ consteval bool law_is_sound() {
   static_assert(is_around_a_law,
                 "delassus: Contact{...} takes a contact law, as in Contact{Coulomb{.friction = 0.5}}; this type lacks "
                 "`rows`, `kinds` or `Parameters`");
+  constexpr bool has_axis = !requires { typename L::no_coordinate; };
+  static_assert(has_axis,
+                "delassus: Limit, Motor and Drive act on one axis of a joint; write Motor<Turn>{} for an angle (rad), "
+                "Motor<Slide>{} for a way (m)");
   constexpr bool has_shape = ConstraintLaw<L>, is_bare = LawOfContact<L>;
   static_assert(!is_bare,
                 "delassus: the law of a contact stands within Contact{...}, as in Constraints{Contact{Coulomb{.friction = 0.5}}}");
-  if constexpr (is_around_a_law && !is_bare)
+  if constexpr (is_around_a_law && has_axis && !is_bare)
     static_assert(has_shape,
                   "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
   if constexpr (has_shape) {

@@ -70,10 +70,14 @@ struct Pool {
     DELASSUS_EXPECT(slots.is_alive(place), "constraint: place " + std::to_string(place) + " of this law holds none");
     return {place, slots.generation(place), owner};
   }
+  /// What is wrong with a handle that this pool does not contain.
+  static std::string stale(ConstraintHandle<Law> h, const std::string& what) {
+    return inner::wrong_handle(h.owner, "constraint", what + ", or is another loop's; its handle is stale");
+  }
   bool contains(ConstraintHandle<Law> h) const { return h.owner == owner && slots.is_current(h.index, h.generation); }
 
   void remove(ConstraintHandle<Law> h) {
-    DELASSUS_EXPECT(contains(h), "remove: this constraint was removed before, or is another loop's; its handle is stale");
+    DELASSUS_EXPECT(contains(h), "remove: " + stale(h, "this constraint was removed before"));
     slots.give_back(h.index);
   }
 

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string>
 
 namespace delassus {
 
@@ -24,6 +25,11 @@ namespace inner {
 inline std::uint32_t next_owner() {
   static std::atomic<std::uint32_t> count{0};
   return ++count;
+}
+
+/// What is wrong with the handle of a `kind`: one that was declared and never given a value has no owner.
+inline std::string wrong_handle(std::uint32_t owner, const std::string& kind, const std::string& otherwise) {
+  return owner == 0 ? "this " + kind + " handle was never assigned; keep the one that add(...) returns" : otherwise;
 }
 
 }  // namespace inner

@@ -75,14 +75,14 @@ class AnimationLoop {
   template <class Law>
   auto& item(ConstraintHandle<Law> constraint) {
     auto& pool = laws().template of<Law>();
-    DELASSUS_EXPECT(pool.contains(constraint), "item: this constraint was removed, or is another loop's; its handle is stale");
+    DELASSUS_EXPECT(pool.contains(constraint), "item: " + pool.stale(constraint, "this constraint was removed"));
     return pool.items[constraint.index];
   }
   /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
   template <class Law>
   const auto& impulse(ConstraintHandle<Law> constraint) const {
     const auto& pool = laws().template of<Law>();
-    DELASSUS_EXPECT(pool.contains(constraint), "impulse: this constraint was removed, or is another loop's; its handle is stale");
+    DELASSUS_EXPECT(pool.contains(constraint), "impulse: " + pool.stale(constraint, "this constraint was removed"));
     return pool.impulse[constraint.index];
   }
   /// The constraints of a `Breakable` law that broke in the last step; they are taken out when the next one begins.

@@ -193,15 +193,23 @@ consteval bool compliance_is_sound() {
 
 template <class Solver, class Laws, class Rows, class Operator>
 consteval bool solver_is_sound() {
-  using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
-  constexpr bool solves = requires(const Solver& solver, Problem& problem,
-                                   typename Solver::template Workspace<Rows>& workspace) {
-    { solver.solve(problem, workspace) } -> std::same_as<SolveReport>;
-  };
-  static_assert(solves,
-                "delassus: this type plays role::Solver but lacks `template <class Rows> struct Workspace` or "
-                "solve(problem, workspace), which returns a SolveReport; add it");
-  return solves;
+  constexpr bool is_around_a_solver = !requires { typename Solver::no_solver; };
+  static_assert(is_around_a_solver,
+                "delassus: a deadline goes around a solver, and the seconds come second: "
+                "WithDeadline{AcceleratedGaussSeidel{}, 1e-3}");
+  if constexpr (is_around_a_solver) {
+    using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
+    constexpr bool solves = requires(const Solver& solver, Problem& problem,
+                                     typename Solver::template Workspace<Rows>& workspace) {
+      { solver.solve(problem, workspace) } -> std::same_as<SolveReport>;
+    };
+    static_assert(solves,
+                  "delassus: this type plays role::Solver but lacks `template <class Rows> struct Workspace` or "
+                  "solve(problem, workspace), which returns a SolveReport; add it");
+    return solves;
+  } else {
+    return false;
+  }
 }
 
 /// The parts that meet in the rows: only a loop with constraints has them.

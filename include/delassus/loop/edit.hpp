@@ -6,6 +6,7 @@
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/row_system.hpp>
 
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -22,7 +23,21 @@ void visit_body(World& world, Handle<Set> body, F&& f) {
         f(set, Index(s));
       }
   });
-  DELASSUS_EXPECT(is_found, "the handle of body " + text(body.index) + " is stale or of another world");
+  DELASSUS_EXPECT(is_found, wrong_handle(body.owner, "body",
+                                         "the handle of body " + text(body.index) + " is stale or of another world"));
+}
+
+/// Ends of one body do not move against each other. Two points in elements do, unless they are one.
+inline bool are_on_one_body(const Anchor& a, const Anchor& b) {
+  if (a.set != b.set || a.block != b.block || a.element != b.element) return false;
+  return a.element < 0 || a.local == b.local;
+}
+
+template <class World>
+std::string name_of_body(const World& world, const Anchor& end) {
+  std::string name;
+  world.visit(end.set, [&](const auto& set, auto) { name = set.who(end.block); });
+  return name;
 }
 
 /// Items that were read speak of the sets of this world.
@@ -91,7 +106,7 @@ void remove_body(World& world, Laws& laws, Handle<Set> body) {
         });
       }
   });
-  DELASSUS_EXPECT(is_found, "remove: this handle belongs to another world");
+  DELASSUS_EXPECT(is_found, "remove: " + wrong_handle(body.owner, "body", "this handle belongs to another world"));
 }
 
 }  // namespace delassus::inner

@@ -116,6 +116,18 @@ struct WithDeadline {
     return report;
   }
 };
+
+/// Around what is no solver, as in `WithDeadline{1e-3}`; the loop's checks say so.
+template <class Solver, Clock C>
+  requires(!Plays<Solver, role::Solver>)
+struct WithDeadline<Solver, C> {
+  using plays = role::Solver;
+  using no_solver = Solver;
+  Solver solver{};
+  double budget = std::numeric_limits<double>::infinity();
+  C clock{};
+};
+
 template <class Solver>
 WithDeadline(Solver) -> WithDeadline<Solver>;
 template <class Solver>

@@ -98,7 +98,8 @@ class BodiesOfNodes : public Places<Set, T, width> {
   static std::string body_name(Index k) { return std::string(Set::body_kind) + " #" + std::to_string(k); }
   Index checked_body(BodyHandle body) const {
     DELASSUS_EXPECT(body.owner == this->owner(),
-                    std::string("this ") + Set::body_kind + "'s handle belongs to another world");
+                    wrong_handle(body.owner, Set::body_kind,
+                                 std::string("this ") + Set::body_kind + "'s handle belongs to another world"));
     DELASSUS_EXPECT(body_slots_.is_current(body.index, body.generation),
                     body_name(body.index) + " was removed; its handle is stale");
     return body.index;

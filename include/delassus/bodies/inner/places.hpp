@@ -68,7 +68,8 @@ class Places {
  protected:
   Index checked(Handle body) const {
     DELASSUS_EXPECT(body.owner == owner_,
-                    std::string("this ") + Set::kind + " handle belongs to another world");
+                    wrong_handle(body.owner, Set::kind,
+                                 std::string("this ") + Set::kind + " handle belongs to another world"));
     DELASSUS_EXPECT(slots_.is_current(body.index, body.generation),
                     who(body.index) + " was removed; its handle is stale");
     return body.index;

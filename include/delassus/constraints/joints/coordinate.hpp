@@ -4,6 +4,7 @@
 #include <delassus/constraints/joints/joint_rows.hpp>
 
 #include <cmath>
+#include <concepts>
 #include <numbers>
 
 namespace delassus {
@@ -43,7 +44,16 @@ struct Slide {
   static void check(const auto& item, const char* what) { inner::expect_frame(item.a, what, "first"); }
 };
 
+/// What `Limit`, `Motor` and `Drive` act on.
+template <class C>
+concept AxisCoordinate = requires(const JointFrames& frames) {
+  { C::value(frames) } -> std::convertible_to<double>;
+};
+
 namespace inner {
+
+/// Of `Motor{}`: the loop's checks say what it lacks.
+struct NoCoordinate {};
 
 /// `value` shifted by whole turns to the one nearest to `last`: a wheel is followed while it makes less than
 /// half a turn a step.

@@ -12,7 +12,7 @@ namespace delassus {
 /// stable for every k (N·m/rad or N/m), c (N·m·s/rad or N·s/m) and h. The target q* is that of the start of
 /// the step and moves at s = `speed`. Without a cap and with speed 0 a spring: `Drive<Turn>` beside a hinge,
 /// `Drive<Slide>` beside a slider.
-template <class Coordinate>
+template <class Coordinate = inner::NoCoordinate>
 struct Drive : Bounded, OnAxis<Coordinate> {
   struct Item {
     Anchor a, b;
@@ -43,6 +43,13 @@ struct Drive : Bounded, OnAxis<Coordinate> {
     row.phi(0, this->position(item, joint) - item.target);
     row.soft(0, item.stiffness, item.damping);
   }
+};
+
+/// Of what is no coordinate of a joint; the loop's checks say so.
+template <class Coordinate>
+  requires(!AxisCoordinate<Coordinate>)
+struct Drive<Coordinate> {
+  using no_coordinate = Coordinate;
 };
 
 }  // namespace delassus

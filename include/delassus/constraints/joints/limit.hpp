@@ -21,7 +21,7 @@ namespace delassus {
 /// step: one that is far costs nothing and does not weigh in the residual. Something that is hit and goes
 /// further than that in its first step passes the stop by that step's way, and is pushed back as from an
 /// overlap.
-template <class Coordinate>
+template <class Coordinate = inner::NoCoordinate>
 struct Limit : OnAxis<Coordinate> {
   static constexpr int rows = 2;
   static constexpr std::array<RowKind, 2> kinds{RowKind::lower, RowKind::upper};
@@ -94,6 +94,13 @@ struct Limit : OnAxis<Coordinate> {
     lambda[1] = std::min(T(0), lambda[1]);
   }
   double restitution(const Item& item) const { return item.restitution; }
+};
+
+/// Of what is no coordinate of a joint; the loop's checks say so.
+template <class Coordinate>
+  requires(!AxisCoordinate<Coordinate>)
+struct Limit<Coordinate> {
+  using no_coordinate = Coordinate;
 };
 
 }  // namespace delassus

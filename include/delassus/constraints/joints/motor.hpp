@@ -12,7 +12,7 @@ namespace delassus {
 /// q̇ = speed at the end of the step where |f| ≤ max_force allows it, else the whole force towards it. q =
 /// `Turn` or `Slide`: `Motor<Turn>` beside a hinge. Speed 0 is dry friction of that moment or force, which
 /// holds what is below its cap.
-template <class Coordinate>
+template <class Coordinate = inner::NoCoordinate>
 struct Motor : Bounded, OnAxis<Coordinate> {
   struct Item {
     Anchor a, b;
@@ -34,6 +34,13 @@ struct Motor : Bounded, OnAxis<Coordinate> {
     JointRows joint(item.a, item.b, world, row);
     Coordinate::write(joint, 0, 1);
   }
+};
+
+/// Of what is no coordinate of a joint; the loop's checks say so.
+template <class Coordinate>
+  requires(!AxisCoordinate<Coordinate>)
+struct Motor<Coordinate> {
+  using no_coordinate = Coordinate;
 };
 
 }  // namespace delassus

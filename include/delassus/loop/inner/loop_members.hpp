@@ -69,8 +69,9 @@ auto AnimationLoop<Policies...>::add(Item item) {
                                     "constraint, second end's carrier"};
       int k = 0;
       each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
-      DELASSUS_EXPECT(item.a.set != item.b.set || item.a.block != item.b.block || item.a.is_world(),
-                      "constraint: both ends are on body " + inner::text(item.a.block) + "; it would hold nothing");
+      DELASSUS_EXPECT(item.a.is_world() || !inner::are_on_one_body(item.a, item.b),
+                      "constraint: both ends are on " + inner::name_of_body(world(), item.a) +
+                          "; it would hold nothing, let one be on another body or a world_anchor");
       DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),
                       "constraint: both ends are in the world; one must be on a body");
     }
