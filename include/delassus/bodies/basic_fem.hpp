@@ -8,6 +8,7 @@
 #include <delassus/math/pose.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,12 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   using Nodes::gravity, Nodes::name, Nodes::v_free, Nodes::v_next;
   using typename Nodes::Body, typename Nodes::BodyHandle, typename Nodes::Handle, typename Nodes::Velocity;
   static constexpr const char* body_kind = "soft body";
+
+  BasicFem() = default;
+  template <std::same_as<BasicFem> Set>
+  BasicFem(Set&) {
+    inner::refuse_copy<Set>();
+  }
 
   // --- editing -------------------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@
 #include <delassus/math/pose.hpp>
 #include <delassus/rows/body_set.hpp>
 
+#include <concepts>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,12 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   using typename Places::Handle, typename Places::Velocity;
   using Places::gravity, Places::v_free, Places::v_next, Places::who;
   static constexpr const char* kind = "particle";
+
+  BasicParticles() = default;
+  template <std::same_as<BasicParticles> Set>
+  BasicParticles(Set&) {
+    inner::refuse_copy<Set>();
+  }
 
   // --- editing -------------------------------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/body_set.hpp>
 
+#include <concepts>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,12 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   using typename Places::Handle, typename Places::Velocity;
   using Places::gravity, Places::v_free, Places::v_next, Places::who;
   static constexpr const char* kind = "rigid body";
+
+  BasicRigidBodies() = default;
+  template <std::same_as<BasicRigidBodies> Set>
+  BasicRigidBodies(Set&) {
+    inner::refuse_copy<Set>();
+  }
 
   // --- editing -------------------------------------------------------------------------------------------------
 

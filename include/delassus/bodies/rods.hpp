@@ -9,6 +9,7 @@
 #include <delassus/math/twist.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,12 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   using Nodes::gravity, Nodes::v_free, Nodes::v_next;
   using typename Nodes::BodyHandle, typename Nodes::Handle, typename Nodes::Velocity;
   static constexpr const char* body_kind = "rod";
+
+  BasicRods() = default;
+  template <std::same_as<BasicRods> Set>
+  BasicRods(Set&) {
+    inner::refuse_copy<Set>();
+  }
 
   // --- editing -------------------------------------------------------------------------------------------
 
