@@ -8,6 +8,7 @@
 #include <delassus/solvers/inner/direct_system.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
+#include <cmath>
 #include <tuple>
 #include <type_traits>
 
