@@ -61,24 +61,10 @@ class NewtonStage {
 
   /// Asked before each sweep of momentum. The island is gathered when it has been swept for a while, and
   /// where Newton's method cannot act nothing is changed.
-  bool opens() {
-    if (pursuit_.sweeps() < opening_) return false;
-    if (!is_gathered_ && !problem_.has_time_for(gathering)) return false;
-    if (!std::exchange(is_gathered_, true)) {
-      if (space_.body.gather(problem_)) {
-        cost_ = space_.body.cost_in_sweeps();
-        open_after(likely * cost_);
-      } else {
-        opening_ = never;
-      }
-    }
-    const double work = likely * cost_;
-    return pursuit_.sweeps() >= opening_ && pursuit_.likely_left() >= work &&
-           problem_.has_time_for(around * work);
-  }
+  bool opens() { return pursuit_.sweeps() >= opening_ && is_due(); }
 
   /// The rows keep the better of what they had and what was found.
-  void run() {
+  [[gnu::noinline]] void run() {
     pursuit_.back_to_best();
     pursuit_.name("newton");
     ProximalPoint<Criterion, NewtonLimits, Problem, Body> point(limits_, problem_, space_.body);
@@ -116,6 +102,22 @@ class NewtonStage {
   }
 
  private:
+  /// Most islands are solved before that is asked once.
+  [[gnu::noinline]] bool is_due() {
+    if (!is_gathered_ && !problem_.has_time_for(gathering)) return false;
+    if (!std::exchange(is_gathered_, true)) {
+      if (space_.body.gather(problem_)) {
+        cost_ = space_.body.cost_in_sweeps();
+        open_after(likely * cost_);
+      } else {
+        opening_ = never;
+      }
+    }
+    const double work = likely * cost_;
+    return pursuit_.sweeps() >= opening_ && pursuit_.likely_left() >= work &&
+           problem_.has_time_for(around * work);
+  }
+
   static constexpr int least = 20, never = std::numeric_limits<int>::max();
   static constexpr int likely = 2;  ///< factorizations, of a warm stack
   static constexpr int gathering =
