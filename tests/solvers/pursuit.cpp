@@ -59,7 +59,7 @@ TEST_CASE("a solve whose movement falls with its error ends in the very sweep th
   REQUIRE(problem.measures <= 45);
 }
 
-// 0.1^8 is within 2e-8. After the first sweep, after the fifth, and at the end.
+// 0.1^8 is within 2e-8. After the first sweep, after the seventh, and at the end.
 TEST_CASE("a solve of eight sweeps looks at its error three times") {
   Given problem{[](int k) { return std::pow(0.1, k); }};
   const SolveReport r = follow(problem, 2e-8);

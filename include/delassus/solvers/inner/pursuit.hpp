@@ -138,11 +138,14 @@ class Pursuit {
   }
   /// The error is foretold from the sweep's movement, their ratio being that of the last measure: where that
   /// is within the tolerance it is time to measure, and no later than after twice the usual number of sweeps,
-  /// or four: small problems end after ten, and a measure of theirs costs as much as a sweep.
+  /// but for the first few where ten times the tolerance is not in sight: a measure costs about a sweep, and
+  /// small problems end after ten.
   bool is_due(double moved) const {
     if (Problem::Observes::every_sweep || !Criterion::needs_measure || measured_ == 0) return true;
-    const bool is_near = per_root_of_movement_ * std::sqrt(moved) <= reach_;
-    return is_near || report_.sweeps - measured_ >= std::max(4, 2 * inner::patience(report_.sweeps));
+    const double foretold = per_root_of_movement_ * std::sqrt(moved);
+    if (foretold <= reach_) return true;
+    const bool is_late = report_.sweeps - measured_ >= 2 * inner::patience(report_.sweeps);
+    return is_late && (report_.sweeps >= 7 || foretold <= 10 * reach_);
   }
   bool stalls() const {
     return Criterion::needs_measure &&
