@@ -62,6 +62,9 @@ auto AnimationLoop<Policies...>::add(Item item) {
   using Law = typename Laws::template law_of<Item>::type;
   static_assert(!std::is_void_v<Law>,
                 "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
+  static_assert(std::is_void_v<Law> || HasEnds<Item>,
+                "delassus: the Item of a law that is added to a loop needs two ends, `Anchor a, b`; one in the world is "
+                "world_anchor({0, 0, 0})");
   if constexpr (!std::is_void_v<Law>) {
     if constexpr (requires { Law::check(item); }) Law::check(item);
     if constexpr (HasEnds<Item>) {
