@@ -1,5 +1,7 @@
-// expect: delassus: this makes a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a loop
+// expect: delassus: a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a loop
 #include <delassus/delassus.hpp>
+
+#pragma GCC diagnostic error "-Wdeprecated-declarations"
 
 using namespace delassus;
 

@@ -33,10 +33,11 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   static constexpr const char* body_kind = "soft body";
 
   BasicFem() = default;
+  /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
   template <std::same_as<BasicFem> Set>
-  BasicFem(Set&) {
-    inner::refuse_copy<Set>();
-  }
+  [[deprecated("delassus: a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a "
+               "loop, or std::as_const(set) for a copy that is meant")]] BasicFem(Set& set)
+      : BasicFem(std::as_const(set)) {}
 
   // --- editing -------------------------------------------------------------------------------------------
 

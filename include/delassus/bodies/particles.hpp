@@ -13,6 +13,7 @@
 #include <concepts>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -41,10 +42,11 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   static constexpr const char* kind = "particle";
 
   BasicParticles() = default;
+  /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
   template <std::same_as<BasicParticles> Set>
-  BasicParticles(Set&) {
-    inner::refuse_copy<Set>();
-  }
+  [[deprecated("delassus: a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a "
+               "loop, or std::as_const(set) for a copy that is meant")]] BasicParticles(Set& set)
+      : BasicParticles(std::as_const(set)) {}
 
   // --- editing -------------------------------------------------------------------------------------------------
 

@@ -16,6 +16,7 @@
 
 #include <concepts>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -37,10 +38,11 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   static constexpr const char* kind = "rigid body";
 
   BasicRigidBodies() = default;
+  /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
   template <std::same_as<BasicRigidBodies> Set>
-  BasicRigidBodies(Set&) {
-    inner::refuse_copy<Set>();
-  }
+  [[deprecated("delassus: a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a "
+               "loop, or std::as_const(set) for a copy that is meant")]] BasicRigidBodies(Set& set)
+      : BasicRigidBodies(std::as_const(set)) {}
 
   // --- editing -------------------------------------------------------------------------------------------------
 

@@ -34,10 +34,11 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   static constexpr const char* body_kind = "rod";
 
   BasicRods() = default;
+  /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
   template <std::same_as<BasicRods> Set>
-  BasicRods(Set&) {
-    inner::refuse_copy<Set>();
-  }
+  [[deprecated("delassus: a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a "
+               "loop, or std::as_const(set) for a copy that is meant")]] BasicRods(Set& set)
+      : BasicRods(std::as_const(set)) {}
 
   // --- editing -------------------------------------------------------------------------------------------
 

@@ -16,15 +16,6 @@
 
 namespace delassus::inner {
 
-/// What a set says of `auto rigid = bodies<RigidBodies>(loop.world());`, by a constructor from an lvalue that is not const.
-/// Copies of what is const, those of whole loops among them, go by the copy constructor.
-template <class Set>
-constexpr void refuse_copy() {
-  static_assert(sizeof(Set) == 0,
-                "delassus: this makes a copy of a set of bodies, which its loop does not see; write `auto&` for the set of a loop, "
-                "or std::as_const(set) for a copy that is meant");
-}
-
 /// A set of bodies derives from it. `Set` is that set: it types the handles, and `Set::kind` is the word for
 /// its bodies.
 template <class Set, class T, int width_>

@@ -98,12 +98,16 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
 /// most,
 ///
 ///   s = argmin Σ (φ₊ + s h E w)²/W_kk = −Σ φ₊ (h E w)/W_kk / Σ (h E w)²/W_kk ≥ 0,   s < ½ where they grow.
+///
+/// An island with a contact or a limit takes all of w, which pushes those back as well.
 template <class Laws, class Work, class S>
 double share_that_closes(const Laws& laws, const Work& work, const S& stabilisation, Index island, double h) {
   double closed = 0, square = 0;
+  bool are_joints = true;
   inner::each_item(work.islands, island, [&](auto p, Index i) {
     using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
     constexpr auto kinds = row_kinds<Law>();
+    are_joints &= inner::are_equalities(kinds);
     const auto& at_end = work.at_start.template pool<p>();
     const auto u = inner::rate(at_end, i, work.displacement);
     for (int k = 0; k < Law::rows; ++k) {
@@ -114,7 +118,7 @@ double share_that_closes(const Laws& laws, const Work& work, const S& stabilisat
       square += double(u[k]) * double(u[k]) / W;
     }
   });
-  return closed < 0.5 * square ? std::max(0.0, closed / square) : 1;
+  return are_joints && closed < 0.5 * square ? std::max(0.0, closed / square) : 1;
 }
 
 /// w of every island becomes the share of it that closes its joints.
