@@ -74,7 +74,15 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
       }
       incidence_.template find<s>(rows, set.blocks());
     });
-    for_each_index<pools>([&](auto a) { build_rows<a>(world, rows); });
+    for_each_index<pools>([&](auto a) { build_rows<a>(world, rows, [](Index) { return true; }); });
+  }
+
+  /// The rows of those items alone of which keep(pool, item) is true; the others have no blocks, and of W_ii only
+  /// their own compliance. Pre: G stands, and no set couples its blocks.
+  template <class World, class Keep>
+  void build_where(const World& world, const Rows& rows, const Keep& keep) {
+    world.each([&](const auto& set, auto s) { incidence_.template find<s>(rows, set.blocks()); });
+    for_each_index<pools>([&](auto a) { build_rows<a>(world, rows, [&](Index i) { return keep(a, i); }); });
   }
 
   void reset(const Rows&) {}
@@ -171,8 +179,8 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
   static constexpr bool couples = Inverse::is_whole && inner::may_couple<std::remove_cvref_t<Set>>;
 
   /// Row by row: every entry e of item i meets all entries f on its block, and W_ij += H_e G_f.
-  template <int a, class World>
-  void build_rows(const World& world, const Rows& rows) {
+  template <int a, class World, class Keep>
+  void build_rows(const World& world, const Rows& rows, const Keep& keep) {
     const auto& pool = rows.template pool<a>();
     auto& diagonal = std::get<a>(diagonal_);
     if (pool.items() == 0 && diagonal.empty()) return;  // a law without items, step after step
@@ -183,7 +191,7 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
     });
     for (Index i = 0; i < pool.items(); ++i) {
       diagonal[i].setZero();
-      world.each([&](const auto& set, auto s) {
+      if (keep(i)) world.each([&](const auto& set, auto s) {
         if constexpr (couples<decltype(set)>)
           if (set.is_coupled()) {
             if constexpr (NodeCompliantSet<std::remove_cvref_t<decltype(set)>>)
