@@ -48,6 +48,8 @@ def main():
         bad.write_text(SLIPS.replace("0.5", "-0.5"))
         status, _, error = run(program, bad)
         expect(status == 2 and f"{bad}, line 3: friction -0.5 must be >= 0" in error, f"a bad file: {status} {error}")
+        status, text, _ = run(program, "--help")
+        expect(status == 0 and text.startswith("usage: fcp_solve FILE"), f"--help: {status} {text}")
         for words, reason in (([], "usage"), ([problem, "--solver", "magic"], "'magic'"), ([problem, "--tolerance", "x"], "'x'"),
                               ([problem, "--stop", "no"], "'no'"), ([problem, "--nothing", "1"], "--nothing")):
             status, _, error = run(program, *words)

@@ -45,7 +45,12 @@ struct Options {
   std::vector<std::string> files;
   double tolerance = 1e-8, time_limit = 10;
   std::string solver = "accelerated", stop = "both", warm, out, save;
+  bool asks_help = false;
 };
+
+constexpr const char* usage =
+    "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|newton|path|plain] "
+    "[--warm FILE] [--out FILE] [--save FILE] [--time-limit S]";
 
 /// The criterion of this tool: both errors within the tolerance.
 struct BothErrors {
@@ -126,6 +131,10 @@ Options parse(int count, char** words) {
       o.files.push_back(word);
       continue;
     }
+    if (word == "--help") {
+      o.asks_help = true;
+      return o;
+    }
     DELASSUS_EXPECT(k + 1 < count, word + " needs a value");
     const std::string value = words[++k];
     const auto positive = [&] {
@@ -143,8 +152,7 @@ Options parse(int count, char** words) {
     else if (word == "--save") o.save = value;
     else inner::refuse("there is no option " + word);
   }
-  DELASSUS_EXPECT(!o.files.empty(), "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] "
-                                    "[--solver accelerated|newton|path|plain] [--warm FILE] [--out FILE] [--save FILE] [--time-limit S]");
+  DELASSUS_EXPECT(!o.files.empty(), usage);
   DELASSUS_EXPECT(o.files.size() == 1 || (o.warm.empty() && o.out.empty() && o.save.empty()),
                   "--warm, --out and --save go with one problem");
   return o;
@@ -171,6 +179,10 @@ bool solve_file(const std::string& file, const Options& o) {
 
 int main(int count, char** words) try {
   const Options o = parse(count, words);
+  if (o.asks_help) {
+    std::puts(usage);
+    return 0;
+  }
   std::printf("%-40s %4s %-14s %9s %9s %8s %3s %9s %10s %s\n", "problem", "nc", "status", "err", "err_s", "sweeps", "fac",
               "build ms", "solve ms", "ended by");
   bool all = true;
