@@ -33,6 +33,15 @@ class PositionBook<Constraints<Laws...>, T> {
   static constexpr auto kinds() {
     return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
   }
+  /// No law is a round cone here, and each bounds what it is given.
+  template <int p>
+  static constexpr bool has_cone() {
+    return false;
+  }
+  template <int p>
+  static constexpr bool clamps() {
+    return true;
+  }
   /// Row by row: the slope of a bound is 1/W_kk where it lets through, 0 where it holds.
   template <int p, int R, class N>
   Mat<R, R, N> tangent(Index, Local<R, N>& c) const {
