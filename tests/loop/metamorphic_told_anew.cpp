@@ -13,10 +13,11 @@ namespace {
 // differ by e² spread that to some 1e-11 in a velocity, and twenty steps of a scene whose neighbours part by
 // less than 2 % a step add it up to 1e-9.
 //
-// Of 3000 scenes 67 come to a solve that does not end; in the seven that were looked at a capsule lies and
-// sticks with both ends. Their gaps g₁ ≠ g₂ ask it to turn by (g₁ − g₂)/L in a step, points that lie half a
-// gap apart in height then part along the axis by (g₁ − g₂)²/2hL ≈ 1e-9 m/s, and only impulses at the edge of
-// a cone, thousands of sweeps away, allow that.
+// Of 3000 scenes two come to a solve that does not end, from the first step: a capsule hangs on the world and is
+// jammed in the ground, the line from the contact to the joint being in the cone of friction. In seventy a
+// capsule lies and sticks with both ends: its gaps g₁ ≠ g₂ ask it to turn by (g₁ − g₂)/L in a step, points that
+// lie half a gap apart in height then part along the axis by (g₁ − g₂)²/2hL ≈ 1e-9 m/s, and only an impulse at
+// the edge of a cone allows that, where `inner::leap` takes it.
 constexpr int steps = 20;
 constexpr double told_anew = 1e-9;
 
@@ -181,7 +182,7 @@ TEST_CASE("lengths, masses and times 1024 times larger or smaller change no bit"
       REQUIRE(difference(usual, told_back(run(told_in(scene, units), steps), units)) == 0);
     }
   }
-  REQUIRE(unsolved <= 2 + seeds() / 20);  // else the other tests say little
+  REQUIRE(unsolved <= 1 + seeds() / 1000);  // else the other tests say little
 }
 
 // Powers of ten are not exact: every number starts with another last bit.

@@ -6,6 +6,7 @@
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
+#include <delassus/solvers/inner/leap.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/newton_stage.hpp>
 #include <delassus/solvers/inner/pursuit.hpp>
@@ -20,6 +21,8 @@ namespace delassus {
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
 ///
 ///   momentum    Nesterov over exact sweeps: ends nearly every solve;
+///   leap        where sweeps only drift along impulses that move nothing: to the end of that way, where a
+///               contact slips that had stuck, and momentum again;
 ///   anderson    forty plain sweeps, then mixes the last five: breaks limit cycles, and ends the few slow
 ///               directions that a warm start leaves;
 ///   momentum    again, with three times the patience, unless it went in circles;
@@ -106,8 +109,14 @@ struct BasicAcceleratedGaussSeidel {
           pursuit.name(name);
         }
       };
-      const bool is_in_circles = momentum("momentum", 1, exact);
-      if (!pursuit.is_over() && inner::contradicts(problem, pursuit, work.x))
+      bool is_in_circles = false;
+      for (int leaps = 0;; ++leaps) {
+        is_in_circles = momentum("momentum", 1, exact);
+        if (pursuit.is_over()) return pursuit.finish();
+        const double way = inner::drift(problem, work.x);
+        if (leaps == 3 || !inner::leap(problem, pursuit, work.x, way, patience)) break;
+      }
+      if (inner::contradicts(problem, pursuit, work.x))
         return compromise(problem, pursuit.finish(), work);
       if (open("anderson", 1) && settle(pursuit, exact))
         inner::anderson(problem, pursuit, work.history, exact);
