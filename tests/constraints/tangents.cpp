@@ -1,5 +1,6 @@
 // The slopes that Newton's method takes of Coulomb's law, against differences.
 #include <delassus/constraints/contact/coulomb.hpp>
+#include <delassus/constraints/contact/rolling_coulomb.hpp>
 #include <delassus/constraints/joints/drive.hpp>
 #include <delassus/constraints/joints/limit.hpp>
 #include <delassus/constraints/joints/motor.hpp>
@@ -17,26 +18,32 @@ using namespace delassus;
 
 namespace {
 
-Local<3> problem(const Vec3& u, const Vec3& lambda) {
-  Local<3> c{Mat3::Zero(), u, lambda};
-  c.W.diagonal() = Vec3(0.7, 0.2, 0.2);
+template <int R>
+Local<R> problem(const Vec<R>& u, const Vec<R>& lambda) {
+  constexpr double diagonal[6] = {0.7, 0.2, 0.2, 0.3, 0.3, 0.4};  // alike in the rows of one disc
+  Local<R> c{Mat<R, R>::Zero(), u, lambda};
+  for (int k = 0; k < R; ++k) c.W(k, k) = diagonal[k];
   return c;
 }
 
 /// −∂λ/∂d by central differences against what `tangent(local)` says, at random points.
-template <class Tangent>
+template <int R = 3, class Tangent>
 int agreeing(const Tangent& tangent) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-1, 1);
   int count = 0;
   for (int n = 0; n < 200; ++n) {
-    const Vec3 u(any(random), any(random), any(random)), lambda(any(random) + 1, any(random), any(random));
-    auto here = problem(u, lambda);
-    const Mat3 slope = tangent(here);
-    Mat3 difference;
+    Vec<R> u, lambda;
+    for (double& x : u) x = any(random);
+    for (double& x : lambda) x = any(random);
+    lambda[0] += 1;
+    auto here = problem<R>(u, lambda);
+    const Mat<R, R> slope = tangent(here);
+    Mat<R, R> difference;
     const double step = 1e-6;
-    for (int k = 0; k < 3; ++k) {
-      auto more = problem(u + step * Vec3::Unit(k), lambda), less = problem(u - step * Vec3::Unit(k), lambda);
+    for (int k = 0; k < R; ++k) {
+      const Vec<R> aside = step * Vec<R>::Unit(k);
+      auto more = problem<R>(u + aside, lambda), less = problem<R>(u - aside, lambda);
       tangent(more);
       tangent(less);
       difference.col(k) = -(more.lambda - less.lambda) / (2 * step);
@@ -54,19 +61,42 @@ TEST_CASE("the tangent of Coulomb's law is the slope of its impulse") {
   const Coulomb law;
   CHECK(agreeing([&](Local<3>& c) { return law.tangent({0.6}, c); }) >= 198);
 }
+TEST_CASE("the tangent of rolling friction is the slope of its impulse, which is the one of a visit") {
+  const RollingCoulomb law;
+  const RollingCoulomb::Parameters p{0.6, 0.4, 0.3};
+  // Three borders in the place of one: four of 200 points may lie on one.
+  CHECK(agreeing<6>([&](Local<6>& c) { return law.tangent(p, c); }) >= 196);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(-1, 1);
+  int closed = 0, sliding = 0;
+  for (int n = 0; n < 200; ++n) {
+    Vec<6> b;
+    for (double& x : b) x = any(random);
+    auto c = problem<6>(b, Vec<6>::Zero());
+    RollingCoulomb::Memory<double> memory;
+    law.prepare(c.W, memory);
+    const Vec<6> visited = law.meet(p, b, memory);
+    law.tangent(p, c);
+    REQUIRE((c.lambda - visited).norm() <= 1e-12 * b.norm() / 0.2);
+    closed += c.lambda[0] > 0;
+    sliding += law.is_sliding(p, c.lambda);
+  }
+  CHECK(closed >= 50);
+  CHECK(sliding >= 20);
+}
 TEST_CASE("the convex tangent of Coulomb's law is the slope of its impulse, symmetric, and at the true slip the law itself") {
   const Coulomb law;
   CHECK(agreeing([&](Local<3>& c) { return law.convex_tangent({0.6}, c, 0.3); }) >= 198);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int n = 0; n < 100; ++n) {
-    auto c = problem(Vec3(any(random), any(random), any(random)), Vec3(any(random) + 1, any(random), any(random)));
+    auto c = problem<3>(Vec3(any(random), any(random), any(random)), Vec3(any(random) + 1, any(random), any(random)));
     const Mat3 slope = law.convex_tangent({0.6}, c, 0.3);
     REQUIRE((slope - slope.transpose()).norm() <= 1e-14 * (1 + slope.norm()));
     REQUIRE(c.lambda.tail<2>().norm() <= 0.6 * c.lambda[0] * (1 + 1e-14));
     // A pair (λ, u) that meets the law is a fixed point of its projection, whatever W is.
     const Vec3 slip(0, any(random), any(random)), force(1, -0.6 * slip[1] / slip.norm(), -0.6 * slip[2] / slip.norm());
-    auto fixed = problem(slip, force);
+    auto fixed = problem<3>(slip, force);
     law.convex_tangent({0.6}, fixed, slip.norm());
     REQUIRE((fixed.lambda - force).norm() <= 1e-13);
   }

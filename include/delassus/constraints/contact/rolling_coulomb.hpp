@@ -98,6 +98,39 @@ struct RollingCoulomb {
     return measured_in(memory.length, lambda);
   }
 
+  /// Where W is diagonal, and alike in the rows of a disc, the cases are explicit: with x = λ − W⁻¹ d
+  ///
+  ///   λ_n = max(0, x_n),   λ_k = min(|x_k|, μ_k λ_n) x_k/|x_k|,   k the slip, the roll, the spin.
+  template <class T>
+  Mat<6, 6, T> tangent(const Parameters& p, Local<6, T>& c) const {
+    Vec<6, T>& x = c.lambda;
+    Mat<6, 6, T> slope = Mat<6, 6, T>::Zero();
+    for (int k = 0; k < 6; ++k) {
+      slope(k, k) = T(1) / c.W(k, k);
+      x[k] -= slope(k, k) * c.d[k];
+    }
+    if (!(x[0] > T(0))) {
+      x.setZero();
+      slope.setZero();
+      return slope;
+    }
+    const Cones<T> cones{T(p.friction), T(p.rolling), T(p.torsional)};
+    for (int k = 0; k < 3; ++k) {
+      const T mu = cones.slope(k), size = Cones<T>::length(x, k), most = mu * x[0];
+      if (size <= most) continue;
+      const int from = Cones<T>::first[k], end = from + Cones<T>::size[k];
+      T t[6];
+      for (int i = from; i < end; ++i) t[i] = x[i] / size;
+      const T across = most / size * slope(from, from);
+      for (int i = from; i < end; ++i) {
+        x[i] = most * t[i];
+        slope(i, 0) = mu * slope(0, 0) * t[i];
+        for (int j = from; j < end; ++j) slope(i, j) = across * (T(i == j) - t[i] * t[j]);
+      }
+    }
+    return slope;
+  }
+
   /// F_n = min(s λ_n, u_n);  F_k = s λ_k − clip(s λ_k − u_k) on the disc of radius μ_k s λ_n, k the slip, the
   /// roll, the spin.
   template <class T>
