@@ -16,7 +16,7 @@ inline constexpr int drift_sweeps = 16;
 /// Plain sweeps, `before` being λ before them. √Σ w_i |z_i|² of their way z = λ − `before` where it was
 /// straight and the pace even, else zero.
 template <class Problem, class Impulses>
-double drift(Problem& problem, Impulses& before) {
+[[gnu::noinline]] double drift(Problem& problem, Impulses& before) {
   problem.save(before);
   double moved = 0, square = 0;
   for (int k = 0; k < drift_sweeps; ++k) moved = problem.sweep();
@@ -74,7 +74,8 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
 /// settled: from there momentum goes on. What that would reach by itself within `patience` sweeps, which is
 /// patience²/4 plain ones, is left to it.
 template <class Problem, class Pursuit, class Impulses>
-bool leap(Problem& problem, Pursuit& pursuit, Impulses& before, double length, int patience) {
+[[gnu::noinline]] bool leap(Problem& problem, Pursuit& pursuit, Impulses& before, double length,
+                            int patience) {
   constexpr int settling = 40, in_a_row = 8;
   double far = 0.25 * patience * patience / drift_sweeps;
   bool has_leapt = false;
