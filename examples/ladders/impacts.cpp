@@ -161,13 +161,8 @@ void pour(Ladder& ladder, const AcceleratedGaussSeidel& solver) {
                  .shape = Sphere{0.1}});
       }
       const Seen seen = run(ladder, loop, ladder.is_quick() ? 1 : 5, frame);
-      double sum = 0, deepest = 0;
-      int touching = 0;
-      for (const ContactResult& contact : loop.contacts())
-        if (contact.record.gap < 0)
-          sum -= contact.record.gap, deepest = std::max(deepest, -contact.record.gap), ++touching;
-      return {{"mean overlap / diameter", touching ? sum / touching / 0.2 : 0, 0.01, 1e-3},
-              {"largest overlap at the end / diameter", deepest / 0.2, 0.1, 0.01},
+      return {{"mean overlap / diameter", seen.last_overlap / 0.2, 0.01, 1e-3},
+              {"largest overlap at the end / diameter", seen.last_penetration / 0.2, 0.1, 0.01},
               {"largest overlap of the run / diameter", seen.penetration / 0.2, unbounded, unbounded},
               energy_mark(seen, count * g * 0.11 * edge)};
     });

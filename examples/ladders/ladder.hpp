@@ -1,6 +1,8 @@
 /// A ladder: one hard case made harder rung by rung, with the figures of every rung and the level they reach.
 #pragma once
 
+#include "peers/comparison.hpp"
+
 #include <delassus/io/progress.hpp>
 
 #include <cmath>
@@ -65,27 +67,30 @@ struct OutOfTime : std::exception {
 /// no property of a rung.
 class Ladder {
  public:
-  Ladder(std::string label, bool is_quick, double max_seconds)
-      : progress_(std::move(label)), is_quick_(is_quick), max_seconds_(max_seconds) {}
+  Ladder(std::string label, bool is_quick, double max_seconds, peers::Comparison* comparison = nullptr)
+      : progress_(std::move(label)), is_quick_(is_quick), max_seconds_(max_seconds), comparison_(comparison) {}
 
   /// f() returns the marks of a rung. Quick, only the first rung is run.
   template <class F>
   void rung(const std::string& difficulty, F&& f) {
-    if (is_late_ || (is_quick_ && !rungs_.empty())) return;
+    if (is_over_ || (is_quick_ && !rungs_.empty())) return;
     Rung rung{.difficulty = difficulty};
+    if (comparison_) comparison_->begin(difficulty);
     start_ = std::clock();
     try {
       rung.marks = f();
+      if (comparison_) comparison_->judge(rung.marks);
       rung.level = Level::gold;
       for (const Mark& mark : rung.marks) rung.level = std::min(rung.level, mark.level());
     } catch (const OutOfTime&) {
-      is_late_ = true;
+      is_over_ = true;
       rung.trouble = "not done in " + std::to_string(int(max_seconds_)) + " s of the processor";
     } catch (const std::exception& error) {
       rung.trouble = error.what();
     }
     rung.seconds = seconds();
     rungs_.push_back(rung);
+    if (comparison_ && !comparison_->end(rung)) is_over_ = true;
   }
 
   /// To be called now and then within a rung; `fraction` of it is done.
@@ -96,13 +101,16 @@ class Ladder {
 
   const std::vector<Rung>& rungs() const { return rungs_; }
   bool is_quick() const { return is_quick_; }
+  /// Null but where rungs are compared with other engines.
+  peers::Comparison* comparison() const { return comparison_; }
 
  private:
   double seconds() const { return double(std::clock() - start_) / CLOCKS_PER_SEC; }
 
   delassus::Progress progress_;
-  bool is_quick_, is_late_ = false;
+  bool is_quick_, is_over_ = false;
   double max_seconds_;
+  peers::Comparison* comparison_;
   std::clock_t start_ = std::clock();
   std::vector<Rung> rungs_;
 };

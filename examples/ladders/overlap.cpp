@@ -34,7 +34,8 @@ void part_overlaps(Ladder& ladder, const Stabilisation& stabilisation) {
                   double lowest = 0, late = 0, fastest = 0;
                   std::vector<Vec3> before;
                   for (const Index b : alive(set)) before.push_back(set.pose(b).position);
-                  const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.5 : 4, frame, [&](int n) {
+                  const double until = ladder.is_quick() ? 0.5 : 4;
+                  const Seen seen = run(ladder, loop, until, frame, [&](int n, const Seen& now) {
                     for (const Index b : alive(set))
                       if (set.moves(b)) lowest = most(lowest, -set.pose(b).position.z());
                     std::size_t k =
@@ -43,7 +44,7 @@ void part_overlaps(Ladder& ladder, const Stabilisation& stabilisation) {
                       const Vec3 at = set.pose(b).position;
                       fastest = most(fastest, (at - std::exchange(before[k++], at)).norm() / frame);
                     }
-                    if (n >= 120) late = most(late, loop.report().max_penetration);
+                    if (n >= 120) late = most(late, now.last_penetration);
                   });
                   return {{"speed (m/s)", seen.speed, share < 1 ? 2. : 10., 1},
                           {"way a second (m/s)", fastest, unbounded, unbounded},

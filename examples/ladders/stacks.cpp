@@ -110,9 +110,9 @@ void dominoes(Ladder& ladder) {
         set.set_velocity(line[0], {0.75, 0, 0}, {0, 1.5, 0});
         std::vector<double> fell(std::size_t(count), -1);
         const double h = fine ? frame / 4 : frame;
-        run(ladder, loop, 3 + 0.3 * count, h, [&](int) {
+        run(ladder, loop, 3 + 0.3 * count, h, [&](int n) {
           for (std::size_t k = 0; k < fell.size(); ++k)
-            if (fell[k] < 0 && set.position(line[k]).z() < 0.45) fell[k] = loop.time();
+            if (fell[k] < 0 && set.position(line[k]).z() < 0.45) fell[k] = (n + 1) * h;
         });
         for (std::size_t k = 0; k < fell.size(); ++k) {
           standing += fell[k] < 0;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <type_traits>
 
 namespace ladders {
 
@@ -50,16 +51,63 @@ struct Seen {
   int sweeps = 0;       ///< or factorizations, of the step that took most
   int unconverged = 0;  ///< steps that did not converge, and said so
   double first_energy = 0, last_energy = 0;
+  double last_penetration = 0;  ///< of the last step, m
+  double last_overlap = 0;      ///< the mean of its contacts that overlap, m
 };
 
-/// Steps the loop for `seconds` at h, calling each(step) after every step.
+namespace inner {
+
+/// each(step), or each(step, what was seen up to it).
+template <class F>
+void call(F& each, int step, const Seen& seen) {
+  if constexpr (std::is_invocable_v<F&, int, const Seen&>) each(step, seen);
+  else each(step);
+}
+
+/// The mean of the overlaps of the last step's contacts, m.
+double mean_overlap(const auto& loop) {
+  double sum = 0;
+  int touching = 0;
+  if constexpr (requires { loop.contacts(); })
+    for (const ContactResult& contact : loop.contacts())
+      if (contact.record.gap < 0) sum -= contact.record.gap, ++touching;
+  return touching ? sum / touching : 0;
+}
+
+}  // namespace inner
+
+/// The same run where poses and velocities say what is seen, and another engine may move the bodies.
+template <class Loop, class F>
+Seen run_compared(Ladder& ladder, Loop& loop, double seconds, double h, F& each) {
+  peers::Course<Loop> course(*ladder.comparison(), loop, h);
+  Seen seen;
+  seen.first_energy = course.start().energy;
+  const int steps = std::max(1, int(std::lround(seconds / h)));
+  for (int n = 0; n < steps; ++n) {
+    const peers::Reading now = course.step(h);
+    seen.last_penetration = now.penetration;
+    seen.last_overlap = now.mean_penetration;
+    seen.penetration = most(seen.penetration, now.penetration);
+    seen.joint_gap = most(seen.joint_gap, now.joint_gap);
+    seen.last_energy = now.energy;
+    seen.speed = most(seen.speed, now.speed);
+    seen.gain = most(seen.gain, now.energy - seen.first_energy);
+    inner::call(each, n, seen);
+    ladder.show((n + 1.0) / steps);
+  }
+  return seen;
+}
+
+/// Steps the loop for `seconds` at h, calling each(step) or each(step, seen) after every step.
 template <class Loop, class F>
 Seen run(Ladder& ladder, Loop& loop, double seconds, double h, F&& each) {
+  if (ladder.comparison()) return run_compared(ladder, loop, seconds, h, each);
   Seen seen;
   seen.first_energy = energy(loop);
   const int steps = std::max(1, int(std::lround(seconds / h)));
   for (int n = 0; n < steps; ++n) {
     const StepReport report = loop.step(h);
+    seen.last_penetration = report.max_penetration;
     seen.penetration = std::max(seen.penetration, report.max_penetration);
     seen.joint_gap = std::max(seen.joint_gap, report.max_joint_violation);
     seen.residual = std::max(seen.residual, report.residual);
@@ -70,9 +118,10 @@ Seen run(Ladder& ladder, Loop& loop, double seconds, double h, F&& each) {
     seen.last_energy = energy(loop);
     seen.speed = most(seen.speed, top_speed(loop));
     seen.gain = most(seen.gain, seen.last_energy - seen.first_energy);
-    each(n);
+    inner::call(each, n, seen);
     ladder.show((n + 1.0) / steps);
   }
+  seen.last_overlap = inner::mean_overlap(loop);
   return seen;
 }
 template <class Loop>
