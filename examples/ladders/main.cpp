@@ -18,7 +18,7 @@ namespace ladders {
 namespace {
 
 constexpr const char* help =
-    R"text(delassus_ladders [ROW...] [--out DIR] [--docs FILE] [--seconds S] [--quick]
+    R"text(delassus_ladders [ROW...] [--out DIR] [--docs FILE] [--peers FILE] [--seconds S] [--quick]
 
 Runs hard cases, each a ladder of rungs that get harder, and says how far up it reaches bronze (fails safely), silver (as good
 engines do) and gold (meets a stated number). Writes DIR/ladders.csv with every figure and DIR/index.html, a page to look at.
@@ -26,13 +26,14 @@ engines do) and gold (meets a stated number). Writes DIR/ladders.csv with every 
   ROW            HC-01 or a word of a title or of its parts, "stack" say: only these rows; all if none is said
   --out DIR      the folder of what is written, made if missing; "out/ladders" if not said
   --docs FILE    replaces the table of this page, between its two ladder marks
+  --peers FILE   what delassus_peers measured of other engines; docs/ladders/peers.csv of the tree if not said
   --seconds S    a rung that takes more processor time has failed, and no harder one of its row is tried; 60 if not said
   --quick        the easiest rung of each row, cut short; fails where one reaches less than it is known to
   --help         this text
 )text";
 
 struct Options {
-  std::string out = "out/ladders", docs, unknown;
+  std::string out = "out/ladders", docs, peers = DELASSUS_LADDERS_PEERS, unknown;
   std::vector<std::string> wanted;
   double seconds = 60;
   bool is_quick = false, wants_help = false;
@@ -69,6 +70,8 @@ Options read_options(std::span<char*> arguments) {
       options.out = arguments[++i];
     else if (word == "--docs" && has_value)
       options.docs = arguments[++i];
+    else if (word == "--peers" && has_value)
+      options.peers = arguments[++i];
     else if (word == "--seconds" && has_value && read_seconds(arguments[i + 1], options.seconds))
       ++i;
     else if (!word.starts_with("-") && is_word_of_a_row(std::string(word)))
@@ -129,11 +132,12 @@ bool climb(const Options& options) {
       holds = false;
     }
   }
+  const std::vector<PeerFigure> peers = read_peers(options.peers);
   std::filesystem::create_directories(options.out);
   const std::filesystem::path out(options.out);
   delassus::write_csv((out / "ladders.csv").string(), figures(all));
-  delassus::inner::write_file((out / "index.html").string(), page(all));
-  if (!options.docs.empty()) write_docs(options.docs, markdown(all));
+  delassus::inner::write_file((out / "index.html").string(), page(all, peers));
+  if (!options.docs.empty()) write_docs(options.docs, markdown(all, peers));
   if (!options.is_quick) std::puts(""), print(summary(all));
   std::printf("commit %s; every figure in %s, a page in %s\n", DELASSUS_LADDERS_COMMIT,
               (out / "ladders.csv").c_str(), (out / "index.html").c_str());

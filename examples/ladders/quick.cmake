@@ -2,7 +2,14 @@
 file(REMOVE_RECURSE ${out})
 file(MAKE_DIRECTORY ${out})
 file(WRITE ${out}/page.md "before\n<!-- ladders -->\nstale\n<!-- end of ladders -->\nafter\n")
-execute_process(COMMAND ${program} --quick --out ${out} --docs ${out}/page.md RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE errors)
+file(WRITE ${out}/peers.csv "case,title,engine,parts,rungs,bronze,silver,gold,short,microseconds
+HC-42,tiny and huge,delassus,,9,9,9,9,,3.25
+HC-42,tiny and huge,Slow,,9,9,4,1,\"b: bronze, so\",9
+HC-42,tiny and huge,Fast,,9,9,4,1,\"a: bronze, \"\"so\"\"\",2.5
+HC-42,tiny and huge,Worse,,9,9,3,3,,1
+HC-33,train of gears,Any,,6,,,,needs gears,
+")
+execute_process(COMMAND ${program} --quick --out ${out} --docs ${out}/page.md --peers ${out}/peers.csv RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE errors)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "--quick ended with ${status}\n${text}${errors}")
 endif()
@@ -15,6 +22,12 @@ file(READ ${out}/page.md page)
 if(NOT page MATCHES "^before\n.*HC-19 inverted.*HC-42 tiny and huge.*\nafter\n$" OR page MATCHES "stale")
   message(FATAL_ERROR "the table did not take its place in\n${page}")
 endif()
+foreach(best "| Fast: silver 4 of 9, gold 1 of 9; a: bronze, \"so\"; 2.5 µs a step, ours 3.2 µs |" "| – (needs gears) |" "| not measured |")
+  string(FIND "${page}" "${best}" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "no cell '${best}' in\n${page}")
+  endif()
+endforeach()
 execute_process(COMMAND ${program} --quick --out ${out} HC-09 "free spin" RESULT_VARIABLE status OUTPUT_VARIABLE text)
 if(NOT status EQUAL 0 OR NOT text MATCHES "^HC-09 [^\n]*\nHC-12 [^\n]*\ncommit ")
   message(FATAL_ERROR "two rows ended with ${status} and said: ${text}")

@@ -1,8 +1,6 @@
 // The tables and the page of delassus_ladders.
 #include "report.hpp"
 
-#include "peers.hpp"
-
 #include <delassus/io/inner/text.hpp>
 
 namespace ladders {
@@ -87,11 +85,11 @@ Table figures(const std::vector<Climbed>& all) {
   return table;
 }
 
-std::string markdown(const std::vector<Climbed>& all) {
+std::string markdown(const std::vector<Climbed>& all, const std::vector<PeerFigure>& peers) {
   Table table = summary(all);
   table.columns.push_back("best peer");
   for (std::size_t k = 0; k < all.size(); ++k)
-    table.rows[k].push_back(std::string(best_peer(all[k].row->id, all[k].row->title)));
+    table.rows[k].push_back(best_peer(peers, all[k].row->id, all[k].row->title, all[k].row->parts));
   std::string out;
   const auto append_line = [&](const auto& text_of) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) out += "| " + text_of(c) + " ";
@@ -103,7 +101,7 @@ std::string markdown(const std::vector<Climbed>& all) {
   return out;
 }
 
-std::string page(const std::vector<Climbed>& all) {
+std::string page(const std::vector<Climbed>& all, const std::vector<PeerFigure>& peers) {
   std::string out = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Ladders</title><style>";
   out += style;
   out += "</style><h1>Hard cases, rung by rung</h1><p>A square is a rung, the easiest first: ";
@@ -117,7 +115,7 @@ std::string page(const std::vector<Climbed>& all) {
       out += "<span class=\"r " + std::string(name(rung.level)) + "\" title=\"" + html(all_figures(rung)) +
              "\"></span>";
     out += "<td><small>" + html(first_failing(ladder)) + "</small><td><small>" +
-           html(std::string(best_peer(ladder.row->id, ladder.row->title))) + "</small>\n";
+           html(best_peer(peers, ladder.row->id, ladder.row->title, ladder.row->parts)) + "</small>\n";
   }
   return out + "</table></html>\n";
 }

@@ -2,6 +2,7 @@
 /// docs/ladders.md.
 #pragma once
 
+#include "peer_figures.hpp"
 #include "rows.hpp"
 
 #include <delassus/io/table.hpp>
@@ -28,9 +29,9 @@ struct Climbed {
 delassus::Table summary(const std::vector<Climbed>& all);
 /// One row a figure, with every rung.
 delassus::Table figures(const std::vector<Climbed>& all);
-/// The summary and what is missing, as Markdown.
-std::string markdown(const std::vector<Climbed>& all);
+/// The summary and what is missing, as Markdown, the best of other engines beside each row.
+std::string markdown(const std::vector<Climbed>& all, const std::vector<PeerFigure>& peers);
 /// A page that needs nothing else: a square a rung, its figures where the pointer rests.
-std::string page(const std::vector<Climbed>& all);
+std::string page(const std::vector<Climbed>& all, const std::vector<PeerFigure>& peers);
 
 }  // namespace ladders
