@@ -32,7 +32,7 @@ def rungs(cell):
 def table(page):
     cases = {}
     for row in rows(page):
-        if row["best peer"] == "not measured":
+        if row["best peer"] == "not measured" or row["best peer"].startswith("–"):
             continue
         best = cases.get(row["case"])
         order = [(rungs(r["silver"]), rungs(r["gold"])) for r in (row, best) if r]
