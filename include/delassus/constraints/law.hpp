@@ -103,6 +103,10 @@ consteval bool law_is_sound() {
   static_assert(is_around_a_law,
                 "delassus: Contact{...} takes a contact law, as in Contact{Coulomb{.friction = 0.5}}; this type lacks "
                 "`rows`, `kinds` or `Parameters`");
+  constexpr bool is_wrapped_once = !requires(const L& law) { typename std::remove_cvref_t<decltype(law.law)>::wraps::wraps; };
+  static_assert(is_wrapped_once,
+                "delassus: of Restitution, SequentialRestitution and Penalty a contact takes one, for only the outer one would be "
+                "asked; take the other out (a Penalty bounces by its own stiffness and damping)");
   constexpr bool has_axis = !requires { typename L::no_coordinate; };
   static_assert(has_axis,
                 "delassus: Limit, Motor and Drive act on one axis of a joint; write Motor<Turn>{} for an angle (rad), "
@@ -117,7 +121,7 @@ consteval bool law_is_sound() {
     constexpr bool projects = Projects<L>;
     static_assert(projects,
                   "delassus: a constraint law needs void project(const Item&, Local<rows>&) const; add it");
-    return projects;
+    return projects && is_wrapped_once;
   } else {
     return false;
   }

@@ -34,10 +34,11 @@ void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
     auto& pool = laws.template pool<p>();
     if constexpr (requires { pool.law.law.stiffness; pool.items.clear(); }) {
       constexpr int rows = std::remove_cvref_t<decltype(pool.law)>::rows;
-      static_assert(rows <= 3,
-                    "delassus: CollisionsFirst makes a Penalty contact a force without moments; take Coulomb in place of "
-                    "RollingCoulomb, or the default scheme");
-      for (const auto& item : pool.items) {
+      constexpr bool is_force = rows == 1 || (rows == 3 && requires { pool.items[0].parameters.friction; });
+      static_assert(is_force,
+                    "delassus: CollisionsFirst makes a Penalty contact a force with the friction of Coulomb, or with none; take "
+                    "Coulomb in place of RollingCoulomb or Pyramid, or the default scheme");
+      if constexpr (is_force) for (const auto& item : pool.items) {
         const Vec3 point = item.record.point();
         Vec<rows> u = Vec<rows>::Zero();
         for (const double side : {-1.0, 1.0})
