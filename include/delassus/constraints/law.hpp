@@ -111,10 +111,14 @@ consteval bool law_is_sound() {
   static_assert(has_axis,
                 "delassus: Limit, Motor and Drive act on one axis of a joint; write Motor<Turn>{} for an angle (rad), "
                 "Motor<Slide>{} for a way (m)");
+  constexpr bool is_around_a_joint = !requires { typename L::no_joint; };
+  static_assert(is_around_a_joint,
+                "delassus: Breakable goes around a joint whose rows are forces and moments on its ends, as in Breakable<Hinge>{}; "
+                "this one does not say so, by `acts`");
   constexpr bool has_shape = ConstraintLaw<L>, is_bare = LawOfContact<L>;
   static_assert(!is_bare,
                 "delassus: the law of a contact stands within Contact{...}, as in Constraints{Contact{Coulomb{.friction = 0.5}}}");
-  if constexpr (is_around_a_law && has_axis && !is_bare)
+  if constexpr (is_around_a_law && is_around_a_joint && has_axis && !is_bare)
     static_assert(has_shape,
                   "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
   if constexpr (has_shape) {

@@ -71,7 +71,11 @@ consteval bool plays_its_role() {
                   "advance(set, h); see integrators/integrator.hpp for their types");
     return Integrator<P>;
   } else if constexpr (Plays<P, role::Stabilisation>) {
-    static_assert(Stabilisation<P>,
+    constexpr bool is_around_one = !requires { typename P::no_stabilisation; };
+    static_assert(is_around_one,
+                  "delassus: a compliance goes around a stabilisation, and its number comes second: "
+                  "WithCompliance{Baumgarte{}, 1e-7}");
+    static_assert(!is_around_one || Stabilisation<P>,
                   "delassus: this type plays role::Stabilisation but lacks equality(phi, h) or penetration(phi, h), "
                   "which return double");
     return Stabilisation<P>;
@@ -196,7 +200,7 @@ consteval bool solver_is_sound() {
   constexpr bool is_around_a_solver = !requires { typename Solver::no_solver; };
   static_assert(is_around_a_solver,
                 "delassus: a deadline goes around a solver, and the seconds come second: "
-                "WithDeadline{AcceleratedGaussSeidel{}, 1e-3}");
+                "WithDeadline{AcceleratedGaussSeidel{}, 1e-3}; so does MinimumNorm{AcceleratedGaussSeidel{}}");
   if constexpr (is_around_a_solver) {
     using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
     constexpr bool solves = requires(const Solver& solver, Problem& problem,

@@ -257,6 +257,16 @@ struct MinimumNorm {
     }
   };
 };
+
+/// Around what is no solver, as in `MinimumNorm{1e-6}`; the loop's checks say so.
+template <class Solver>
+  requires(!Plays<Solver, role::Solver>)
+struct MinimumNorm<Solver> {
+  using plays = role::Solver;
+  using no_solver = Solver;
+  Solver solver{};
+};
+
 template <class Solver>
 MinimumNorm(Solver) -> MinimumNorm<Solver>;
 

@@ -46,6 +46,17 @@ struct WithCompliance {
 
   static constexpr double near = 1e-9;  ///< m, where no recovery is capped
 };
+
+/// Around what is no stabilisation, as in `WithCompliance{1e-7}`; the loop's checks say so.
+template <class S>
+  requires(!Stabilisation<S>)
+struct WithCompliance<S> {
+  using plays = role::Stabilisation;
+  using no_stabilisation = S;
+  S stabilisation{};
+  double least = 0;
+};
+
 template <class S>
 WithCompliance(S) -> WithCompliance<S>;
 template <class S>

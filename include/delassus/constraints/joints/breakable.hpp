@@ -34,4 +34,11 @@ struct Breakable : Joint {
   }
 };
 
+/// Around what does not say of its rows whether they are forces or moments; the loop's checks say so.
+template <class Joint>
+  requires(!requires { Joint::acts; })
+struct Breakable<Joint> {
+  using no_joint = Joint;
+};
+
 }  // namespace delassus
