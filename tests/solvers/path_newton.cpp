@@ -39,6 +39,17 @@ TEST_CASE("where the path is not let to its end, sweeps go on from its best impu
   REQUIRE(error(p) <= 1e-8);
 }
 
+TEST_CASE("where a contact's own matrix is singular to working precision the path ends, and what it found is kept") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     GaussSeidel{.max_iterations = 0, .min_iterations = 0}};
+  add_stack(rigid_bodies(loop), 50, Box{1, 1, 1});
+  loop.step(1.0 / 60);
+  auto p = loop.problem();
+  const SolveReport r = solve(p, PathNewton{.tolerance = 1e-14, .max_sweeps = 0});
+  REQUIRE(r.factorizations > 0);
+  REQUIRE(r.measure.residual < 1e-9);
+}
+
 TEST_CASE("what is solved already is not touched by the path, and a limit of none leaves λ as it is") {
   auto p = tower({1, 1}, 0.1, 0.01);
   REQUIRE(solve(p, AcceleratedGaussSeidel{.tolerance = 1e-9}).status == Status::converged);

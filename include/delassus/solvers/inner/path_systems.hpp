@@ -43,7 +43,8 @@ class PathBodies {
         for (int l = 0; l < c.shape.size(); ++l)
           bent(k, l) += c.shape[k] * c.compliance[k] * c.scale[k] * c.E(k, l);
       PivotedLu<std::remove_cvref_t<decltype(c)>::rows, double> lu;
-      if (!lu.factor(bent)) is_regular = false;
+      is_regular = is_regular && lu.factor(bent);
+      if (!is_regular) return;
       c.folded.setIdentity();
       lu.solve(c.folded);
       c.slope = c.scale.asDiagonal() * (c.E * c.folded) * c.shape.asDiagonal();
