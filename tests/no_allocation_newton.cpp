@@ -30,6 +30,18 @@ TEST_CASE("a warm step that the default solver ends by Newton's method allocates
   REQUIRE(by_newton > 100);
 }
 
+TEST_CASE("a warm step that ends at its deadline, in the midst of a sweep or of Newton's method, allocates nothing") {
+  double time = 0;
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-14}, 1e9, ScriptedClock{&time, 1}}};
+  add_stack(rigid_bodies(loop), 40, Box{1, 1, 1});
+  REQUIRE(allocations_of(loop, 10, 1) == 0);
+  for (int n = 0; n < 300; ++n) {
+    loop.template part<role::Solver>().budget = 20 + 3 * n;
+    REQUIRE(allocations_of(loop, 0, 1) == 0);
+  }
+}
+
 TEST_CASE("a warm step of a chain that lies on the ground allocates nothing under the direct path") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}, DirectGaussSeidel{}};
   auto& set = rigid_bodies(loop);

@@ -4,7 +4,7 @@
 //             [--save FILE] [--time-limit S]
 //
 // err is Siconos' error, err_s the scale-free one; by default both must be within the tolerance. `build` is the own blocks'
-// factors and the workspace, `solve` the median of repeated solves, both in ms of this thread's processor time. --warm starts
+// factors and the workspace, `solve` the median of repeated solves, both in ms of this thread's processor time; the limit, 10 s a solve, is of the wall clock. --warm starts
 // from a file of impulses, --out writes them, --save the problem; all three go with one problem. Files named .hdf5 or .h5 are in the
 // form of FCLIB, where the tool is built with HDF5: `fcp_solve a.fcp --save a.hdf5` turns one form into the other.
 //
@@ -69,7 +69,7 @@ template <class Solver>
 Result run(FrictionProblem& problem, const Solver& solver, double time_limit) {
   const auto start = problem.rows.pool<0>().lambda;
   const ThreadClock clock;
-  const WithDeadline<Solver, ThreadClock> timed{solver, time_limit, clock};
+  const WithDeadline<Solver> timed{solver, time_limit};
   timed.check();
   Result result;
   std::vector<double> times, builds;
@@ -77,7 +77,7 @@ Result run(FrictionProblem& problem, const Solver& solver, double time_limit) {
     problem.rows.pool<0>().lambda = start;
     const double before = clock.now();
     LawBook<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
-    typename WithDeadline<Solver, ThreadClock>::template Workspace<FrictionProblem::Rows> workspace;
+    typename WithDeadline<Solver>::template Workspace<FrictionProblem::Rows> workspace;
     workspace.reset(problem.rows);
     book.prepare(problem.W, problem.rows, problem.h);
     const double built = clock.now();

@@ -32,6 +32,7 @@ struct Given {
   void load(int) {}
   void tell(int, const Measure&) const {}
   static constexpr bool is_out_of_time() { return false; }
+  static constexpr bool is_measure_due() { return false; }
 };
 
 /// Sweeps that move as far as the error says, until the pursuit ends.

@@ -1,3 +1,6 @@
+#include <delassus/solvers/contact_newton.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 #include "scenes.hpp"
@@ -12,14 +15,40 @@ namespace {
 
 constexpr double h = 1.0 / 60;
 
+long calls = 0;  ///< of a `CountedCoulomb`
+
+/// Coulomb's law, which counts what is asked of it.
+struct CountedCoulomb : Coulomb {
+  template <class T>
+  Vec<3, T> meet(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
+    return ++calls, Coulomb::meet(p, b, memory);
+  }
+  template <class T>
+  Vec<2, T> natural_squares(const Parameters& p, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
+    return ++calls, Coulomb::natural_squares(p, lambda, u, scale);
+  }
+  template <class T>
+  Mat<3, 3, T> tangent(const Parameters& p, Local<3, T>& c) const {
+    return ++calls, Coulomb::tangent(p, c);
+  }
+};
+
+/// A second for each call.
+struct WorkClock {
+  double now() const { return double(calls); }
+};
+
 /// Stacks of `count` boxes beside each other, in the first step of their fall.
-auto problem_of(int stacks, int count) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+template <class Law>
+auto problem_of_law(int stacks, int count) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Law{}}},
                      GaussSeidel{.max_iterations = 0, .min_iterations = 0}};
   for (int k = 0; k < stacks; ++k) add_stack(rigid_bodies(loop), count, Box{1, 1, 1}, 1e-3, Vec3(3 * k, 0, 0));
   loop.step(h);
   return loop.problem();
 }
+
+auto problem_of(int stacks, int count) { return problem_of_law<Coulomb>(stacks, count); }
 
 template <class Problem>
 double residual_of(Problem problem) {
@@ -137,6 +166,96 @@ TEST_CASE("Newton's method alone ends at the first look after the deadline, with
   const SolveReport r = solve_until(p, ProximalNewton{.tolerance = 0}, 2.0, ScriptedClock{&time, 1});
   REQUIRE(r.status == Status::deadline);
   REQUIRE(r.factorizations <= 3);
+}
+
+// 200 contacts are three looks inside each sweep, each measure and each extrapolation, so that consecutive deadlines come in
+// all of them, and in Newton's method in its gathering, its evaluations and its factorizations. A tick per look: what reads the
+// clock once more after the deadline moves it once more.
+TEMPLATE_TEST_CASE("in the midst of a sweep, a measure or a factorization too a solve returns at its first look after the deadline", "",
+                   GaussSeidel, AcceleratedSweeps, AcceleratedGaussSeidel, ContactNewton, DirectGaussSeidel, PathNewton) {
+  const auto start = problem_of(1, 50);
+  int after_factorizations = 0;
+  const int last = std::is_same_v<TestType, PathNewton> ? 40 : 1200;  // its looks are whole factorizations apart
+  for (int deadline = 8; deadline < last; deadline += 1 + deadline / 20) {
+    double time = 0;
+    auto p = start;
+    const SolveReport r = solve_until(p, TestType{.tolerance = 1e-14}, deadline, ScriptedClock{&time, 1});
+    CAPTURE(deadline, r.sweeps, r.factorizations, r.ended_by);
+    if (r.status != Status::deadline) break;
+    REQUIRE(time == deadline + 1.0);
+    REQUIRE(r.measure.residual == residual_of(p));
+    REQUIRE(r.measure.residual < residual_of(start));
+    after_factorizations += r.factorizations > 0;
+    double again = 0;
+    auto q = start;
+    solve_until(q, TestType{.tolerance = 1e-14}, deadline, ScriptedClock{&again, 1});
+    REQUIRE(same_bits(p, q));
+  }
+  if constexpr (std::is_same_v<TestType, AcceleratedGaussSeidel>) REQUIRE(after_factorizations > 10);
+}
+
+/// Time all but stands until a look that jumps over the deadline: work is begun as if there were enough of it.
+struct JumpingClock {
+  int* looks;
+  int jump = 0;
+  double now() const { return ++*looks >= jump ? 1.0 : 1e-9 * *looks; }
+};
+
+TEST_CASE("whichever look is the first after the deadline, the solve ends there with the best impulses") {
+  const auto start = problem_of(1, 70);
+  int sweeping = 0, by_newton = 0;
+  for (int jump = 40; jump < 1000; ++jump) {
+    auto p = start;
+    int looks = 0;
+    const SolveReport r = solve_until(p, AcceleratedGaussSeidel{.tolerance = 1e-14}, 0.5, JumpingClock{&looks, jump});
+    CAPTURE(jump, r.sweeps, r.factorizations);
+    REQUIRE(r.status == Status::deadline);
+    REQUIRE(looks == jump);
+    REQUIRE(r.measure.residual == residual_of(p));
+    REQUIRE(r.measure.residual < residual_of(start));
+    ++(r.factorizations > 0 ? by_newton : sweeping);
+  }
+  REQUIRE(sweeping > 100);
+  REQUIRE(by_newton > 100);
+}
+
+// No more than 64 constraints lie between two looks, and what is left of one pass before the next begins: without looks inside, a
+// sweep and a measure are 1600 calls of 200 boxes.
+TEMPLATE_TEST_CASE("how much is done after the deadline does not grow with the problem", "", GaussSeidel, AcceleratedSweeps,
+                   AcceleratedGaussSeidel) {
+  for (const int boxes : {25, 50, 200}) {
+    const auto start = problem_of_law<CountedCoulomb>(1, boxes);
+    for (int k = 0; k < 60; ++k) {
+      auto p = start;
+      calls = 0;
+      const long deadline = boxes * (20 + 7 * k) + k;
+      const SolveReport r = solve_until(p, TestType{.tolerance = 1e-14}, double(deadline), WorkClock{});
+      CAPTURE(boxes, deadline, r.sweeps, r.factorizations);
+      if (r.status != Status::deadline) break;
+      REQUIRE(calls >= deadline);
+      REQUIRE(calls < deadline + 128);
+    }
+  }
+}
+
+// Measures are up to 64 sweeps apart: where no other would end in time the next sweep is measured. What comes after that is at most
+// the sweep that would have been too late, or two where that one's pace was overrated.
+TEST_CASE("what a sweep that was cut off leaves is one of the last iterates before it, to the bit") {
+  const auto start = problem_of(1, 50);
+  for (int deadline = 60; deadline < 600; deadline += 17) {
+    auto p = start;
+    double time = 0;
+    const SolveReport r = solve_until(p, GaussSeidel{.tolerance = 1e-14}, deadline, ScriptedClock{&time, 1});
+    REQUIRE(r.status == Status::deadline);
+    int found = 0;
+    for (int k = r.sweeps; k >= r.sweeps - 3; --k) {
+      auto q = start;
+      solve(q, GaussSeidel{.tolerance = 1e-14, .max_iterations = k});
+      if (same_bits(p, q)) found = k;
+    }
+    CAPTURE(deadline, r.sweeps);
+    REQUIRE(found > 0);
+  }
 }
 
 TEST_CASE("a budget below zero and a deadline that is no number are refused") {

@@ -18,6 +18,9 @@ template <int w, class T>
 class BlockLu {
  public:
   using Block = Mat<w, w, T>;
+  struct Never {
+    constexpr bool operator()(Index) const { return false; }
+  };
 
   /// All diagonal blocks and, both ways, the pairs (i, j), i ≠ j, in any order, repeats allowed.
   void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
@@ -27,12 +30,17 @@ class BlockLu {
     work_.resize(blocks);
   }
 
-  void set_identity() {
+  /// `ends(n)` is asked after the work of n products of blocks, and where it says so A is of no use; so it is
+  /// in `factor`, and in `solve` x.
+  template <class Ends = Never>
+  void set_identity(Ends&& ends = {}) {
     for (Block& b : diagonal_) b.setIdentity();
-    for (auto* entries : {&lower_, &upper_}) {
-      entries->resize(pattern_.entries());
-      for (Block& b : *entries) b.setZero();
-    }
+    for (auto* entries : {&lower_, &upper_}) entries->resize(pattern_.entries());
+    for (auto* entries : {&lower_, &upper_})
+      for (Block& b : *entries) {
+        if (ends(1)) return;
+        b.setZero();
+      }
   }
   /// A_ij, to be added to.
   Block& at(Index i, Index j) {
@@ -52,12 +60,15 @@ class BlockLu {
   }
 
   /// Replaces A by its factors; false when a pivot block is singular or not finite.
-  bool factor() {
+  template <class Ends = Never>
+  bool factor(Ends&& ends = {}) {
     for (Index j = 0; j < Index(diagonal_.size()); ++j) {
       if (!pivot_[j].factor(diagonal_[j])) return false;
       const Index first = pattern_.start(j), last = pattern_.start(j + 1);
       for (Index e = first; e < last; ++e) pivot_[j].solve(upper_[e]);  // U_jk = D_j⁻¹ A_jk
+      if (ends(1 + last - first)) return false;
       for (Index e = first; e < last; ++e) {
+        if (ends(2 * (last - e))) return false;
         const Index i = pattern_.row(e);
         add_product(lower_[e], upper_[e], diagonal_[i], T(-1));
         for (Index f = e + 1; f < last; ++f) {
@@ -78,17 +89,21 @@ class BlockLu {
   }
 
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w, T>>& x) const {
+  template <class Ends = Never>
+  void solve(std::vector<Vec<w, T>>& x, Ends&& ends = {}) const {
     const Index n = Index(diagonal_.size());
     for (Index i = 0; i < n; ++i) work_[pattern_.place(i)] = x[i];
     for (Index j = 0; j < n; ++j) {
+      if (ends(1)) return;
       pivot_[j].solve(work_[j]);
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
         add_product(lower_[e], work_[j], work_[pattern_.row(e)], T(-1));
     }
-    for (Index j = n; j-- > 0;)
+    for (Index j = n; j-- > 0;) {
+      if (ends(1)) return;
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
         add_product(upper_[e], work_[pattern_.row(e)], work_[j], T(-1));
+    }
     for (Index i = 0; i < n; ++i) x[i] = work_[pattern_.place(i)];
   }
 

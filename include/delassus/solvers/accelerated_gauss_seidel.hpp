@@ -141,6 +141,7 @@ struct BasicAcceleratedGaussSeidel {
   /// The rows contradict each other: λ of rows that yield, from zero, and the errors of the rows as they are.
   template <class Problem, class Workspace>
   SolveReport compromise(Problem& problem, SolveReport report, Workspace& work) const {
+    problem.must_complete();
     inner::Softened<Problem> soft(problem);
     const BasicAcceleratedGaussSeidel<Residual> solver{.tolerance = 1e-6, .max_iterations = 1000};
     inner::Pursuit<Residual, BasicAcceleratedGaussSeidel<Residual>, inner::Softened<Problem>,

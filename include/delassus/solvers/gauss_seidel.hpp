@@ -45,7 +45,7 @@ struct BasicGaussSeidel {
     while (!is_over) {
       if (report.sweeps >= min_iterations && is_done(report.measure, rows)) break;
       const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
-      for (int k = 0; k < batch && !is_over; ++k) {
+      for (int k = 0; k < batch && !is_over && !(k > 0 && problem.is_measure_due()); ++k) {
         problem.template sweep<!Criterion::needs_measure>(relaxation);
         ++report.sweeps;
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());

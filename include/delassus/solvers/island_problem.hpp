@@ -33,6 +33,7 @@ class IslandProblem {
   using RowsType = Rows;
   using OperatorType = Operator;
   using BookType = Book;
+  using GroupsType = Groups;
   static constexpr int pools = Rows::pool_count;
 
   IslandProblem(Book& book, Rows& rows, Operator& W, const Groups& islands, Index island, double h, Observer& observer)
@@ -49,6 +50,7 @@ class IslandProblem {
     return {book_, rows_, W, islands_, island_, h_, observer_};
   }
   Operator& compliance() const { return W_; }
+  const Groups& groups() const { return islands_; }
   /// Laws that keep something of their own block of W make it anew from `own_block`.
   template <int p, class Own>
   void prepare(Index i, const Own& own_block) {
@@ -130,8 +132,14 @@ class IslandProblem {
   double worst_change() const { return worst_change_; }
   /// A solver asks after each sweep; only `WithDeadline` ever says yes.
   static constexpr bool is_out_of_time() { return false; }
+  /// And after one that need not be measured: no later one could be.
+  static constexpr bool is_measure_due() { return false; }
   /// Before what takes as long as so many sweeps.
   static constexpr bool has_time_for(double) { return true; }
+  /// After so many products of blocks of what is no sweep: what was found so far is of no use then.
+  static constexpr bool is_cut_off(int) { return false; }
+  /// Before what leaves no measured best.
+  static constexpr void must_complete() {}
   /// Whether `tell` reads λ.
   bool tells_forces() const {
     if constexpr (requires { observer_.wants_forces(); }) return observer_.wants_forces();

@@ -57,6 +57,7 @@ struct BasicProximalNewton {
 
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
+    problem.must_complete();  // what `body` has found since the last measure by W is the better λ
     if (!work.body.gather(problem)) return sweep(problem, work, max_sweeps, min_iterations);
     Point<Problem, Workspace> now(*this, problem, work.body);
     const Measure start = now.begin();

@@ -4,7 +4,8 @@
 #include <delassus/core/clock.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/impulses.hpp>
+#include <delassus/solvers/inner/timed_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -12,66 +13,13 @@
 #include <limits>
 
 namespace delassus {
-namespace inner {
-
-/// An island that looks at the clock after each sweep, and before what takes longer, and sets the best
-/// measured impulses aside.
-template <class Problem, class C, class Best>
-class TimedProblem : public Problem {
- public:
-  TimedProblem(const Problem& problem, const C& clock, double deadline, Best& best)
-      : Problem(problem), clock_(clock), deadline_(deadline), best_(best) {}
-
-  /// Asked after every sweep.
-  bool is_out_of_time() {
-    const double now = clock_.now();
-    if (is_sweep_) {
-      swept_ += now - last_;
-      ++sweeps_;
-    }
-    last_ = now;
-    is_sweep_ = true;
-    is_late_ = is_late_ || now >= deadline_;
-    return is_late_;
-  }
-  /// Whether what takes as long as so many sweeps would end before the deadline. One that is not begun does
-  /// not make the solve late: shorter work may still be done.
-  bool has_time_for(double sweeps) {
-    const double now = clock_.now(), pace = sweeps_ > 0 ? swept_ / sweeps_ : 0;
-    is_sweep_ = false;
-    is_late_ = is_late_ || now >= deadline_;
-    return !is_late_ && now + sweeps * pace < deadline_;
-  }
-  Measure measure() {
-    const Measure m = Problem::measure();
-    if (m.residual < least_.residual) {
-      least_ = m;
-      this->save(best_);
-    }
-    return m;
-  }
-  bool was_late() const { return is_late_; }
-  const Measure& least() const { return least_; }
-
- private:
-  const C& clock_;
-  double deadline_;
-  Best& best_;
-  Measure least_{.residual = std::numeric_limits<double>::infinity()};
-  bool is_late_ = false;
-  bool is_sweep_ = false;        ///< there was nothing else since the last look
-  double last_ = 0, swept_ = 0;  ///< s
-  int sweeps_ = 0;
-};
-
-}  // namespace inner
 
 /// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one
-/// millisecond together. The clock is read after each sweep, and before each factorization of Newton's method
-/// in the velocities of the bodies, which is not begun where it would end too late. When the time is up the
-/// iterate of the smallest measured residual is returned, with status `deadline`; islands that come later
-/// still get their `min_iterations` sweeps, since a contact that is new has no impulse before its first
-/// sweep.
+/// millisecond together. The clock is read after each sweep, inside long sweeps, measures and factorizations
+/// of Newton's method in the velocities of the bodies, and before each of those, which is not begun where it
+/// would end too late. When the time is up what is half done is let go, and the iterate of the smallest
+/// measured residual is returned, with status `deadline`; islands that come later still get their
+/// `min_iterations` sweeps and a measure, since a contact that is new has no impulse before its first sweep.
 template <class Solver, Clock C = SteadyClock>
 struct WithDeadline {
   using plays = role::Solver;
@@ -107,20 +55,17 @@ struct WithDeadline {
       work.until = std::isinf(budget) ? deadline : std::min(deadline, clock.now() + budget);
     inner::TimedProblem timed(problem, clock, work.until, work.best);
     SolveReport report = solver.solve(timed, work.solver);
-    if (!timed.was_late() || report.status != Status::max_iterations) return report;
+    const bool is_half_done = timed.has_let_go() && report.status != Status::infeasible;
+    if (!is_half_done && !(timed.was_late() && report.status == Status::max_iterations)) return report;
     report.status = Status::deadline;
-    if (timed.least().residual < report.measure.residual) {
-      timed.load(work.best);
-      report.measure = timed.least();
-    }
+    if (is_half_done || timed.least().residual < report.measure.residual) report.measure = timed.give_best();
     return report;
   }
 };
 
 /// Around what is no solver, as in `WithDeadline{1e-3}`; the loop's checks say so.
 template <class Solver, Clock C>
-  requires(!Plays<Solver, role::Solver>)
-struct WithDeadline<Solver, C> {
+requires(!Plays<Solver, role::Solver>) struct WithDeadline<Solver, C> {
   using plays = role::Solver;
   using no_solver = Solver;
   Solver solver{};

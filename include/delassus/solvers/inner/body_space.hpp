@@ -28,7 +28,7 @@ class BodySpace {
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
   template <class Problem>
-  bool gather(const Problem& problem) {
+  bool gather(Problem& problem) {
     if (!system_.gather(problem)) return false;
     for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
     return true;
@@ -41,17 +41,17 @@ class BodySpace {
   /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
   /// answers.
   template <class Problem>
-  double energy_of_stopping(const Problem& problem) {
+  double energy_of_stopping(Problem& problem) {
     return system_.energy_of_stopping(problem);
   }
 
   /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
   /// see, in units of energy.
   template <class Problem>
-  double evaluate(const Problem& problem, double epsilon, double fraction) {
+  double evaluate(Problem& problem, double epsilon, double fraction) {
     for (std::size_t b = 0; b < residual_.size(); ++b)
       for (int k = 0; k < System::width; ++k) residual_[b][k] = y_[b][k] + fraction * change_[b][k];
-    each([&](auto p, auto& c, auto& sides) {
+    each(problem, [&](auto p, auto& c, auto& sides) {
       for (int k = 0; k < int(c.trial.size()); ++k) c.trial[k] = c.velocity[k] + fraction * c.move[k];
       auto local = proximal(c, epsilon);
       c.slope = tangent<p>(problem, c.item, local);
@@ -61,7 +61,7 @@ class BodySpace {
         add_product(sides[s].G, change, residual_[sides[s].block], -1.0);
     });
     double square = 0;
-    each([&](auto, auto& c, auto& sides) {
+    each(problem, [&](auto, auto& c, auto& sides) {
       c.error.setZero();
       for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, residual_[sides[s].block], c.error);
       square += c.error.squaredNorm() / c.weight;
@@ -72,8 +72,8 @@ class BodySpace {
   /// S again, with bounds closer by a thousandth of the error: rows that just touch count as closed. In a
   /// stack that starts to fall as a whole each row is else found closed by a factorization of its own.
   template <class Problem>
-  void close_what_touches(const Problem& problem, double epsilon, double error) {
-    each([&](auto p, auto& c, auto&) {
+  void close_what_touches(Problem& problem, double epsilon, double error) {
+    each(problem, [&](auto p, auto& c, auto&) {
       constexpr auto kinds = Problem::BookType::template kinds<p>();
       if (kinds[0] == RowKind::equality) return;
       auto local = proximal(c, epsilon);
@@ -85,12 +85,14 @@ class BodySpace {
   }
 
   /// J δ = −F; false when J is singular to working precision.
-  bool find_direction() {
-    if (!system_.factor()) return false;
+  template <class Problem>
+  bool find_direction(Problem& problem) {
+    const auto ends = [&](int work) { return problem.is_cut_off(work); };
+    if (!system_.factor(ends)) return false;
     for (std::size_t b = 0; b < change_.size(); ++b)
       for (int k = 0; k < System::width; ++k) change_[b][k] = -residual_[b][k];
-    system_.solve(change_);
-    each([&](auto, auto& c, auto& sides) {
+    system_.solve(change_, ends);
+    each(problem, [&](auto, auto& c, auto& sides) {
       c.move.setZero();
       for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, change_[sides[s].block], c.move);
     });
@@ -98,10 +100,11 @@ class BodySpace {
   }
 
   /// Goes where the last evaluation was.
-  void advance(double fraction) {
+  template <class Problem>
+  void advance(Problem& problem, double fraction) {
     for (std::size_t b = 0; b < y_.size(); ++b)
       for (int k = 0; k < System::width; ++k) y_[b][k] += fraction * change_[b][k], change_[b][k] = 0;
-    each([](auto, auto& c, auto&) {
+    each(problem, [](auto, auto& c, auto&) {
       c.velocity = c.trial;
       c.move.setZero();
     });
@@ -115,7 +118,7 @@ class BodySpace {
   template <class Problem>
   Measure measure(Problem& problem) {
     MeasureSums sums;
-    each([&](auto p, auto& c, auto&) {
+    each(problem, [&](auto p, auto& c, auto&) {
       constexpr int r = Rows::template rows_of<p>;
       Local<r, T> local{Mat<r, r, T>::Zero(), own_velocity(c).template cast<T>(),
                         c.lambda.template cast<T>()};
@@ -127,8 +130,9 @@ class BodySpace {
   }
 
   /// λ̂ ← λ(u).
-  void recentre() {
-    each([&](auto, auto& c, auto&) {
+  template <class Problem>
+  void recentre(Problem& problem) {
+    each(problem, [&](auto, auto& c, auto&) {
       c.velocity = own_velocity(c);
       c.centre = c.lambda;
     });
@@ -137,9 +141,9 @@ class BodySpace {
 
   /// λ̂ ← what the rows have now, its velocity by W; `best` stays. False when that is not finite.
   template <class Problem>
-  bool restart(const Problem& problem) {
+  bool restart(Problem& problem) {
     bool is_finite = true;
-    each([&](auto p, auto& c, auto&) {
+    each(problem, [&](auto p, auto& c, auto&) {
       const auto local = problem.template local<p>(c.item);
       c.centre = c.lambda = local.lambda.template cast<double>();
       c.velocity = local.d.template cast<double>();
@@ -152,22 +156,23 @@ class BodySpace {
   }
 
   /// best ← λ(u).
-  void keep() {
-    each([](auto, auto& c, auto&) { c.best = c.lambda; });
+  template <class Problem>
+  void keep(Problem& problem) {
+    each(problem, [](auto, auto& c, auto&) { c.best = c.lambda; });
   }
 
   /// The rows take one of the impulses kept here: `&NewtonItem<R>::best`, by a generic lambda.
   template <class Problem, class Which>
   void hand_over(Problem& problem, const Which& which) {
-    each([&](auto p, auto& c, auto&) { problem.template assign<p>(c.item, which(c).template cast<T>()); });
+    each(problem, [&](auto p, auto& c, auto&) { problem.template assign<p>(c.item, which(c).template cast<T>()); });
   }
 
  private:
   using Velocity = typename System::Velocities::value_type;
 
-  template <class F>
-  void each(F&& f) {
-    system_.each(f);
+  template <class Problem, class F>
+  void each(Problem& problem, F&& f) {
+    system_.each_until([&](int work) { return problem.is_cut_off(work); }, f);
   }
 
   /// The problem of one law: diag(R + ε w), u and λ̂.

@@ -77,7 +77,7 @@ class Contradiction {
         promise = s.work / moved;
       }
       last = moved;
-      for (int k = 0; k < 8; ++k) sweep();
+      for (int k = 0; k < 8 && !problem_.is_out_of_time(); ++k) sweep();
     }
     return false;
   }
@@ -180,7 +180,7 @@ class Contradiction {
 /// hundred.
 template <class Problem, class Pursuit, class Impulses>
 bool contradicts(Problem& problem, Pursuit& pursuit, Impulses& before) {
-  if (Contradiction<Problem>(problem).is_proved(before)) return true;
+  if (!problem.is_cut_off(0) && Contradiction<Problem>(problem).is_proved(before)) return true;
   pursuit.back_to_best();
   return false;
 }

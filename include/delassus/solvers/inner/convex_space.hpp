@@ -32,7 +32,7 @@ class ConvexSpace {
   using T = typename Rows::Scalar;
 
   template <class Problem>
-  bool gather(const Problem& problem) {
+  bool gather(Problem& problem) {
     if (!system_.gather(problem)) return false;
     for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
     each([&](auto p, auto& c, auto&) {

@@ -77,7 +77,7 @@ class NewtonStage {
     else
       point.epsilon = epsilon_;
     if (space_.body.restart(problem_)) {
-      space_.body.keep();
+      space_.body.keep(problem_);
       point.begin();
       const int share = std::max(2 * likely, int(pursuit_.sweeps() / cost_));
       double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(pursuit_.best()));

@@ -39,11 +39,12 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   static constexpr int pools = Rows::pool_count;
   static constexpr int width = std::max({1, w...});
   using Velocities = std::vector<Vec<width>>;  ///< one a block, narrower sets filled up with zeros
+  using Never = typename BlockLu<width, double>::Never;
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
   /// law without a tangent, a set whose A couples blocks, or rows that nothing answers to.
   template <class Problem>
-  bool gather(const Problem& problem) {
+  bool gather(Problem& problem) {
     static_assert(sizeof...(w) > 0,
                   "delassus: Newton's method needs the bodies of a problem, and this one, as a "
                   "FrictionProblem, has W alone; "
@@ -54,7 +55,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     pairs_.clear();
     bool is_sound = true;
     for (auto* sums : {&unit_, &moved_}) sums->assign(blocks_.size(), Velocities::value_type::Zero());
-    problem.each([&](auto p, Index i) { is_sound &= take<p>(problem, i); });
+    problem.each([&](auto p, Index i) { is_sound &= !problem.is_cut_off(1) && take<p>(problem, i); });
     if (!is_sound) return false;
     balance();
     analyse(problem.island());
@@ -71,11 +72,23 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
   }
 
-  /// Factors J; false when it is singular to working precision.
-  bool factor() {
+  /// The same until `ends(n)`, asked after the work of n products of blocks of bodies, says so.
+  template <class Ends, class F>
+  void each_until(Ends&& ends, F&& f) {
+    for_each_index<pools>([&](auto p) {
+      for (auto& c : std::get<p>(items_)) {
+        if (ends(1)) return;
+        f(p, c, std::get<p>(sides_));
+      }
+    });
+  }
+
+  /// Factors J; false when it is singular to working precision, or it ends before that.
+  template <class Ends = Never>
+  bool factor(Ends&& ends = {}) {
     auto& J = *matrix_;
-    J.set_identity();
-    each([&](auto, auto& c, auto& sides) {
+    J.set_identity(ends);
+    each_until(ends, [&](auto, auto& c, auto& sides) {
       if (is_zero(c.slope)) return;
       for (Index s = c.first; s < c.last; ++s) {
         auto SH = std::remove_cvref_t<decltype(sides[s].H)>::Zero().eval();
@@ -84,7 +97,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
           add_product(sides[t].G, SH, J.at(sides[t].block, sides[s].block));
       }
     });
-    return J.factor();
+    return J.factor(ends);
   }
   /// What one factorization, with the evaluations that go with it, costs beside a sweep, counted in products
   /// of a 3 × 3 block with a vector: by instructions one of 6 × 6 blocks is 36 of them, and a constraint,
@@ -103,10 +116,11 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
   /// Σ w_i P², see `BodySpace`; a body's mass at a contact is rows/tr(H G).
   template <class Problem>
-  double energy_of_stopping(const Problem& problem) {
+  double energy_of_stopping(Problem& problem) {
     double weights = 0, fastest = 0, mass = 0;
     mass_.assign(blocks_.size(), 0.0);
-    each([&](auto p, auto& c, auto& sides) {
+    const auto ends = [&](int work) { return problem.is_cut_off(work); };
+    each_until(ends, [&](auto p, auto& c, auto& sides) {
       constexpr int r = Rows::template rows_of<p>;
       weights += c.weight;
       fastest = std::max(fastest, double(problem.rows().template pool<p>().d[c.item].squaredNorm()));
@@ -122,7 +136,10 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
   bool is_negative() const { return matrix_->is_negative(); }  ///< det J < 0
   /// x ← J⁻¹ x.
-  void solve(Velocities& x) const { matrix_->solve(x); }
+  template <class Ends = Never>
+  void solve(Velocities& x, Ends&& ends = {}) const {
+    matrix_->solve(x, ends);
+  }
 
  private:
   /// The graph of an island and the matrix analysed for it.

@@ -38,7 +38,7 @@ class ProximalPoint {
         epsilon = std::min(20 * epsilon, 1.0);
         return false;
       }
-      body_.recentre();
+      body_.recentre(problem_);
       shrink(factorizations - before);
       centre_ = body_.error();
     }
@@ -94,10 +94,10 @@ class ProximalPoint {
     const double first = size;
     for (int step = 0; step < 8 && has_time(); ++step) {
       if (!(size > 0)) break;
-      if (!body_.find_direction()) return false;
+      if (!body_.find_direction(problem_)) return false;
       ++factorizations;
       const double before = size;
-      body_.advance(search_line(size));
+      body_.advance(problem_, search_line(size));
       measure = body_.measure(problem_);
       if (problem_.tells_forces())
         body_.hand_over(
@@ -125,7 +125,7 @@ class ProximalPoint {
     if (!(body_.error() < least_)) return;
     least_ = body_.error();
     best_ = measure;
-    body_.keep();
+    body_.keep(problem_);
   }
 
   /// Halves the step until the size of F has fallen by a thousandth of it, else takes the best; leaves F

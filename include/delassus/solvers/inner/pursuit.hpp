@@ -49,7 +49,7 @@ class Pursuit {
     ++report_.sweeps;
     is_last_ = report_.sweeps >= solver_.max_iterations ||
                (report_.sweeps >= solver_.min_iterations && problem_.is_out_of_time());
-    if (!is_last_ && !is_due(moved)) return true;
+    if (!is_last_ && !is_due(moved) && !problem_.is_measure_due()) return true;
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
     per_root_of_movement_ = Criterion::sum(report_.measure) / std::sqrt(moved);
