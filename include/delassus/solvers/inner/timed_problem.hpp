@@ -4,6 +4,7 @@
 #include <delassus/solvers/inner/watch.hpp>
 #include <delassus/solvers/island_problem.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -44,12 +45,17 @@ class TimedProblem : public Problem {
     const double both = measured_.count > 0 ? measured_.mean() : 2 * plain_.mean();
     return both > 0 && last_ + 1.25 * both >= watch_.deadline();
   }
-  /// Whether what takes as long as so many sweeps would end before the deadline. One that is not begun does
-  /// not make the solve late: shorter work may still be done.
+  /// Whether what takes as long as so many sweeps would end before the deadline, and a measure after it;
+  /// where it is asked again for the same, it took as long as the longest time between. One that is not begun
+  /// does not make the solve late: shorter work may still be done.
   bool has_time_for(double sweeps) {
     const double now = watch_.look();
+    longest_ = is_sweep_ || sweeps != asked_for_ ? 0 : std::max(longest_, now - asked_);
     is_sweep_ = false;
-    return !watch_.is_late() && now + sweeps * pace() < watch_.deadline();
+    asked_for_ = sweeps;
+    asked_ = now;
+    const double needed = std::max(1.25 * longest_ + 2 * pace(), sweeps * pace());
+    return !watch_.is_late() && now + needed < watch_.deadline();
   }
   /// Asked between the pieces of what is long and no sweep.
   bool is_cut_off(int work) { return watch_.cuts_off_after(work); }
@@ -119,9 +125,10 @@ class TimedProblem : public Problem {
   bool is_sweep_ = false;        ///< there was nothing else since the last look
   bool has_due_sweeps_ = false;  ///< `min_iterations` of them
   bool must_complete_ = false;
-  bool is_measured_ = false;  ///< there was a measure since
-  double last_ = 0;           ///< s
-  Times measured_, plain_;    ///< of sweeps with a measure before them, and without
+  bool is_measured_ = false;                        ///< there was a measure since
+  double last_ = 0;                                 ///< s
+  double asked_for_ = 0, asked_ = 0, longest_ = 0;  ///< of `has_time_for`: sweeps, s and s
+  Times measured_, plain_;                          ///< of sweeps with a measure before them, and without
 };
 
 }  // namespace delassus::inner
