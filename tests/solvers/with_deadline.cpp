@@ -219,6 +219,28 @@ TEST_CASE("whichever look is the first after the deadline, the solve ends there 
   REQUIRE(by_newton > 100);
 }
 
+TEST_CASE("Newton's method that came to nothing before a deadline is passed over in more and more steps") {
+  const auto start = problem_of(1, 70);
+  const AcceleratedGaussSeidel solver{.tolerance = 1e-14};
+  int looks = 0, jump = 40;
+  const auto factorizations = [&] {
+    auto p = start;
+    looks = 0;
+    return solve_until(p, solver, 0.5, JumpingClock{&looks, jump}).factorizations;
+  };
+  while (factorizations() == 0) ++jump;
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}},
+                     WithDeadline{solver, 0.5, JumpingClock{&looks, jump + 3}}};
+  add_stack(rigid_bodies(loop), 70, Box{1, 1, 1}, 1e-3);
+  std::vector<int> begun;
+  for (int n = 0; n < 60; ++n) {
+    looks = 0;
+    REQUIRE(loop.step(h).status == Status::deadline);
+    if (loop.island_reports()[0].factorizations > 0) begun.push_back(n);
+  }
+  REQUIRE(begun == std::vector{0, 2, 5, 10, 19, 36, 53});  // after 1, 2, 4, 8, 16 and again 16 steps without
+}
+
 // No more than 64 constraints lie between two looks, and what is left of one pass before the next begins: without looks inside, a
 // sweep and a measure are 1600 calls of 200 boxes.
 TEMPLATE_TEST_CASE("how much is done after the deadline does not grow with the problem", "", GaussSeidel, AcceleratedSweeps,

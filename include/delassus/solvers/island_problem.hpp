@@ -136,6 +136,9 @@ class IslandProblem {
   static constexpr bool is_measure_due() { return false; }
   /// Before what takes as long as so many sweeps.
   static constexpr bool has_time_for(double) { return true; }
+  /// The same for what may come to nothing, and then what came of it.
+  static constexpr bool may_attempt(double) { return true; }
+  static constexpr void attempted(bool) {}
   /// After so many products of blocks of what is no sweep: what was found so far is of no use then.
   static constexpr bool is_cut_off(int) { return false; }
   /// Before what leaves no measured best.

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 namespace delassus {
 
@@ -33,11 +35,13 @@ struct WithDeadline {
   struct Workspace {
     typename Solver::template Workspace<Rows> solver;
     Impulses<Rows> best;
+    std::vector<inner::Attempts> attempts;                    ///< of each island
     double until = std::numeric_limits<double>::quiet_NaN();  ///< NaN before the first island
 
     void reset(const Rows& rows) {
       if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
       best.resize_like(rows);
+      attempts.reserve(std::size_t(rows.row_count()));
       until = std::numeric_limits<double>::quiet_NaN();
     }
   };
@@ -53,10 +57,15 @@ struct WithDeadline {
   SolveReport solve(Problem& problem, Workspace& work) const {
     if (std::isnan(work.until))
       work.until = std::isinf(budget) ? deadline : std::min(deadline, clock.now() + budget);
-    inner::TimedProblem timed(problem, clock, work.until, work.best);
+    const auto island = std::size_t(problem.island());
+    if (work.attempts.size() <= island) work.attempts.resize(island + 1);
+    inner::Attempts& attempts = work.attempts[island];
+    inner::TimedProblem timed(problem, clock, work.until, work.best, attempts.is_due());
     SolveReport report = solver.solve(timed, work.solver);
     const bool is_half_done = timed.has_let_go() && report.status != Status::infeasible;
-    if (!is_half_done && !(timed.was_late() && report.status == Status::max_iterations)) return report;
+    const bool is_late = is_half_done || (timed.was_late() && report.status == Status::max_iterations);
+    if (timed.has_attempted()) attempts.note(timed.was_of_use() || !is_late);
+    if (!is_late) return report;
     report.status = Status::deadline;
     if (is_half_done || timed.least().residual < report.measure.residual) report.measure = timed.give_best();
     return report;

@@ -67,6 +67,7 @@ class NewtonStage {
   [[gnu::noinline]] void run() {
     pursuit_.back_to_best();
     pursuit_.name("newton");
+    const double before = Criterion::sum(pursuit_.best());
     ProximalPoint<Criterion, NewtonLimits, Problem, Body> point(limits_, problem_, space_.body);
     point.sweeps = pursuit_.sweeps();
     point.work = around * cost_;
@@ -97,6 +98,7 @@ class NewtonStage {
       if (!from_start) epsilon_ = point.epsilon;
     }
     if (!pursuit_.is_over()) pursuit_.back_to_best();
+    problem_.attempted(Criterion::sum(pursuit_.best()) < 0.5 * before);
     wait_ *= 2;
     open_after(pursuit_.sweeps() + std::max(double(wait_), 2 * point.factorizations * cost_));
   }
@@ -104,7 +106,7 @@ class NewtonStage {
  private:
   /// Most islands are solved before that is asked once.
   [[gnu::noinline]] bool is_due() {
-    if (!is_gathered_ && !problem_.has_time_for(gathering)) return false;
+    if (!is_gathered_ && !problem_.may_attempt(gathering)) return false;
     if (!std::exchange(is_gathered_, true)) {
       if (space_.body.gather(problem_)) {
         cost_ = space_.body.cost_in_sweeps();
@@ -115,7 +117,7 @@ class NewtonStage {
     }
     const double work = likely * cost_;
     return pursuit_.sweeps() >= opening_ && pursuit_.likely_left() >= work &&
-           problem_.has_time_for(around * work);
+           problem_.may_attempt(around * work);
   }
 
   static constexpr int least = 20, never = std::numeric_limits<int>::max();

@@ -10,6 +10,27 @@
 
 namespace delassus::inner {
 
+/// Whether to begin what may come to nothing before a deadline, from one step to the next: where it did it is
+/// passed over in one step, then in two, and so on up to `most`. What never helps costs one step in seventeen
+/// then, and what begins to help is found within as many.
+class Attempts {
+ public:
+  /// Asked once a solve.
+  bool is_due() {
+    if (left_ == 0) return true;
+    --left_;
+    return false;
+  }
+  void note(bool was_of_use) {
+    wait_ = was_of_use ? 0 : std::clamp(2 * wait_, 1, most);
+    left_ = wait_;
+  }
+
+ private:
+  static constexpr int most = 16;
+  int wait_ = 0, left_ = 0;  ///< steps
+};
+
 /// Looks at the clock after each sweep and inside long ones, sets the best measured impulses aside, and lets
 /// go what is half done at the deadline: from then on every operation is over at once, no measure is better
 /// than the best, and a solver comes to its end by the way it has. What λ is then does not matter, the best
@@ -21,12 +42,13 @@ class TimedProblem : public Problem {
       std::declval<typename Problem::OperatorType&>(), std::declval<const Groups&>()));
 
  public:
-  TimedProblem(const Problem& problem, const C& clock, double deadline, Best& best)
+  TimedProblem(const Problem& problem, const C& clock, double deadline, Best& best, bool may_attempt)
       : Problem(problem),
         watch_(clock, deadline),
         groups_(problem.groups(), watch_),
         watched_(problem.with(problem.compliance(), groups_)),
-        best_(best) {}
+        best_(best),
+        may_attempt_(may_attempt) {}
   TimedProblem(const TimedProblem&) = delete;
   TimedProblem& operator=(const TimedProblem&) = delete;
 
@@ -57,6 +79,14 @@ class TimedProblem : public Problem {
     const double needed = std::max(1.25 * longest_ + 2 * pace(), sweeps * pace());
     return !watch_.is_late() && now + needed < watch_.deadline();
   }
+  /// The same for what may come to nothing, and what came of it.
+  bool may_attempt(double sweeps) { return may_attempt_ && has_time_for(sweeps); }
+  void attempted(bool was_of_use) {
+    has_attempted_ = true;
+    was_of_use_ = was_of_use_ || was_of_use;
+  }
+  bool has_attempted() const { return has_attempted_; }
+  bool was_of_use() const { return was_of_use_; }
   /// Asked between the pieces of what is long and no sweep.
   bool is_cut_off(int work) { return watch_.cuts_off_after(work); }
   /// From here on λ is the answer, whatever its measure, and all work is done to its end.
@@ -121,6 +151,7 @@ class TimedProblem : public Problem {
   Groups groups_;
   Watched watched_;
   Best& best_;
+  bool may_attempt_, has_attempted_ = false, was_of_use_ = false;
   Measure least_{.residual = infinity};
   bool is_sweep_ = false;        ///< there was nothing else since the last look
   bool has_due_sweeps_ = false;  ///< `min_iterations` of them
