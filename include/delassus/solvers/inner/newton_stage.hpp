@@ -108,6 +108,7 @@ class NewtonStage {
   [[gnu::noinline]] bool is_due() {
     if (!is_gathered_ && !problem_.may_attempt(gathering)) return false;
     if (!std::exchange(is_gathered_, true)) {
+      problem_.attempted(false);  // that far: what is gathered and not begun is of no use either
       if (space_.body.gather(problem_)) {
         cost_ = space_.body.cost_in_sweeps();
         open_after(likely * cost_);
