@@ -52,7 +52,8 @@ TEST_CASE("a hundred links under a thousand times their weight hold at a sixtiet
   CHECK(kept.factorizations <= 5);
 }
 
-// Its end after 5 s is within a millimetre of that of a sixteenth of the step, whose own error is 1/256 of this.
+// Its end after 5 s is within a millimetre of that of a sixteenth of the step, whose own error is 1/256 of
+// this.
 TEST_CASE("a hundred links under a thousand times their weight end where a fine step brings them") {
   const auto end = [](int parts) {
     auto loop = rods(100, 1000, EIGEN_PI / 9, NewtonMidpoint{});
