@@ -46,6 +46,24 @@ TEST_CASE("touching balls of one mass pass an elastic impact on: the last one le
   }
 }
 
+// AC-25: gaps of a micrometre, ten times less than a ball goes in a step of 1e-5 s.
+TEST_CASE("balls a micrometre apart pass an elastic impact on in turn, in steps longer than their gaps") {
+  for (const int count : {3, 5}) {
+    AnimationLoop loop{World{RigidBodies{}},
+                       Constraints{Contact{SequentialRestitution{Coulomb{.friction = 0.3}, 1.0}}}};
+    auto& set = rigid_bodies(loop);
+    set.gravity.setZero();
+    for (int i = 0; i < count; ++i)
+      set.add({.position = {(2 * radius + 1e-6) * i, 0, 0}, .mass = 1.0, .shape = Sphere{radius}});
+    set.set_velocity(set.handle(0), {1, 0, 0});
+    for (int n = 0; n < 10; ++n) loop.step(1e-5);
+    const std::vector<double> v = speeds(loop);
+    CAPTURE(count);
+    for (std::size_t i = 0; i + 1 < v.size(); ++i) CHECK(std::abs(v[i]) <= 1e-10);
+    CHECK(v.back() == Approx(1).epsilon(0).margin(1e-10));
+  }
+}
+
 // One impact after the other: v₁ = (m₁ − e m₂)/(m₁ + m₂) of the first pair, (1 + e) m₁/(m₁ + m₂) into the
 // second. With rising masses the second ball comes back and hits the first no more.
 TEST_CASE("unequal balls share an impact pair by pair, as the masses and e say") {
