@@ -16,14 +16,22 @@ inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const
     r.noalias() += W[e].template cast<Sum>() * x[column[e]].template cast<Sum>();
 }
 
-/// Σ_e (W_e x_{column(e)})₀: the first of those rows alone, at a third of the products.
+/// Σ_e (W_e x_{column(e)})₀: the first of those rows alone, at a third of the products. Entries take turns with two
+/// sums, since an addition takes as long as the loads of two.
 template <int Rb, class S, class T>
 inline double first_of_row(Index count, const Mat<3, Rb, S>* W, const Index* column, const Vec<Rb, T>* x) {
-  double sum[Rb] = {};
-  for (Index e = 0; e < count; ++e)
+  double even[Rb] = {}, odd[Rb] = {};
+  const auto add = [&](double* sum, Index e) {
     for (int k = 0; k < Rb; ++k) sum[k] += double(W[e](0, k)) * double(x[column[e]][k]);
+  };
+  Index e = 0;
+  for (; e + 1 < count; e += 2) {
+    add(even, e);
+    add(odd, e + 1);
+  }
+  if (e < count) add(even, e);
   double all = 0;
-  for (int k = 0; k < Rb; ++k) all += sum[k];
+  for (int k = 0; k < Rb; ++k) all += even[k] + odd[k];
   return all;
 }
 
@@ -43,11 +51,10 @@ inline Pair pair_at(const double* x) {
 /// the block is touched.
 typedef double Four __attribute__((vector_size(4 * sizeof(double))));
 
-inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* column, const Vec<3>* x) {
+struct ColumnSums {
   Four first{}, second{}, third{};
-  for (Index e = 0; e < count; ++e) {
-    const double* w = W[e].data();
-    const double* y = x[column[e]].data();
+
+  void add(const double* w, const double* y) {
     Four a, b, c;
     std::memcpy(&a, w, sizeof a);
     std::memcpy(&b, w + 3, sizeof b);
@@ -56,7 +63,18 @@ inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* col
     second += b * y[1];
     third += c * y[2];
   }
-  for (int k = 0; k < 3; ++k) r[k] += (first[k] + second[k]) + third[k + 1];
+};
+
+inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* column, const Vec<3>* x) {
+  ColumnSums even, odd;
+  Index e = 0;
+  for (; e + 1 < count; e += 2) {
+    even.add(W[e].data(), x[column[e]].data());
+    odd.add(W[e + 1].data(), x[column[e + 1]].data());
+  }
+  if (e < count) even.add(W[e].data(), x[column[e]].data());
+  for (int k = 0; k < 3; ++k)
+    r[k] += (even.first[k] + odd.first[k]) + (even.second[k] + odd.second[k]) + (even.third[k + 1] + odd.third[k + 1]);
 }
 #else
 /// The same for the 3 × 3 blocks of contacts, two entries at a time as they lie, column by column:
