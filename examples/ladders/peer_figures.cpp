@@ -79,10 +79,12 @@ std::string best_peer(const std::vector<PeerFigure>& all, std::string_view id, s
     }
   }
   if (!best) return refused ? "– (" + refused->shortfall + ")" : "not measured";
-  return best->engine + ": silver " + count_text(best->silver, best->rungs) + ", gold " +
-         count_text(best->gold, best->rungs) + (best->shortfall.empty() ? "" : "; " + best->shortfall) +
-         "; " + time_text(best->microseconds) + " a step" +
-         (ours ? ", ours " + time_text(ours->microseconds) : "");
+  const auto levels = [](const PeerFigure& p) {
+    return "silver " + count_text(p.silver, p.rungs) + ", gold " + count_text(p.gold, p.rungs) + ", " +
+           time_text(p.microseconds) + " a step";
+  };
+  return best->engine + ": " + levels(*best) + (best->shortfall.empty() ? "" : " (" + best->shortfall + ")") +
+         (ours ? "; ours by the same marks: " + levels(*ours) : "");
 }
 
 }  // namespace ladders

@@ -41,7 +41,8 @@ struct WithDeadline {
     void reset(const Rows& rows) {
       if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
       best.resize_like(rows);
-      attempts.reserve(std::size_t(rows.row_count()));
+      const auto islands = std::size_t(rows.row_count());  // at most
+      if (attempts.capacity() < islands) attempts.reserve(2 * islands);
       until = std::numeric_limits<double>::quiet_NaN();
     }
   };
