@@ -45,6 +45,7 @@ struct WithDeadline {
       if (attempts.capacity() < islands) attempts.reserve(2 * islands);
       until = std::numeric_limits<double>::quiet_NaN();
     }
+    void memory(auto& archive) { archive(attempts); }
   };
 
   void check() const {

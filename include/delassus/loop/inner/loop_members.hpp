@@ -25,6 +25,7 @@ void AnimationLoop<Policies...>::memory(auto& archive) {
   if constexpr (has_constraints) {
     archive(work_.contacts, work_.materials);
     if constexpr (Work::has_dormant) archive(work_.activity);
+    if constexpr (requires { work_.solver.memory(archive); }) work_.solver.memory(archive);
     if constexpr (Laws::has_contacts) {
       auto& collision = part<role::Collision>();
       if constexpr (requires { collision.memory(archive); }) collision.memory(archive);
