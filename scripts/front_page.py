@@ -38,7 +38,7 @@ def table(page):
         order = [(rungs(r["silver"]), rungs(r["gold"])) for r in (row, best) if r]
         if best is None or order[0] > order[1]:
             cases[row["case"]] = row
-    lines = ["| hard case | parts besides the defaults | as good engines do | the stated number | best peer measured |", "| --- | --- | --- | --- | --- |"]
+    lines = ["| hard case | parts besides the defaults | silver | gold | best peer, and ours so |", "| --- | --- | --- | --- | --- |"]
     for case, row in cases.items():
         lines.append(f"| {case} | {row['parts']} | {row['silver']} | {row['gold']} | {row['best peer']} |")
     return "\n".join(lines) + "\n"
