@@ -13,8 +13,12 @@ namespace {
 /// Twelve bodies of which a few have most of forty contacts, one step in.
 template <class Builder>
 auto cluster_problem(Builder builder, unsigned seed) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}, GivenContacts{}, builder,
-                     GaussSeidel{.tolerance = 0, .max_iterations = 50, .min_iterations = 50}, SoftContact{}};
+  AnimationLoop loop{World{RigidBodies{}},
+                     Constraints{Contact{Coulomb{.friction = 0.4}}},
+                     GivenContacts{},
+                     builder,
+                     GaussSeidel{.tolerance = 0, .max_iterations = 50, .min_iterations = 50},
+                     SoftContact{}};
   loop.template get<GivenContacts>().points = add_cluster(rigid_bodies(loop), 12, 40, seed, -1e-3);
   loop.step(0.01);
   return loop.problem();
@@ -22,14 +26,20 @@ auto cluster_problem(Builder builder, unsigned seed) {
 
 /// A plate on 24 points and, metres away, a pile of spheres; λ of the pile after some steps.
 auto pile(int points_under_plate) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, GivenContacts{}, CheaperCompliance{}};
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, GivenContacts{},
+                     CheaperCompliance{}};
   auto& set = rigid_bodies(loop);
   auto& given = loop.template get<GivenContacts>().points;
   given = add_cluster(set, 8, 12, 3, -1e-3);
   const auto plate = set.add({.position = {50, 0, 0.1}, .mass = 1.0, .shape = Box{1, 1, 0.2}});
   for (int k = 0; k < points_under_plate; ++k) {
     const Vec3 point(50 + 0.4 * std::cos(k), 0.4 * std::sin(k), 0);
-    given.push_back({.a = 0, .b = plate.index, .point_a = point, .point_b = point, .pair = 99, .feature = std::uint32_t(k)});
+    given.push_back({.a = 0,
+                     .b = plate.index,
+                     .point_a = point,
+                     .point_b = point,
+                     .pair = 99,
+                     .feature = std::uint32_t(k)});
   }
   std::vector<Vec<6>> velocity;
   for (int n = 0; n < 5; ++n) loop.step(0.01);
@@ -39,8 +49,8 @@ auto pile(int points_under_plate) {
 
 }  // namespace
 
-// Whichever form a row has, the same products are added in another order: as with all of one form, ulps that fifty
-// sweeps raise to at most 1e-10 of the largest impulse.
+// Whichever form a row has, the same products are added in another order: as with all of one form, ulps that
+// fifty sweeps raise to at most 1e-10 of the largest impulse.
 TEST_CASE("rows of W beside rows without it give the impulses of W after the same number of sweeps") {
   int crowded = 0, sparse = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -68,13 +78,15 @@ TEST_CASE("a crowd far away changes no bit of who has none") {
 // Fifty contacts in the place of each: the share of W's rows would be 200 blocks long.
 TEST_CASE("a plate on many points has no row of W, on four it has all of them") {
   for (const int count : {4, 200}) {
-    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, GivenContacts{}, CheaperCompliance{}};
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, GivenContacts{},
+                       CheaperCompliance{}};
     auto& set = rigid_bodies(loop);
     set.add_fixed(HalfSpace{});
     set.add({.position = {0, 0, 0.1}, .mass = 1.0, .shape = Box{1, 1, 0.2}});
     for (int k = 0; k < count; ++k) {
       const Vec3 point(0.4 * std::cos(k), 0.4 * std::sin(k), 0);
-      loop.get<GivenContacts>().points.push_back({.a = 0, .b = 1, .point_a = point, .point_b = point, .pair = 1, .feature = std::uint32_t(k)});
+      loop.get<GivenContacts>().points.push_back(
+          {.a = 0, .b = 1, .point_a = point, .point_b = point, .pair = 1, .feature = std::uint32_t(k)});
     }
     REQUIRE(loop.step(0.01).status == Status::converged);
     const auto problem = loop.problem();

@@ -10,10 +10,10 @@
 
 namespace delassus {
 
-/// Σ_j W_ij λ_j over the blocks of a row that has few; H y with y = A⁻¹ Hᵀ λ for a row that would have many, and
-/// W does without it: what a visit costs is bounded, whatever else acts on its bodies. Which form a row takes is decided
-/// by its own bodies. Where A couples bodies (springs under an implicit integrator, soft bodies) all rows are
-/// W's.
+/// Σ_j W_ij λ_j over the blocks of a row that has few; H y with y = A⁻¹ Hᵀ λ for a row that would have many,
+/// and W does without it: what a visit costs is bounded, whatever else acts on its bodies. Which form a row
+/// takes is decided by its own bodies. Where A couples bodies (springs under an implicit integrator, soft
+/// bodies) all rows are W's.
 struct CheaperCompliance {
   using plays = role::Compliance;
 
@@ -28,8 +28,8 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   using Sum = double;
   static constexpr int pools = Rows::pool_count;
 
-  /// An item is crowded if more rows than these act on its bodies, its own counted once a body: those of eight
-  /// contacts. H y takes as long as about so many blocks (docs/performance.md).
+  /// An item is crowded if more rows than these act on its bodies, its own counted once a body: those of
+  /// eight contacts. H y takes as long as about so many blocks (docs/performance.md).
   static constexpr Index most_rows = 24;
 
   template <class World>

@@ -16,8 +16,8 @@ inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const
     r.noalias() += W[e].template cast<Sum>() * x[column[e]].template cast<Sum>();
 }
 
-/// Σ_e (W_e x_{column(e)})₀: the first of those rows alone, at a third of the products. Entries take turns with two
-/// sums, since an addition takes as long as the loads of two.
+/// Σ_e (W_e x_{column(e)})₀: the first of those rows alone, at a third of the products. Entries take turns
+/// with two sums, since an addition takes as long as the loads of two.
 template <int Rb, class S, class T>
 inline double first_of_row(Index count, const Mat<3, Rb, S>* W, const Index* column, const Vec<Rb, T>* x) {
   double even[Rb] = {}, odd[Rb] = {};
@@ -74,7 +74,8 @@ inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* col
   }
   if (e < count) even.add(W[e].data(), x[column[e]].data());
   for (int k = 0; k < 3; ++k)
-    r[k] += (even.first[k] + odd.first[k]) + (even.second[k] + odd.second[k]) + (even.third[k + 1] + odd.third[k + 1]);
+    r[k] += (even.first[k] + odd.first[k]) + (even.second[k] + odd.second[k]) +
+            (even.third[k + 1] + odd.third[k + 1]);
 }
 #else
 /// The same for the 3 × 3 blocks of contacts, two entries at a time as they lie, column by column:
