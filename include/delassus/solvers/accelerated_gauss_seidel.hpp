@@ -113,7 +113,7 @@ struct BasicAcceleratedGaussSeidel {
       for (int leaps = 0;; ++leaps) {
         is_in_circles = momentum("momentum", 1, exact);
         if (pursuit.is_over()) return pursuit.finish();
-        const double way = inner::drift(problem, work.x);
+        const inner::Drift way = inner::drift(problem, work.x);
         if (leaps == 3 || !inner::leap(problem, pursuit, work.x, way, patience)) break;
       }
       if (inner::contradicts(problem, pursuit, work.x))

@@ -13,20 +13,27 @@ namespace delassus::inner {
 /// Sweeps of which λ's way is taken.
 inline constexpr int drift_sweeps = 16;
 
-/// Plain sweeps, `before` being λ before them. √Σ w_i |z_i|² of their way z = λ − `before` where it was
-/// straight and the pace even, else zero.
+/// √Σ w_i |z_i|² of a way z, zero where it was not straight or the pace not even, and √Σ w_i |λ_i|² at its
+/// end.
+struct Drift {
+  double length, size;
+};
+
+/// Plain sweeps, `before` being λ before them, z = λ − `before`.
 template <class Problem, class Impulses>
-[[gnu::noinline]] double drift(Problem& problem, Impulses& before) {
+[[gnu::noinline]] Drift drift(Problem& problem, Impulses& before) {
   problem.save(before);
-  double moved = 0, square = 0;
+  double moved = 0, square = 0, size = 0;
   for (int k = 0; k < drift_sweeps; ++k) moved = problem.sweep();
   problem.each([&](auto p, Index i) {
     const double root = problem.template root_of_weight<p>(i);
-    const auto z = problem.rows().template pool<p>().lambda[i] - std::get<p>(before.pools)[i];
+    const auto& lambda = problem.rows().template pool<p>().lambda[i];
+    const auto z = lambda - std::get<p>(before.pools)[i];
     square += root * root * double(z.squaredNorm());
+    size += root * root * double(lambda.squaredNorm());
   });
   const double length = std::sqrt(square), even = drift_sweeps * std::sqrt(moved);
-  return std::abs(length - even) < 0.02 * even ? length : 0;
+  return {std::abs(length - even) < 0.02 * even ? length : 0, std::sqrt(size)};
 }
 
 /// The largest β < `most` with λ + β z in the cones of all laws but for a small share of β |z|, which is how
@@ -70,17 +77,18 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
 ///
 ///   λ ← λ + β z,   β the largest with all impulses in their cones.
 ///
-/// To be called where sweeps have stalled, after `drift`, which gives `length`. True where λ has gone so, and
-/// settled: from there momentum goes on. What that would reach by itself within `patience` sweeps, which is
-/// patience²/4 plain ones, is left to it.
+/// An impulse that begins to slip so is no larger than those that carry: a way of more than twice the length
+/// of λ is none of these, but one of rows that contradict each other, and λ runs away along it. To be called
+/// where sweeps have stalled, after `drift`, which gives `way`. True where λ has gone so, and settled: from
+/// there momentum goes on. What that would reach by itself within `patience` sweeps, which is patience²/4
+/// plain ones, is left to it.
 template <class Problem, class Pursuit, class Impulses>
-[[gnu::noinline]] bool leap(Problem& problem, Pursuit& pursuit, Impulses& before, double length,
-                            int patience) {
+[[gnu::noinline]] bool leap(Problem& problem, Pursuit& pursuit, Impulses& before, Drift way, int patience) {
   constexpr int settling = 40, in_a_row = 8;
   double far = 0.25 * patience * patience / drift_sweeps;
   bool has_leapt = false;
-  for (int k = 0; k < in_a_row && length > 0; ++k) {
-    const double beta = reach(problem, before, length, 1e15);
+  for (int k = 0; k < in_a_row && way.length > 0; ++k) {
+    const double beta = reach(problem, before, way.length, 2 * way.size / way.length);
     if (!(beta > far)) break;
     if (!has_leapt) pursuit.open("leap", in_a_row * settling);
     has_leapt = true;
@@ -88,7 +96,7 @@ template <class Problem, class Pursuit, class Impulses>
     problem.extrapolate(before, beta);
     for (int n = 0; n < settling; ++n)
       if (!pursuit.goes_on(problem.sweep())) return true;
-    length = drift(problem, before);
+    way = drift(problem, before);
   }
   return has_leapt;
 }
