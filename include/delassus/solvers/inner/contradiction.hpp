@@ -107,7 +107,7 @@ class Contradiction {
   template <int p>
   bool has_no_cap(Index i) const {
     if constexpr (kinds<p>.size() == 1 && kinds<p>[0] == RowKind::friction &&
-                  requires { requires Problem::BookType::template clamps<p>(); }) {
+                  Problem::BookType::template clamps<p>()) {
       Vec<1, T> huge(std::sqrt(std::numeric_limits<T>::max()));
       problem_.book().template clamp<p>(i, huge);
       return huge[0] == std::sqrt(std::numeric_limits<T>::max());

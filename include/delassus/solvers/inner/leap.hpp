@@ -45,7 +45,7 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
   constexpr double share = 1e-4;
   double beta = most;
   problem.each([&](auto p, Index i) {
-    if constexpr (requires { requires Problem::BookType::template clamps<p>(); }) {
+    if constexpr (Problem::BookType::template clamps<p>()) {
       const auto lambda = problem.rows().template pool<p>().lambda[i];
       const auto z = (lambda - std::get<p>(before.pools)[i]).eval();
       const double root = problem.template root_of_weight<p>(i);
