@@ -1,5 +1,5 @@
-/// C ← C − A Bᵀ for dense columns, in tiles that stay in registers: the inner loop of a multifrontal
-/// factorization.
+/// C ← C − A Bᵀ, Y ← Y L⁻ᵀ and L Lᵀ = C for dense columns, in tiles that stay in registers: the inner loops
+/// of a multifrontal factorization.
 #pragma once
 
 #include <delassus/core/index.hpp>
@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace delassus::inner {
@@ -22,15 +23,14 @@ struct Columns {
   Columns from(Index i, Index j) const { return {at(i, j), stride}; }
 };
 
-/// Packs A and B into strips and multiplies tile by tile. The buffers keep their capacity: a warm call
-/// allocates nothing.
+/// Packs what it multiplies into strips of a few rows, each column by column, and works strip by strip,
+/// `panel` columns of the result at a time. The buffers keep their capacity: a warm call allocates nothing.
 template <class T>
 class DenseKernel {
   using Packet = typename Eigen::internal::packet_traits<T>::type;
   static constexpr Index lanes = Eigen::internal::unpacket_traits<Packet>::size;
   /// Twelve sums in sixteen registers, or twenty-four in thirty-two.
-  static constexpr Index tile_rows = 3 * lanes,
-                         tile_columns = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
+  static constexpr Index strip = 3 * lanes, panel = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
   static constexpr Index depth = 128;  ///< columns of A packed at a time
 
  public:
@@ -47,113 +47,213 @@ class DenseKernel {
   }
 
   /// The first `columns` columns of the m × columns matrix C become those of its Cholesky factor; false when
-  /// a pivot is not positive. By halves: left half, its product off the right half, right half.
+  /// a pivot is not positive.
   bool factor(Columns<T> C, Index m, Index columns) {
-    if (columns <= 4) return factor_narrow(C, m, columns);
-    const Index half = (columns / 2 + 3) / 4 * 4;
-    if (!factor(C, m, half)) return false;
-    const Columns<const T> below{C.at(half, 0), C.stride};
-    subtract(C.from(half, half), below, below, m - half, columns - half, half, true);
-    return factor(C.from(half, half), m - half, columns - half);
+    if (!factor_square(C, columns)) return false;
+    solve_right(C.from(columns, 0), {C.data, C.stride}, m - columns, columns);
+    return true;
   }
 
-  /// Y ← Y L⁻ᵀ, Y is m × k, L is k × k lower.
+  /// Y ← Y L⁻ᵀ, Y is m × k, L is k × k lower: by halves, whose product comes off the right half, until a
+  /// triangle fits into the cache.
   void solve_right(Columns<T> Y, Columns<const T> L, Index m, Index k) {
-    if (k <= 4) return solve_right_narrow(Y, L, m, k);
-    const Index half = (k / 2 + 3) / 4 * 4;
+    if (k <= depth) return solve_by_strips(Y, L, m, k);
+    const Index half = rounded_up(k / 2, panel);
     solve_right(Y, L, m, half);
     subtract(Y.from(0, half), {Y.data, Y.stride}, L.from(half, 0), m, k - half, half, false);
     solve_right(Y.from(0, half), L.from(half, half), m, k - half);
   }
 
  private:
+  /// f with as many packets as the rows that are left take, three at most.
+  static void with_packets(Index rows, auto&& f) {
+    if (rows > 2 * lanes)
+      f(std::integral_constant<int, 3>{});
+    else if (rows > lanes)
+      f(std::integral_constant<int, 2>{});
+    else
+      f(std::integral_constant<int, 1>{});
+  }
+  static void fit(std::vector<T>& to, Index size) {
+    if (to.size() < std::size_t(size)) to.resize(std::size_t(size));
+  }
+  static constexpr Index rounded_up(Index n, Index grain) { return (n + grain - 1) / grain * grain; }
+
   void multiply(Columns<T> C, Columns<const T> A, Columns<const T> B, Index m, Index n, Index k,
                 bool is_lower, bool is_new) {
     for (Index done = 0; done < k; done += depth) {
       const Index width = std::min(depth, k - done);
-      pack<tile_rows>(a_, A.from(0, done), m, width);
-      pack<tile_columns>(b_, B.from(0, done), n, width);
-      for (Index i = 0; i < m; i += tile_rows) {
-        const Index last = is_lower ? std::min(n, i + tile_rows) : n;
-        for (Index j = 0; j < last; j += tile_columns)
-          tile(C.from(i, j), std::min(tile_rows, m - i), std::min(tile_columns, n - j),
-               &a_[std::size_t(i) * width], &b_[std::size_t(j) * width], width, is_new && done == 0);
-      }
+      pack<strip, lanes>(a_, A.from(0, done), m, width);
+      pack<panel, panel>(b_, B.from(0, done), n, width);
+      for (Index i = 0; i < m; i += strip)
+        with_packets(m - i, [&]<int packets>(std::integral_constant<int, packets>) {
+          const Index rows = std::min(strip, m - i), last = is_lower ? std::min(n, i + rows) : n;
+          const T* a = &a_[std::size_t(i) * width];
+          for (Index j = 0; j < last; j += panel) {
+            // What lies above the diagonal is left out by packets of rows.
+            const Index above = is_lower && j > i ? (j - i) / lanes * lanes : 0;
+            with_packets(rows - above, [&]<int used>(std::integral_constant<int, used>) {
+              if constexpr (used <= packets)
+                tile<used, packets * lanes>(C.from(i + above, j), rows - above, std::min(panel, n - j),
+                                            a + above, &b_[std::size_t(j) * width], width,
+                                            is_new && done == 0);
+            });
+          }
+        });
     }
   }
 
-  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
-  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
-
-  /// Strips of `height` rows, each column by column; missing rows are zero.
-  template <Index height>
+  /// Strips of `height` rows, each column by column; the last one has its rows rounded up to a multiple of
+  /// `grain`, and zeros for those that are missing.
+  template <Index height, Index grain>
   static void pack(std::vector<T>& to, Columns<const T> from, Index rows, Index columns) {
-    const Index strips = (rows + height - 1) / height;
-    if (to.size() < std::size_t(strips) * height * columns) to.resize(std::size_t(strips) * height * columns);
-    T* p = to.data();
-    for (Index i = 0; i < rows; i += height) {
-      const Index there = std::min(height, rows - i);
-      for (Index j = 0; j < columns; ++j, p += height) {
-        const T* source = from.at(i, j);
-        if (there == height) {
-          for (Index r = 0; r < height; ++r) p[r] = source[r];
+    fit(to, rounded_up(rows, grain) * columns);
+    const Index whole = rows / height * height, there = rows - whole, high = rounded_up(there, grain);
+    for (Index j = 0; j < columns; ++j) {
+      const T* source = from.at(0, j);
+      for (Index i = 0; i < whole; i += height)
+        std::copy_n(source + i, height, &to[i * columns + j * height]);
+      if (there == 0) continue;
+      T* const last = &to[whole * columns + j * high];
+      std::copy_n(source + whole, there, last);
+      std::fill_n(last + there, high - there, T(0));
+    }
+  }
+
+  /// −L by panels of rows, each column by column up to the panel's square, in which 1/L_ii is on the
+  /// diagonal; zero above it and for rows beyond k.
+  void pack_triangle(Columns<const T> L, Index k) {
+    // Before the panel with row i are those of panel, 2 panel, … i columns.
+    const auto start = [](Index i) { return i * (i + panel) / 2; };
+    const Index size = start(rounded_up(k, panel));
+    fit(b_, size);
+    std::fill_n(b_.begin(), size, T(0));
+    for (Index j = 0; j < k; ++j) {
+      const T* source = L.at(0, j);
+      const Index square = j / panel * panel;
+      for (Index i = square; i < k; i += panel) {
+        T* p = &b_[start(i) + j * panel];
+        const Index first = i == square ? j + 1 - i : 0, last = std::min(panel, k - i);
+        if (last - first == panel) {
+          for (Index r = 0; r < panel; ++r) p[r] = -source[i + r];
         } else {
-          for (Index r = 0; r < there; ++r) p[r] = source[r];
-          for (Index r = there; r < height; ++r) p[r] = T(0);
+          for (Index r = first; r < last; ++r) p[r] = -source[i + r];
         }
       }
+      b_[start(square) + j * panel + (j - square)] = T(1) / source[j];
     }
   }
 
-  /// One tile of C −= a bᵀ, or of C = −a bᵀ, over packed strips; a tile at the edge goes through a copy.
+  /// One tile of C −= a bᵀ, or of C = −a bᵀ, over packed strips, a's of `high` rows; a tile at the edge goes
+  /// through a copy.
+  template <int packets, int high>
   static void tile(Columns<T> C, Index rows, Index columns, const T* a, const T* b, Index k, bool is_new) {
     using namespace Eigen::internal;
-    Packet s[tile_columns][3];
+    Packet s[panel][packets];
     for (auto& column : s)
       for (Packet& p : column) p = pset1<Packet>(T(0));
-    for (Index l = 0; l < k; ++l, a += tile_rows, b += tile_columns) {
-      const Packet a0 = ploadu<Packet>(a), a1 = ploadu<Packet>(a + lanes), a2 = ploadu<Packet>(a + 2 * lanes);
-      for (int c = 0; c < tile_columns; ++c) {
-        const Packet x = pset1<Packet>(b[c]);
-        s[c][0] = pmadd(a0, x, s[c][0]);
-        s[c][1] = pmadd(a1, x, s[c][1]);
-        s[c][2] = pmadd(a2, x, s[c][2]);
-      }
-    }
-    if (rows == tile_rows && columns == tile_columns) {
-      for (int c = 0; c < tile_columns; ++c)
-        for (int r = 0; r < 3; ++r) {
+    for (Index l = 0; l < k; ++l, a += high, b += panel) add_products<packets>(s, a, b);
+    if (rows == packets * lanes && columns == panel) {
+      for (int c = 0; c < panel; ++c)
+        for (int r = 0; r < packets; ++r) {
           T* to = C.at(r * lanes, c);
           pstoreu(to, is_new ? pnegate(s[c][r]) : psub(ploadu<Packet>(to), s[c][r]));
         }
       return;
     }
-    T edge[tile_columns * tile_rows];
-    for (int c = 0; c < tile_columns; ++c)
-      for (int r = 0; r < 3; ++r) pstoreu(edge + c * tile_rows + r * lanes, s[c][r]);
+    T edge[panel][packets * lanes];
+    for (int c = 0; c < panel; ++c)
+      for (int r = 0; r < packets; ++r) pstoreu(edge[c] + r * lanes, s[c][r]);
     for (Index c = 0; c < columns; ++c) {
       T* to = C.at(0, c);
-      for (Index r = 0; r < rows; ++r) to[r] = (is_new ? T(0) : to[r]) - edge[c * tile_rows + r];
+      for (Index r = 0; r < rows; ++r) to[r] = (is_new ? T(0) : to[r]) - edge[c][r];
     }
   }
 
-  static bool factor_narrow(Columns<T> C, Index m, Index columns) {
-    for (Index j = 0; j < columns; ++j) {
-      Line column(C.at(j, j), m - j);
-      for (Index k = 0; k < j; ++k) column -= *C.at(j, k) * ConstLine(C.at(j, k), m - j);
-      const T pivot = column[0];
+  /// s += a bᵀ of one column of a strip and one of a panel.
+  template <int packets>
+  static void add_products(Packet (&s)[panel][packets], const T* a, const T* b) {
+    using namespace Eigen::internal;
+    Packet x[packets];
+    for (int r = 0; r < packets; ++r) x[r] = ploadu<Packet>(a + r * lanes);
+    for (int c = 0; c < panel; ++c) {
+      const Packet y = pset1<Packet>(b[c]);
+      for (int r = 0; r < packets; ++r) s[c][r] = pmadd(x[r], y, s[c][r]);
+    }
+  }
+
+  /// Y ← Y L⁻ᵀ. Of a strip of rows, by panels of columns from left to right:
+  ///
+  ///   Y_p ← (Y_p − Σ_{l<p} Y_l L_plᵀ) L_pp⁻ᵀ.
+  void solve_by_strips(Columns<T> Y, Columns<const T> L, Index m, Index k) {
+    pack_triangle(L, k);
+    fit(a_, strip * k);
+    for (Index i = 0; i < m; i += strip)
+      with_packets(m - i, [&]<int packets>(std::integral_constant<int, packets>) {
+        solve_strip<packets>(Y.from(i, 0), std::min(strip, m - i), k);
+      });
+  }
+
+  /// The rows of one strip of Y ← Y L⁻ᵀ. Those of a strip that is not whole are solved in the packed strip
+  /// alone.
+  template <int packets>
+  void solve_strip(Columns<T> Y, Index rows, Index k) {
+    using namespace Eigen::internal;
+    constexpr Index high = packets * lanes;
+    const bool is_whole = rows == high;
+    if (!is_whole) pack<high, high>(a_, {Y.data, Y.stride}, rows, k);
+    const T* b = b_.data();
+    for (Index j = 0; j < k; j += panel) {
+      const Index columns = std::min(panel, k - j);
+      T* const packed = &a_[std::size_t(j) * high];
+      Packet s[panel][packets];
+#pragma GCC unroll 8
+      for (int c = 0; c < panel; ++c)
+        for (int r = 0; r < packets; ++r)
+          s[c][r] = c < columns ? ploadu<Packet>((is_whole ? Y.at(0, j + c) : packed + c * high) + r * lanes)
+                                : pset1<Packet>(T(0));
+      const T* a = a_.data();
+      for (Index l = 0; l < j; ++l, a += high, b += panel) add_products<packets>(s, a, b);
+#pragma GCC unroll 8  // the sums stay in registers
+      for (int c = 0; c < panel; ++c, b += panel) {
+        for (int r = 0; r < packets; ++r) s[c][r] = pmul(s[c][r], pset1<Packet>(b[c]));
+#pragma GCC unroll 8
+        for (int d = c + 1; d < panel; ++d) {
+          const Packet y = pset1<Packet>(b[d]);
+          for (int r = 0; r < packets; ++r) s[d][r] = pmadd(s[c][r], y, s[d][r]);
+        }
+      }
+#pragma GCC unroll 8
+      for (int c = 0; c < panel; ++c)
+        for (int r = 0; r < packets && c < columns; ++r) {
+          pstoreu(packed + c * high + r * lanes, s[c][r]);
+          if (is_whole) pstoreu(Y.at(r * lanes, j + c), s[c][r]);
+        }
+    }
+    if (is_whole) return;
+    for (Index j = 0; j < k; ++j) std::copy_n(&a_[std::size_t(j) * high], rows, Y.at(0, j));
+  }
+
+  /// L Lᵀ = C, n × n, by halves: left half, what is below it, its product off the right half, right half.
+  bool factor_square(Columns<T> C, Index n) {
+    if (n <= panel) return factor_narrow(C, n);
+    const Index half = rounded_up(n / 2, panel);
+    if (!factor_square(C, half)) return false;
+    const Columns<const T> below{C.at(half, 0), C.stride};
+    solve_right(C.from(half, 0), {C.data, C.stride}, n - half, half);
+    subtract(C.from(half, half), below, below, n - half, n - half, half, true);
+    return factor_square(C.from(half, half), n - half);
+  }
+
+  static bool factor_narrow(Columns<T> C, Index n) {
+    for (Index j = 0; j < n; ++j) {
+      for (Index k = 0; k < j; ++k)
+        for (Index i = j; i < n; ++i) *C.at(i, j) -= *C.at(j, k) * *C.at(i, k);
+      const T pivot = *C.at(j, j);
       if (!(pivot > T(0)) || !std::isfinite(pivot)) return false;
-      column *= T(1) / std::sqrt(pivot);
+      for (Index i = j; i < n; ++i) *C.at(i, j) *= T(1) / std::sqrt(pivot);
     }
     return true;
-  }
-
-  static void solve_right_narrow(Columns<T> Y, Columns<const T> L, Index m, Index k) {
-    for (Index j = 0; j < k; ++j) {
-      Line y(Y.at(0, j), m);
-      for (Index i = 0; i < j; ++i) y -= *L.at(j, i) * ConstLine(Y.at(0, i), m);
-      y *= T(1) / *L.at(j, j);
-    }
   }
 
   std::vector<T> a_, b_;
