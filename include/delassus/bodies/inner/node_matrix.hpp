@@ -55,7 +55,8 @@ class NodeMatrix {
     eights_.assign(pairs_.size(), {});
     ninths_.assign(pairs_.size(), T(0));
     diagonal_.assign(nodes, Block::Zero());
-    above_ = diagonal_;
+    sums_.assign(nodes, {});
+    ninth_sums_.assign(nodes, T(0));
     factor_.analyse(nodes, pairs_, positions);
   }
 
@@ -84,18 +85,22 @@ class NodeMatrix {
       ninths_[at.index] = at.ninth + T(last[l]);
     }
   }
-  /// K_ii, when all elements are in.
+  /// K_ii, when all elements are in. It is symmetric, so that on which side of a pair i stands makes no
+  /// difference: K_ii = −sym Σ K_p over the pairs p with i.
   void add_diagonal() {
-    for (Block& B : above_) B.setZero();
+    std::fill(sums_.begin(), sums_.end(), Eight{});
+    std::fill(ninth_sums_.begin(), ninth_sums_.end(), T(0));
     std::size_t p = 0;
     for (Index i = 0; i < Index(diagonal_.size()); ++i) {
-      Block sum = above_[i].transpose();
+      Eight sum = sums_[i];
+      T ninth = ninth_sums_[i];
       for (; p < pairs_.size() && pairs_[p].first == i; ++p) {
-        const Block K = block(p);
-        sum -= K;
-        above_[pairs_[p].second] -= K;
+        const Index j = pairs_[p].second;
+        for (int k = 0; k < 8; ++k) sum.e[k] += eights_[p].e[k], sums_[j].e[k] += eights_[p].e[k];
+        ninth += ninths_[p], ninth_sums_[j] += ninths_[p];
       }
-      diagonal_[i] = T(0.5) * (sum + sum.transpose().eval());  // no more symmetric than its rounding
+      const Block all = block(sum, ninth);
+      diagonal_[i] = T(-0.5) * (all + all.transpose());
     }
   }
 
@@ -167,12 +172,6 @@ class NodeMatrix {
     for (Index e = batched; e < Index(places_.size()); ++e)
       for (Index& place : places_[e]) meet(place);
   }
-  Block block(std::size_t p) const {
-    Block K;
-    for (int i = 0; i < 8; ++i) K.data()[i] = eights_[p].e[i];
-    K.data()[8] = ninths_[p];
-    return K;
-  }
   static void add_to(double* to, const double* from, const Lanes& x) {
     store_lanes(to, load_lanes(from) + x);
   }
@@ -185,12 +184,21 @@ class NodeMatrix {
   struct alignas(8 * sizeof(T)) Eight {
     T e[8];
   };
+  static Block block(const Eight& eight, T ninth) {
+    Block K;
+    for (int i = 0; i < 8; ++i) K.data()[i] = eight.e[i];
+    K.data()[8] = ninth;
+    return K;
+  }
+  Block block(std::size_t p) const { return block(eights_[p], ninths_[p]); }
 
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<std::array<Index, pairs_each>> places_;
   std::vector<Eight> eights_;  ///< of the pairs' blocks, by columns
   std::vector<T> ninths_;
-  std::vector<Block> diagonal_, above_;
+  std::vector<Block> diagonal_;
+  std::vector<Eight> sums_;  ///< Σ K_p by node, and its last number
+  std::vector<T> ninth_sums_;
   MultifrontalCholesky<3, T> factor_;
 };
 
