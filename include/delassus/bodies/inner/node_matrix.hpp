@@ -78,11 +78,8 @@ class NodeMatrix {
       for (int l = 0; l < lane_count; ++l) {
         const Place at = place(e + l, k);
         add_to(eights_[at.index].e + first, at.from + first, rows[first + l]);
+        if (first == 0) ninths_[at.index] = at.ninth + T(last[l]);
       }
-    }
-    for (int l = 0; l < lane_count; ++l) {
-      const Place at = place(e + l, k);
-      ninths_[at.index] = at.ninth + T(last[l]);
     }
   }
   /// K_ii, when all elements are in. It is symmetric, so that on which side of a pair i stands makes no
