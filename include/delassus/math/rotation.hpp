@@ -125,6 +125,13 @@ Eigen::Quaternion<T> turn_about_momentum(const Vec<3, T>& rate, const Vec<3, T>&
   return exponential<T>(std::remainder(h * rate.dot(axis), T(4 * EIGEN_PI)) * axis);
 }
 
+/// I⁻¹ L, scaled by tr I as `midpoint_rate` does.
+template <class T>
+Vec<3, T> rate_of(const Mat<3, 3, T>& inertia, const Vec<3, T>& momentum) {
+  const T scale = T(1) / inertia.trace();
+  return inverse(Mat<3, 3, T>(scale * inertia)) * (scale * momentum);
+}
+
 /// `midpoint_turn` of a step that may be halved `halvings` times more.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
@@ -134,7 +141,8 @@ Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Ve
   // The products that make the residual are of size h |Ω̄| |c|, and as many roundings off.
   const T enough = T(128) * mid.rounding;
   if (mid.residual <= enough && enough <= std::numeric_limits<T>::max()) [[likely]] return cayley<T>(longer * mid.rate);
-  if (!(h * rate.norm() <= T(16384))) return turn_about_momentum<T>(rate, c, h);
+  const T fastest = std::max(rate.norm(), rate_of<T>(inertia, c).norm());
+  if (!(h * fastest <= T(1024))) return turn_about_momentum<T>(rate, c, h);
   if (mid.residual <= enough * (T(1) + longer * mid.rate.norm())) return cayley<T>(longer * mid.rate);
   if (halvings == 0) return turn_about_momentum<T>(rate, c, h);
   return midpoint_turn_in_halves<T>(inertia, rate, a, c, h, halvings - 1);
@@ -146,20 +154,20 @@ Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const 
                                              const Vec<3, T>& c, T h, int halvings) {
   const Eigen::Quaternion<T> first = midpoint_turn_halving<T>(inertia, rate, a, c, h / 2, halvings);
   const Vec<3, T> momentum = first.conjugate() * c;
-  const T scale = T(1) / inertia.trace();
-  const Vec<3, T> then = inverse(Mat<3, 3, T>(scale * inertia)) * (scale * momentum);
+  const Vec<3, T> then = rate_of<T>(inertia, momentum);
   return unit(first * midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings));
 }
 
 }  // namespace inner
 
 /// cay(s h Ω̄) of `midpoint_rate` for a step of s h, as a quaternion. Where that finds no root, a body that turns by many
-/// radians in a step, the step is made of halves, of which each keeps what the rule keeps; at most 2¹⁰ of them. Where
-/// these would not do either (2¹⁴ radians in a step and more) the body turns about its momentum, which keeps as much.
+/// radians in a step, the step is made of halves, of which each keeps what the rule keeps; at most 2⁶ of them. Where
+/// these would not do either (2¹⁰ radians in a step and more, before or after its impulse) the body turns about its momentum,
+/// which keeps as much.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c,
                                    T h) {
-  return inner::midpoint_turn_halving<T>(inertia, rate, a, c, h, 10);
+  return inner::midpoint_turn_halving<T>(inertia, rate, a, c, h, 6);
 }
 
 }  // namespace delassus
