@@ -55,7 +55,10 @@ void check_soft_body(const SoftBody<M, Mesh>& body, const std::string& who) {
   }
 }
 
-inline double least_volume(const TetrahedralMesh& mesh, Index e) { return volume(mesh, e); }
+template <class Mesh>
+double least_volume(const Mesh& mesh, Index e) {
+  return volume(mesh, e);
+}
 
 /// Refuses a sound mesh whose elements have no volume left where it was put.
 template <class Mesh>

@@ -55,25 +55,27 @@ struct Corotational {
   double young = 1e5;  ///< Pa
   double poisson = 0.3;
 
-  IsotropicPoint at(const Mat3& F) const {
-    const Lame lame(young, poisson);
-    const SingularValues f = singular_values(F);
-    const double trace = (f.sigma[0] - 1) + (f.sigma[1] - 1) + (f.sigma[2] - 1),
-                 pressure = lame.lambda * trace;
+  /// Of the stretches σ.
+  static PrincipalState principal(const Lame& lame, const Vec3& sigma) {
+    const double trace = (sigma[0] - 1) + (sigma[1] - 1) + (sigma[2] - 1), pressure = lame.lambda * trace;
     PrincipalState s;
     s.energy = 0.5 * pressure * trace;
     for (int k = 0; k < 3; ++k) {
-      const double strain = f.sigma[k] - 1;
+      const double strain = sigma[k] - 1;
       s.energy += lame.mu * strain * strain;
       s.stress[k] = 2 * lame.mu * strain + pressure;
       for (int i = 0; i < 3; ++i) s.hessian(i, k) = lame.lambda + (i == k ? 2 * lame.mu : 0);
       s.flip[k] = 2 * lame.mu;
       // 2μ + 2 (λ tr − 2μ)/(σ_i + σ_j): the turn of R, which softens what is pressed. Of two stretches whose
       // sum vanishes R is not defined, and the mode is as stiff as one says.
-      const double sum = f.sigma[(k + 1) % 3] + f.sigma[(k + 2) % 3];
+      const double sum = sigma[(k + 1) % 3] + sigma[(k + 2) % 3];
       s.twist[k] = 2 * lame.mu + 2 * (pressure - 2 * lame.mu) / std::max(sum, 1e-3);
     }
-    return {s, f};
+    return s;
+  }
+  IsotropicPoint at(const Mat3& F) const {
+    const SingularValues f = singular_values(F);
+    return {principal(Lame(young, poisson), f.sigma), f};
   }
   /// The same at one F a lane.
   CorotationalLanes at(const LaneMatrix& F) const {

@@ -15,6 +15,13 @@ struct Lame {
   double lambda, mu;
   Lame(double young, double poisson)
       : lambda(young * poisson / ((1 + poisson) * (1 - 2 * poisson))), mu(young / (2 * (1 + poisson))) {}
+  /// Those of strains in a sheet whose faces are free: λ = E ν/(1 − ν²).
+  static Lame of_sheet(double young, double poisson) {
+    Lame lame(young, 0);
+    lame.lambda = young * poisson / ((1 + poisson) * (1 - poisson));
+    lame.mu = young / (2 * (1 + poisson));
+    return lame;
+  }
 };
 
 /// A hyperelastic material. `at(F)` is what it says at one deformation gradient F = ∂x/∂X: the energy per
@@ -38,8 +45,11 @@ template <ElasticMaterial M>
 void check_material(const M& material, const std::string& who) {
   DELASSUS_EXPECT(std::isfinite(material.young) && material.young > 0,
                   who + ": Young's modulus " + inner::text(material.young) + " must be finite and > 0 Pa");
-  DELASSUS_EXPECT(material.poisson > -1 && material.poisson < 0.5,
-                  who + ": Poisson's ratio " + inner::text(material.poisson) + " must lie in (-1, 0.5)");
+  constexpr bool may_keep_volume = requires { requires M::may_keep_volume; };
+  DELASSUS_EXPECT(
+      material.poisson > -1 && (material.poisson < 0.5 || (may_keep_volume && material.poisson == 0.5)),
+      who + ": Poisson's ratio " + inner::text(material.poisson) + " must lie in (-1, 0.5" +
+          (may_keep_volume ? "]" : ")"));
   if constexpr (requires { material.check(who); }) material.check(who);  // what is its own
 }
 

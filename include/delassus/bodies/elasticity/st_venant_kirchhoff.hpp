@@ -12,10 +12,8 @@ struct StVenantKirchhoff {
   double young = 1e5;  ///< Pa
   double poisson = 0.3;
 
-  IsotropicPoint at(const Mat3& F) const {
-    const Lame lame(young, poisson);
-    const SingularValues f = singular_values(F);
-    const Vec3& x = f.sigma;
+  /// Of the stretches x.
+  static PrincipalState principal(const Lame& lame, const Vec3& x) {
     Vec3 strain, second;  // E and S = 2μE + λ tr E
     for (int k = 0; k < 3; ++k) strain[k] = 0.5 * (x[k] - 1) * (x[k] + 1);
     const double trace = strain[0] + strain[1] + strain[2];
@@ -31,7 +29,11 @@ struct StVenantKirchhoff {
       s.flip[k] = mean + 0.5 * lame.mu * (x[i] + x[j]) * (x[i] + x[j]);
       s.twist[k] = mean + 0.5 * lame.mu * (x[i] - x[j]) * (x[i] - x[j]);
     }
-    return {s, f};
+    return s;
+  }
+  IsotropicPoint at(const Mat3& F) const {
+    const SingularValues f = singular_values(F);
+    return {principal(Lame(young, poisson), f.sigma), f};
   }
 };
 static_assert(ElasticMaterial<StVenantKirchhoff>);

@@ -25,14 +25,15 @@ concept LaneElement = requires(const M& material, const double* numbers, const d
   E::lanes_at(material, numbers, places);
 };
 
-/// Of elements E. Node k of the body is block `blocks[k]` of the set. Elements are evaluated in double,
-/// whatever T is.
+/// Of elements E, and of the ties between nodes that E has. Node k of the body is block `blocks[k]` of the
+/// set. Elements are evaluated in double, whatever T is.
 template <class E, class M, class T>
 class ElasticBody {
  public:
   using Mesh = typename E::Mesh;
   using Velocity = Vec<3, T>;
-  using Matrix = NodeMatrix<T, E::nodes>;
+  static constexpr bool has_ties = requires(const Mesh& mesh, const M& material) { E::ties(mesh, material); };
+  using Matrix = NodeMatrix<T, E::nodes, has_ties>;
   static constexpr bool has_constant_stiffness = requires { requires M::has_constant_stiffness; };
 
   ElasticBody() = default;
@@ -85,6 +86,10 @@ class ElasticBody {
     if constexpr (LaneElement<E, M>)
       for (; e < batched(); e += lane_count) add_lanes(e, x, makes_stiffness);
     for (; e < Index(elements_.size()); ++e) add_element(e, x, makes_stiffness);
+    for (const Tie& t : ties_) {
+      const Velocity f = (t.k * apart(t, x)).template cast<T>();
+      force_[t.i] += f, force_[t.j] -= f;
+    }
     if (makes_stiffness) matrix_.add_diagonal();
     has_stiffness_ = has_stiffness_ || is_implicit;
     if (!is_implicit) return;
@@ -115,6 +120,7 @@ class ElasticBody {
   double energy(const std::vector<Velocity>& x) const {
     double sum = 0;
     for (Index e = 0; e < Index(elements_.size()); ++e) sum += elements_[e].energy(material_, corners(e, x));
+    for (const Tie& t : ties_) sum += 0.5 * t.k * apart(t, x).squaredNorm();
     return sum;
   }
   /// N by node, at the positions of the last `factor`.
@@ -137,6 +143,7 @@ class ElasticBody {
 
   void memory(auto& archive) {
     archive(mesh_.points, mesh_.cells(), material_, blocks_);
+    if constexpr (requires { mesh_.thickness; }) archive(mesh_.thickness);
     if constexpr (std::remove_reference_t<decltype(archive)>::reads) prepare();
   }
 
@@ -149,11 +156,13 @@ class ElasticBody {
     const Lame lame(material_.young, material_.poisson);
     for (Index e = 0; e < Index(mesh_.cells().size()); ++e) elements_.emplace_back(mesh_, e, lame);
     order_corners();
+    ties_.clear();
+    if constexpr (has_ties) ties_ = E::ties(mesh_, material_);
     force_.assign(n, Velocity::Zero());
     work_ = product_ = force_;
     mass_.assign(n, T(0));
     is_held_.assign(n, 0);
-    if (n > 0) matrix_.analyse(Index(n), nodes_, batched(), mesh_.points);
+    if (n > 0) matrix_.analyse(Index(n), nodes_, batched(), ties_, mesh_.points);
     has_stiffness_ = is_factored_ = false;
   }
 
@@ -181,6 +190,10 @@ class ElasticBody {
     return at;
   }
 
+  /// x_j − x_i, m.
+  Vec3 apart(const Tie& t, const std::vector<Velocity>& x) const {
+    return x[blocks_[t.j]].template cast<double>() - x[blocks_[t.i]].template cast<double>();
+  }
   void add_element(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
     const auto& t = mesh_.cells()[e];
     const auto state = elements_[e].at(material_, corners(e, x));
@@ -238,6 +251,7 @@ class ElasticBody {
   std::vector<std::array<int, E::nodes>> order_;    ///< the corners of an element by ascending node
   std::vector<std::array<Index, E::nodes>> nodes_;  ///< these nodes
   std::vector<double> lane_numbers_;                ///< of whole lanes of elements
+  std::vector<Tie> ties_;
   std::vector<Velocity> force_;
   std::vector<T> mass_;
   std::vector<char> is_held_;

@@ -1,6 +1,7 @@
 /// The matrix of a deformable body: 3 × 3 blocks where two nodes share an element, in places found once.
 #pragma once
 
+#include <delassus/bodies/inner/tie.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/math/lanes.hpp>
@@ -28,9 +29,9 @@ inline constexpr auto pairs_of_nodes = [] {
 ///
 ///   K_ii = −Σ_j K_ij,
 ///
-/// and elements say nothing of the diagonal. The numbers of a block but its last lie in one line of the
-/// cache.
-template <class T, int corners>
+/// and elements say nothing of the diagonal. Ties are beside the elements, for good. The numbers of a block
+/// but its last lie in one line of the cache.
+template <class T, int corners, bool has_ties = false>
 class NodeMatrix {
  public:
   using Block = Mat<3, 3, T>;
@@ -39,18 +40,26 @@ class NodeMatrix {
 
   /// The first `batched` elements are going to be added lane_count at a time.
   void analyse(Index nodes, std::span<const std::array<Index, corners>> elements, Index batched,
-               std::span<const Vec3> positions) {
+               std::span<const Tie> ties, std::span<const Vec3> positions) {
     pairs_.clear();
     for (const auto& t : elements)
       for (const auto& [a, b] : pairs_of_nodes<corners>) pairs_.emplace_back(t[a], t[b]);
     const auto all = pairs_;
+    for (const Tie& tie : ties) pairs_.emplace_back(tie.i, tie.j);
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    const auto place_of = [&](const std::pair<Index, Index>& pair) {
+      return Index(std::lower_bound(pairs_.begin(), pairs_.end(), pair) - pairs_.begin());
+    };
     places_.resize(elements.size());
     for (std::size_t e = 0; e < elements.size(); ++e)
-      for (int k = 0; k < pairs_each; ++k)
-        places_[e][k] =
-            Index(std::lower_bound(pairs_.begin(), pairs_.end(), all[e * pairs_each + k]) - pairs_.begin());
+      for (int k = 0; k < pairs_each; ++k) places_[e][k] = place_of(all[e * pairs_each + k]);
+    ties_.assign(has_ties ? pairs_.size() : 0, T(0));
+    tie_sums_.assign(has_ties ? nodes : 0, T(0));
+    for (const Tie& tie : ties) {
+      ties_[place_of({tie.i, tie.j})] = T(tie.k);
+      tie_sums_[tie.i] += T(tie.k), tie_sums_[tie.j] += T(tie.k);
+    }
     mark_first(batched);
     eights_.assign(pairs_.size(), {});
     ninths_.assign(pairs_.size(), T(0));
@@ -98,6 +107,8 @@ class NodeMatrix {
       }
       const Block all = block(sum, ninth);
       diagonal_[i] = T(-0.5) * (all + all.transpose());
+      if constexpr (has_ties)
+        for (int k = 0; k < 3; ++k) diagonal_[i](k, k) += tie_sums_[i];
     }
   }
 
@@ -112,7 +123,7 @@ class NodeMatrix {
     }
   }
 
-  /// The pairs i < j that share an element.
+  /// The pairs i < j that share an element or a tie.
   std::span<const std::pair<Index, Index>> pairs() const { return pairs_; }
 
   /// mass_share M + stiffness_share K on the nodes that are not held, 1 on the others, for a factor of any
@@ -187,12 +198,18 @@ class NodeMatrix {
     K.data()[8] = ninth;
     return K;
   }
-  Block block(std::size_t p) const { return block(eights_[p], ninths_[p]); }
+  Block block(std::size_t p) const {
+    Block K = block(eights_[p], ninths_[p]);
+    if constexpr (has_ties)
+      for (int i = 0; i < 3; ++i) K(i, i) -= ties_[p];
+    return K;
+  }
 
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<std::array<Index, pairs_each>> places_;
   std::vector<Eight> eights_;  ///< of the pairs' blocks, by columns
   std::vector<T> ninths_;
+  std::vector<T> ties_, tie_sums_;  ///< k of each pair, and Σ k by node, with `has_ties`
   std::vector<Block> diagonal_;
   std::vector<Eight> sums_;  ///< Σ K_p by node, and its last number
   std::vector<T> ninth_sums_;

@@ -1,0 +1,123 @@
+/// Sheets of triangles: a surface with a thickness, its checks, and rectangles of it.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/geometry/inner/surface_topology.hpp>
+#include <delassus/geometry/outer_face.hpp>
+#include <delassus/geometry/triangle.hpp>
+#include <delassus/geometry/triangle_mesh.hpp>
+#include <delassus/math/linear.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace delassus {
+
+/// Points (m) of the middle surface and triangles of three points each, all turned to the same side; at most
+/// two have an edge. It may be open, and need not be flat.
+struct SheetMesh {
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 3>> triangles;
+  double thickness = 1e-3;  ///< m
+
+  static constexpr const char* cell = "triangle";
+  static constexpr bool has_two_sides = true;
+  const auto& cells() const { return triangles; }
+  auto& cells() { return triangles; }
+};
+
+/// m².
+inline double area(const SheetMesh& mesh, Index e) {
+  const auto& t = mesh.triangles[e];
+  const Vec3& o = mesh.points[t[0]];
+  return 0.5 * (mesh.points[t[1]] - o).cross(mesh.points[t[2]] - o).norm();
+}
+/// Of triangle e, m³.
+inline double volume(const SheetMesh& mesh, Index e) { return mesh.thickness * area(mesh, e); }
+
+/// Refuses a mesh that is no sheet: a thickness that is none, points that are not finite or in no triangle,
+/// numbers of points that are not there, triangles without area (height below 1e-6 of the longest edge),
+/// edges of three triangles or of two that are turned to different sides.
+inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
+  const Index count = Index(mesh.points.size());
+  DELASSUS_EXPECT(!mesh.triangles.empty(), who + ": the mesh has no triangle");
+  DELASSUS_EXPECT(std::isfinite(mesh.thickness) && mesh.thickness > 0,
+                  who + ": the thickness " + inner::text(mesh.thickness) + " m must be finite and > 0");
+  for (Index i = 0; i < count; ++i)
+    DELASSUS_EXPECT(is_finite(mesh.points[i]),
+                    who + ": point #" + std::to_string(i) + " of the mesh is not finite");
+  std::vector<char> is_used(count, 0);
+  for (Index e = 0; e < Index(mesh.triangles.size()); ++e) {
+    const auto& t = mesh.triangles[e];
+    const std::string name = who + ": triangle #" + std::to_string(e);
+    for (const Index i : t) {
+      DELASSUS_EXPECT(i >= 0 && i < count, name + " names point " + std::to_string(i) +
+                                               ", but the mesh has points 0 to " + std::to_string(count - 1));
+      is_used[i] = 1;
+    }
+    DELASSUS_EXPECT(!is_zero(inner::triangle_normal(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])),
+                    name + " has no area (height <= 1e-6 of its longest edge); drop it or join its points");
+  }
+  inner::SurfaceTopology(mesh.triangles, count).each_fault([&](const inner::SharedEdge& e, bool is_crowded) {
+    const std::string which =
+        who + ": triangles #" + std::to_string(e.first) + " and #" + std::to_string(e.second);
+    DELASSUS_EXPECT(!is_crowded, which + " share an edge with #" + std::to_string(e.third) +
+                                     "; at most two may, so make each sheet a body and tie them by joints");
+    inner::refuse(which + " are turned to different sides; exchange two points of one of them");
+  });
+  for (Index i = 0; i < count; ++i)
+    DELASSUS_EXPECT(is_used[i], who + ": point #" + std::to_string(i) +
+                                    " belongs to no triangle; take it out of the mesh");
+}
+
+/// Where corner k is in the coordinates by which an element weighs its corners.
+inline Vec3 place_of_corner(const SheetMesh&, int k) { return k > 0 ? unit_axis(k - 1) : Vec3(Vec3::Zero()); }
+
+inline const std::vector<std::array<Index, 3>>& surface(const SheetMesh& mesh) { return mesh.triangles; }
+/// Both sides: all triangles as they are, then all of them from behind.
+inline std::vector<OuterFace> outer_faces(const SheetMesh& mesh) {
+  std::vector<OuterFace> faces;
+  for (Index e = 0; e < Index(mesh.triangles.size()); ++e) faces.push_back({mesh.triangles[e], e});
+  for (Index e = 0; e < Index(mesh.triangles.size()); ++e) {
+    const auto& t = mesh.triangles[e];
+    faces.push_back({{t[0], t[2], t[1]}, e});
+  }
+  return faces;
+}
+
+/// The rectangle [0, width] × [0, height] (m) of the plane z = 0 in cells[0] × cells[1] cells of two
+/// triangles each, turned to +z. Point (i, j) has number i + (cells[0] + 1) j.
+inline SheetMesh sheet(double width, double height, const std::array<Index, 2>& cells, double thickness) {
+  const auto sizes = inner::text(width) + " × " + inner::text(height);
+  DELASSUS_EXPECT(std::isfinite(width) && width > 0 && std::isfinite(height) && height > 0,
+                  "sheet: both sizes of " + sizes + " m must be finite and > 0");
+  for (const Index n : cells)
+    DELASSUS_EXPECT(n > 0, "sheet: the number of cells " + std::to_string(n) + " must be > 0");
+  const double count = (cells[0] + 1.0) * (cells[1] + 1.0);
+  DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
+                  "sheet: " + inner::text(count) + " points are more than an index counts");
+  SheetMesh mesh{{}, {}, thickness};
+  const Index row = cells[0] + 1;
+  for (Index j = 0; j <= cells[1]; ++j)
+    for (Index i = 0; i <= cells[0]; ++i)
+      mesh.points.push_back({width * i / cells[0], height * j / cells[1], 0});
+  for (Index j = 0; j < cells[1]; ++j)
+    for (Index i = 0; i < cells[0]; ++i) {
+      const Index p = i + row * j;
+      mesh.triangles.push_back({p, p + 1, p + row + 1});
+      mesh.triangles.push_back({p, p + row + 1, p + row});
+    }
+  return mesh;
+}
+/// A sheet of the triangles of a surface, as `read_obj` gives it.
+inline SheetMesh sheet(const TriangleMesh& surface, double thickness) {
+  return {{surface.vertices().begin(), surface.vertices().end()},
+          {surface.triangles().begin(), surface.triangles().end()},
+          thickness};
+}
+
+}  // namespace delassus
