@@ -8,10 +8,11 @@
 
 namespace delassus {
 
-/// A triangle of the outer surface, its normal outwards, and the element behind it.
+/// A triangle of the outer surface, its normal outwards, and the element behind it. A sheet has two sides.
 struct OuterFace {
   std::array<Index, 3> triangle;
   Index element;
+  bool is_back = false;  ///< of the second side
 };
 
 inline std::vector<std::array<Index, 3>> triangles_of(const std::vector<OuterFace>& faces) {

@@ -25,7 +25,6 @@ struct SheetMesh {
   double thickness = 1e-3;  ///< m
 
   static constexpr const char* cell = "triangle";
-  static constexpr bool has_two_sides = true;
   const auto& cells() const { return triangles; }
   auto& cells() { return triangles; }
 };
@@ -81,10 +80,10 @@ inline const std::vector<std::array<Index, 3>>& surface(const SheetMesh& mesh) {
 /// Both sides: all triangles as they are, then all of them from behind.
 inline std::vector<OuterFace> outer_faces(const SheetMesh& mesh) {
   std::vector<OuterFace> faces;
-  for (Index e = 0; e < Index(mesh.triangles.size()); ++e) faces.push_back({mesh.triangles[e], e});
+  for (Index e = 0; e < Index(mesh.triangles.size()); ++e) faces.push_back({mesh.triangles[e], e, false});
   for (Index e = 0; e < Index(mesh.triangles.size()); ++e) {
     const auto& t = mesh.triangles[e];
-    faces.push_back({{t[0], t[2], t[1]}, e});
+    faces.push_back({{t[0], t[2], t[1]}, e, true});
   }
   return faces;
 }

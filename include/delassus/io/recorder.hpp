@@ -70,10 +70,10 @@ class Recorder {
     for (const auto& t : surface(body.mesh()))
       for (int k = 0; k < 3; ++k) {
         const Index a = t[k], b = t[(k + 1) % 3];
-        if (a < b)
-          edges_.push_back({set, body.blocks()[a], body.blocks()[b]});  // the neighbour has it from b to a
+        edges_.push_back({set, body.blocks()[std::min(a, b)], body.blocks()[std::max(a, b)]});
       }
     std::sort(edges_.begin() + std::ptrdiff_t(first), edges_.end());
+    edges_.erase(std::unique(edges_.begin() + std::ptrdiff_t(first), edges_.end()), edges_.end());
   }
 
   /// A kinematic body has no mass that answers, and moves.

@@ -16,25 +16,29 @@
 namespace delassus::inner {
 
 /// Made once a body, followed step by step: positions, normals and boxes, in the world. A triangle without
-/// area has no normal and speaks for nothing.
+/// area has no normal and speaks for nothing. The sides of a sheet are apart but for their nodes: each node is
+/// a vertex of either.
 class SoftSurface {
  public:
   template <class Mesh>
   SoftSurface(Index set, Index body, std::uint32_t number, const Mesh& mesh, std::span<const Index> blocks)
       : set_(set), body_(body), number_(number) {
-    std::vector<Index> vertex(mesh.points.size(), -1);
+    const Index nodes = Index(mesh.points.size());
+    std::vector<Index> vertex(2 * nodes, -1);  // of the front, of the back
     for (const OuterFace& face : outer_faces(mesh)) {
       std::array<Index, 3> corners{};
       std::array<Vec3, 3> places;
       const auto& element = mesh.cells()[face.element];
       for (int k = 0; k < 3; ++k) {
         const Index node = face.triangle[k];
-        if (vertex[node] < 0) {
-          vertex[node] = Index(block_.size());
+        Index& here = vertex[face.is_back ? nodes + node : node];
+        if (here < 0) {
+          here = Index(block_.size());
+          front_.push_back(face.is_back ? vertex[node] : here);
           block_.push_back(blocks[node]);
           rest_.push_back(mesh.points[node]);
         }
-        corners[k] = vertex[node];
+        corners[k] = here;
         const int corner = int(std::find(element.begin(), element.end(), node) - element.begin());
         places[k] = place_of_corner(mesh, corner);
       }
@@ -106,6 +110,8 @@ class SoftSurface {
     return {vertices_[a], vertices_[b], vertices_[c]};
   }
   const Vec3& normal(Index t) const { return normals_[t]; }
+  /// The vertex of the front that has the same node.
+  Index front(Index v) const { return front_[v]; }
   /// The sum of the normals around a vertex.
   const Vec3& outward_at(Index v) const { return outward_[v]; }
   Index neighbour(Index t, int k) const { return topology_.neighbour(t, k); }
@@ -207,6 +213,7 @@ class SoftSurface {
   Index set_, body_;
   std::uint32_t number_;                       ///< of the body
   std::vector<Index> block_;                   ///< of each vertex
+  std::vector<Index> front_;                   ///< of each vertex
   std::vector<std::array<Index, 3>> corners_;  ///< vertices of each triangle
   std::vector<std::array<Vec3, 3>> places_;    ///< where they are in the element behind
   std::vector<char> sums_to_one_;              ///< across from corner 0 of a tetrahedron

@@ -96,6 +96,7 @@ class SurfaceCrossing {
   /// Whether two vertices of one surface are one or share an edge: their features are neighbours and do not
   /// meet.
   bool is_joined(Index v, Index w) const {
+    if constexpr (requires { a_.surface.front(v); }) v = a_.surface.front(v), w = a_.surface.front(w);
     bool is_one = v == w;
     a_.surface.each_around(v, [&](Index u) { is_one = is_one || u == w; });
     return is_one;

@@ -33,6 +33,8 @@ struct ComplianceKeys {
   static ComplianceKeys of(const auto& body) {
     ComplianceKeys keys;
     keys.mesh = key_of(body.mesh().cells(), key_of(body.mesh().points));
+    if constexpr (requires { body.mesh().thickness; })
+      keys.mesh = key_of(keys.mesh, &body.mesh().thickness, sizeof(double));
     const auto& material = body.material();
     keys.material = key_of(key_of(body.mass()), &material, sizeof material);
     keys.held = key_of(body.held());
