@@ -237,6 +237,7 @@ struct WithSurfaces<Backend>::Pairing {
     const CollisionSettings settings = all.settings();
     all.pairs_.name_apart();
     for (const inner::FeatureContact& c : all.pairs_.found) {
+      if (c.point.gap < 0 && is_other_side(s, o, c.point.name)) continue;
       const Vec3 &n = c.normal, x = s.shares(c.triangle_a, c.point.a),
                  y = o ? o->shares(c.triangle_b, c.point.b) : Vec3(Vec3::Zero());
       double of_a = s.radius(), of_b = o ? o->radius() : 0;
@@ -276,6 +277,11 @@ struct WithSurfaces<Backend>::Pairing {
     }
   }
 
+  /// Behind a side of a sheet is in front of the other, which speaks for it.
+  static bool is_other_side(const inner::SoftSurface& s, const inner::SoftSurface* o, std::uint32_t name) {
+    const bool is_on_a = s.is_sheet(), is_on_b = o && o->is_sheet();
+    return inner::is_vertex_of_a(name) ? is_on_b : inner::is_vertex_of_b(name) ? is_on_a : is_on_a && is_on_b;
+  }
   static Vec3 speed_of(const Collider& c, const Vec3& x) {
     return c.velocity + c.angular_velocity.cross(Vec3(x - c.pose.position));
   }

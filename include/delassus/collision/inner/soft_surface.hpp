@@ -44,6 +44,7 @@ class SoftSurface {
       }
       corners_.push_back(corners);
       places_.push_back(places);
+      is_sheet_ = is_sheet_ || face.is_back;
       sums_to_one_.push_back(has_no_first_share<Mesh>(places) ? 1 : 0);
       element_.push_back(face.element);
       base_.push_back(blocks[element[0]]);
@@ -89,6 +90,8 @@ class SoftSurface {
     tree_.fit([&](Index t) { return bounds_of(t); });
   }
 
+  /// It has two sides and nothing between them.
+  bool is_sheet() const { return is_sheet_; }
   bool is_sound() const { return is_sound_; }
   bool is_movable() const { return is_movable_; }
   double radius() const { return radius_; }            ///< its thickness on the outer side, m
@@ -223,7 +226,7 @@ class SoftSurface {
   std::vector<char> moves_;
   FlatTree tree_;
   double radius_ = 0, top_speed_ = 0, inner_speed_ = 0;
-  bool is_sound_ = true, is_movable_ = true;
+  bool is_sheet_ = false, is_sound_ = true, is_movable_ = true;
 };
 
 }  // namespace delassus::inner

@@ -27,6 +27,8 @@ struct FeatureContact {
 inline std::uint32_t vertex_name(bool is_of_a, Index v) {
   return (is_of_a ? 1u : 2u) << 30 | (std::uint32_t(v) & 0x3fffffffu);
 }
+inline bool is_vertex_of_a(std::uint32_t name) { return name >> 30 == 1; }
+inline bool is_vertex_of_b(std::uint32_t name) { return name >> 30 == 2; }
 inline std::uint32_t edges_name(Index t, int k, Index s, int l) {
   const std::uint32_t e = 3u * std::uint32_t(t) + std::uint32_t(k),
                       f = 3u * std::uint32_t(s) + std::uint32_t(l);
