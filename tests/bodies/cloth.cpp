@@ -1,7 +1,5 @@
 #include <delassus/bodies/cloth.hpp>
 
-#include <delassus/io/obj.hpp>
-
 #include <cmath>
 #include <string>
 

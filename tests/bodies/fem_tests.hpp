@@ -1,5 +1,4 @@
-/// What every element of a deformable body must pass, whatever its shape: for the tests of the three sets of
-/// FEM.
+/// What every element of a deformable body must pass, whatever its shape: for the tests of the sets of FEM.
 #pragma once
 
 #include <cmath>

@@ -54,6 +54,9 @@ TEST_CASE("what is no sheet is refused by its number") {
   mesh = good;
   std::swap(mesh.triangles[1][1], mesh.triangles[1][2]);
   CHECK(says(refusal(mesh), "are turned to different sides"));
+  const SheetMesh same = sheet(TriangleMesh(good.points, good.triangles), 1e-3);
+  CHECK(same.points == good.points);
+  CHECK(same.triangles == good.triangles);
   CHECK_THROWS_AS(sheet(1, 0, {2, 2}, 1e-3), InvalidArgument);
   CHECK_THROWS_AS(sheet(1, 1, {2, 0}, 1e-3), InvalidArgument);
 }
