@@ -29,9 +29,9 @@ using Loop = decltype(make_loop(0));
 void drape(Loop& loop) {
   bodies<RigidBodies>(loop.world()).add_fixed(Sphere{0.3});
   bodies<Sheets>(loop.world())
-      .add({.mesh = square(10, 1e-3),
-            .elasticity = {.young = 1e5},
-            .density = 200,
+      .add({.mesh = square(10, 2e-3),
+            .elasticity = {.young = 5e4},
+            .density = 100,
             .position = {-0.52, -0.47, 0.33},
             .contact_radius = 0.01});
 }
@@ -101,6 +101,33 @@ TEST_CASE("a ball rests on a sheet that is held at its border, whichever of its 
     CHECK(std::abs(carried / (2 * 9.81) - 1) < 1e-2);  // damped for 3 s
   }
   CHECK(std::abs(height[0] - height[1]) < 1e-3);
+}
+
+TEST_CASE("of two sheets nearer than their thickness each knows on which side of the other it is") {
+  Loop loop = make_loop(0);
+  auto& set = bodies<Sheets>(loop.world());
+  set.gravity.setZero();
+  const auto lower = set.add({.mesh = square(2, 1e-3), .contact_radius = 0.01});
+  set.add({.mesh = square(2, 1e-3),
+           .position = {0.1, 0.13, 0.001},  // of the 0.02 m that they are thick together
+           .contact_radius = 0.01,
+           .group = 8,
+           .collides_with = ~8u});
+  const Index nodes = set.node_count(lower);
+  loop.step(0.01);
+  int between = 0;
+  for (const ContactResult& c : loop.contacts()) {
+    const double up = (c.record.a.block < nodes ? 1 : -1) * c.record.normal[2];
+    if (std::abs(up) < 0.5) continue;  // borders beside each other
+    ++between;
+    CHECK(up > 0);
+    CHECK(std::abs(c.record.gap + 0.019) < 1e-12);
+  }
+  CHECK(between > 4);
+  double below = 0, above = 0;
+  for (Index b = 0; b < set.blocks(); ++b) (b < nodes ? below : above) += set.velocity()[b][2] * set.mass(b);
+  CHECK(above > 0);
+  CHECK(std::abs(above + below) < 1e-12);
 }
 
 TEST_CASE("a sheet on a slope stays up to tan(theta) = mu, and slides as a block does beyond") {

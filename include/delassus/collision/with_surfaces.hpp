@@ -279,8 +279,8 @@ struct WithSurfaces<Backend>::Pairing {
 
   /// Behind a side of a sheet is in front of the other, which speaks for it.
   static bool is_other_side(const inner::SoftSurface& s, const inner::SoftSurface* o, std::uint32_t name) {
-    const bool is_on_a = s.is_sheet(), is_on_b = o && o->is_sheet();
-    return inner::is_vertex_of_a(name) ? is_on_b : inner::is_vertex_of_b(name) ? is_on_a : is_on_a && is_on_b;
+    return (inner::is_vertex_of_a(name) || s.is_sheet()) &&
+           (inner::is_vertex_of_b(name) || (o && o->is_sheet()));
   }
   static Vec3 speed_of(const Collider& c, const Vec3& x) {
     return c.velocity + c.angular_velocity.cross(Vec3(x - c.pose.position));

@@ -21,11 +21,6 @@ namespace delassus {
 /// A law names its derivatives by `principal(lame, σ)`: `Corotational`, `StVenantKirchhoff`.
 template <ElasticMaterial M>
 struct PlaneStress {
-  static_assert(
-      requires(const Lame& lame, const Vec3& sigma) { M::principal(lame, sigma); },
-      "delassus: a sheet needs a law of two constants that turns with it; write Corotational or "
-      "StVenantKirchhoff");
-
   double young = M{}.young;  ///< Pa
   double poisson = M{}.poisson;
   double bending = 1;  ///< of the stiffness that a solid sheet has, E t³/(12(1 − ν²)); what is woven has less
@@ -39,8 +34,11 @@ struct PlaneStress {
   IsotropicPoint at(const Mat3& F) const {
     const SingularValues f = stretches(F);
     PrincipalState s;
-    if constexpr (requires { M::principal(Lame(young, poisson), f.sigma); })
-      s = M::principal(Lame::of_sheet(young, poisson), f.sigma);
+    constexpr bool is_of_two = requires(const Lame& lame, const Vec3& sigma) { M::principal(lame, sigma); };
+    static_assert(is_of_two,
+                  "delassus: a sheet needs a law of two constants that turns with it; write Corotational or "
+                  "StVenantKirchhoff");
+    if constexpr (is_of_two) s = M::principal(Lame::of_sheet(young, poisson), f.sigma);
     s.stress[2] = 0;
     for (int i = 0; i < 2; ++i) {
       s.hessian(2, i) = s.hessian(i, 2) = 0;
