@@ -20,7 +20,7 @@ namespace delassus {
 
 /// Bodies as they are when the first step ends; frames at most `frames_per_second`; a sample of every series
 /// a step. A Stopwatch listed before it gives the stage times. A joint is drawn from the centre of one body
-/// through its anchors to the centre of the other, a body of tetrahedra as the edges of its surface.
+/// through its anchors to the centre of the other, a soft body as the edges of its surface.
 class Recorder {
  public:
   using plays = role::Listener;
