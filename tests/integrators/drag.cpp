@@ -1,5 +1,8 @@
 // Thrown and falling points in air: forces that depend on the velocity, in a body set of the test's own.
 #include <delassus/delassus.hpp>
+#include <delassus/loop/bdf2.hpp>
+#include <delassus/loop/generalized_alpha.hpp>
+#include <delassus/loop/newmark.hpp>
 #include <delassus/loop/rattle.hpp>
 #include <delassus/loop/runge_kutta4.hpp>
 
@@ -79,6 +82,9 @@ TEST_CASE("points in air are met by every integrator with its order") {
   check_orders<ImplicitEuler>(1);
   check_orders<ImplicitMidpoint>(2);
   check_orders<Rattle>(2);
+  check_orders<GeneralizedAlpha>(2);
+  check_orders<Newmark>(2);
+  check_orders<Bdf2>(2);
 }
 
 // Orders from a tenth of a second on, above rounding; 1e-10 is asked for, of the way.

@@ -13,9 +13,9 @@ using namespace delassus;
 inline constexpr double omega = 2 * std::numbers::pi;
 
 /// Unit mass, stiffness ω², at (1, 0, 0), at rest, no gravity.
-template <class Integrator>
-auto make(Integrator integrator, double rate) {
-  AnimationLoop loop{World{Particles{}}, std::move(integrator)};
+template <class Integrator, class... Scheme>
+auto make(Integrator integrator, double rate, Scheme... scheme) {
+  AnimationLoop loop{World{Particles{}}, std::move(integrator), scheme...};
   auto& set = bodies<Particles>(loop.world());
   set.gravity.setZero();
   const auto mass = set.add({.position = {1, 0, 0}, .mass = 1.0});
