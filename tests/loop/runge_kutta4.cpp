@@ -56,6 +56,7 @@ TEST_CASE("the impulse of a joint under Runge-Kutta is the force times the step"
   const double h = 1e-4;
   loop.step(h);
   CHECK(loop.impulse(pivot).norm() / h == Approx(0.25 * 9.81).epsilon(1e-6));
+  CHECK(largest_force(loop, pivot, h) == Approx(2.5 * 9.81).epsilon(1e-6));
 }
 
 TEST_CASE("joints that contradict each other are told, and leave all bodies as they were under Runge-Kutta") {

@@ -63,6 +63,17 @@ auto rod(Policies... policies) {
   return std::pair{std::move(loop), pivot};
 }
 
+/// The largest force of its pivot (N) within 0.6 s, in which it passes its lowest place.
+template <class Loop, class Pivot>
+double largest_force(Loop& loop, const Pivot& pivot, double h) {
+  double most = 0;
+  for (long n = std::lround(0.6 / h); n > 0; --n) {
+    loop.step(h);
+    most = std::max(most, loop.impulse(pivot).norm() / h);
+  }
+  return most;
+}
+
 /// Where the last body of the last set is.
 template <class Loop>
 Vec3 end_of(const Loop& loop) {

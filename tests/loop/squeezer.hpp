@@ -3,6 +3,8 @@
 
 #include <delassus/delassus.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace squeezer {
@@ -101,6 +103,37 @@ auto make(Policies... policies) {
       .a = at(b3, hook), .b = world_anchor({xc, yc, 0}), .length = 7785e-5, .stiffness = 4530});
   loop.add(Moment::Item{world_anchor(Vec3::Zero()), anchor(set, b1), 0.033});
   return loop;
+}
+
+/// The angles, followed over the turns of the crank: each body's own turn since the start.
+struct Turns {
+  std::array<double, 7> turned{}, last{};
+
+  template <class Loop>
+  void follow(const Loop& loop) {
+    for (int b = 0; b < 7; ++b) {
+      const Mat3 R = loop.world().template set<0>().pose(b).rotation;
+      const double now = std::atan2(R(1, 0), R(0, 0));
+      turned[std::size_t(b)] += std::remainder(now - last[std::size_t(b)], 2 * EIGEN_PI);
+      last[std::size_t(b)] = now;
+    }
+  }
+  Angles angles() const {
+    const Angles& q = at_start;
+    const double beta = q.beta + turned[0], delta = q.delta + turned[4], epsilon = q.epsilon + turned[6];
+    return {beta,
+            q.beta + q.theta + turned[1] - beta,
+            q.gamma + turned[2],
+            q.phi + q.delta + turned[3] - delta,
+            delta,
+            q.omega + q.epsilon + turned[5] - epsilon,
+            epsilon};
+  }
+};
+inline double largest_difference(const Angles& a, const Angles& b) {
+  return std::max({std::abs(a.beta - b.beta), std::abs(a.theta - b.theta), std::abs(a.gamma - b.gamma),
+                   std::abs(a.phi - b.phi), std::abs(a.delta - b.delta), std::abs(a.omega - b.omega),
+                   std::abs(a.epsilon - b.epsilon)});
 }
 
 /// How far the rod is from where it should be at 30 ms, m.
