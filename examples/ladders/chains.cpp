@@ -32,8 +32,9 @@ struct HeavyChain {
   double end;
 };
 
-constexpr HeavyChain chains[] = {{10, 1},  {10, 100},  {10, 1e4},  {40, 1},    {40, 100},   {40, 1e4},
-                                 {100, 1}, {100, 100}, {100, 1e4}, {160, 1e4}, {1000, 100}, {1000, 1e4}};
+constexpr HeavyChain chains[] = {{10, 1},    {10, 100},  {10, 1e4},  {40, 1},     {40, 100},
+                                 {40, 1e4},  {100, 1},   {100, 100}, {100, 1e4},  {160, 1},
+                                 {160, 100}, {160, 1e4}, {1000, 1},  {1000, 100}, {1000, 1e4}};
 
 template <class... Policies>
 void climb_chain(Ladder& ladder, double h, int count, const Policies&... policies) {
@@ -59,7 +60,7 @@ void heavy_chain_newton(Ladder& ladder) { climb_chain(ladder, frame, 9, Proximal
 void heavy_chain_fine(Ladder& ladder) {
   climb_chain(ladder, frame / 16, 9, ProximalNewton{}, WholeViolation{});
 }
-void heavy_chain_midpoint(Ladder& ladder) { climb_chain(ladder, frame, 12, NewtonMidpoint{}); }
+void heavy_chain_midpoint(Ladder& ladder) { climb_chain(ladder, frame, 15, NewtonMidpoint{}); }
 
 // Forty links that start twice as far apart as their joints allow: what the joints pull together must not
 // become a shot.
