@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "catch.hpp"
@@ -255,6 +256,82 @@ TEST_CASE(
     CHECK(over <= 0.1 * EIGEN_PI / 180);
     CHECK(gained <= 0);
   }
+}
+
+namespace {
+
+/// Without gravity, for what turns about three axes.
+auto free_joints() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, Hinge{}, Universal{}, Limit<Turn>{}},
+                     AcceleratedGaussSeidel{.tolerance = 1e-10, .max_iterations = 5000}, WholeViolation{}};
+  bodies<RigidBodies>(loop.world()).gravity.setZero();
+  return loop;
+}
+/// 300 steps, each rounded eight times.
+constexpr double rounds = 300 * 8 * 0x1p-53;
+
+}  // namespace
+
+// HC-34: b_z = −a_z at the start, or passed at `off` rad after 30 steps. There the twist is none, and beside
+// it runs through half a turn within `off` of swing: the stop is passed by that, `position` says so, and
+// takes speed only.
+TEST_CASE(
+    "a ball joint with a stop on its twist swings through 180 degrees, gains nothing and holds its stop "
+    "again") {
+  for (const auto& [off, swung] : std::vector<std::pair<double, double>>{
+           {0, 0}, {1e-9, 0}, {1e-3, 0}, {0.3, 0}, {0, EIGEN_PI}, {1e-9, EIGEN_PI}})
+    for (const double twist : {0.0, 1.0, -3.0}) {
+      auto loop = free_joints();
+      auto& set = bodies<RigidBodies>(loop.world());
+      const double step = 1.0 / 60, swing = EIGEN_PI / (30 * step);
+      const auto ball = set.add({.orientation = exponential<double>({swung, 0, 0}),
+                                 .angular_velocity = {swing, off * swing, twist},
+                                 .mass = 1.0,
+                                 .inertia = Mat3(inertia * Mat3::Identity())});
+      const Anchor ground = world_anchor(Vec3::Zero()), end = anchor(set, ball);
+      loop.add(BallJoint::Item{ground, end});
+      const auto stop = loop.add(Limit<Turn>::Item{.a = ground, .b = end, .lower = -0.5, .upper = 0.5});
+      const double start = kinetic_energy(set);
+      CAPTURE(off, swung, twist);
+      for (int n = 0; n < 300; ++n) {
+        REQUIRE(loop.step(step).status == Status::converged);
+        REQUIRE(std::isfinite(loop.item(stop).position));
+        REQUIRE(kinetic_energy(set) <= start * (1 + rounds));
+      }
+      set.place(ball, Vec3::Zero(), Quat::Identity());
+      set.set_velocity(ball, Vec3::Zero(), {0.5, 0, 2});
+      loop.item(stop).position = 0;
+      double most = 0;
+      for (int n = 0; n < 30; ++n) {
+        loop.step(step);
+        most = std::max(most, loop.item(stop).position);
+      }
+      CHECK(std::abs(most - 0.5) <= 0.1 * EIGEN_PI / 180);
+    }
+}
+
+// The shaft b bends about its own arm until it lies along the arm of a, after 30 steps: a cannot turn there.
+// It comes there to rounding and goes on.
+TEST_CASE("a universal joint bends through 90 degrees to rounding, gains nothing and goes on") {
+  auto loop = free_joints();
+  auto& set = bodies<RigidBodies>(loop.world());
+  const double step = 1.0 / 60, bend = EIGEN_PI / 2 / (30 * step);
+  const auto a = set.add({.mass = 1.0, .shape = Box{0.1, 0.1, 1}});
+  const auto b = set.add({.angular_velocity = {0, bend, 0}, .mass = 1.0, .shape = Box{0.1, 0.1, 0.6}});
+  loop.add(Hinge::Item{world_anchor(Vec3::Zero()), anchor(set, a)});
+  loop.add(Universal::Item{anchor(set, a), anchor(set, b)});
+  const double start = kinetic_energy(set);
+  double nearest = 1;
+  for (int n = 0; n < 300; ++n) {
+    const StepReport report = loop.step(step);
+    REQUIRE(report.status == Status::converged);
+    REQUIRE(report.max_joint_violation <= rounds);
+    REQUIRE(std::abs(kinetic_energy(set) / start - 1) <= rounds);
+    nearest =
+        std::min(nearest, (set.orientation(a) * Vec3(1, 0, 0) - set.orientation(b) * Vec3(0, 0, 1)).norm());
+  }
+  CHECK(nearest <= 1e-3 * bend * step);
+  CHECK((set.angular_velocity(b) - Vec3(0, bend, 0)).norm() <= 1e-9);
 }
 
 }  // namespace axes_tests
