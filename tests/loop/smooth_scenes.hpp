@@ -3,7 +3,9 @@
 
 #include <delassus/delassus.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -21,6 +23,28 @@ auto pendulum(Policies... policies) {
   return loop;
 }
 inline Vec3 pendulum_at_ten() { return {0.275087462576117, 0, -0.961419205099125}; }
+
+/// sn, cn and dn of u by Gauss' descending transformation. Source: docs/references.md, [DLMF], 22.20(ii).
+inline std::array<double, 3> jacobi(double u, double k) {
+  std::array<double, 12> a{1}, c{k};
+  double b = std::sqrt(1 - k * k);
+  int n = 0;
+  for (; n < 11 && std::abs(c[std::size_t(n)]) > 1e-17; ++n) {
+    a[std::size_t(n + 1)] = 0.5 * (a[std::size_t(n)] + b);
+    c[std::size_t(n + 1)] = 0.5 * (a[std::size_t(n)] - b);
+    b = std::sqrt(a[std::size_t(n)] * b);
+  }
+  double phi = std::ldexp(a[std::size_t(n)] * u, n);
+  for (; n > 0; --n) phi = 0.5 * (phi + std::asin(c[std::size_t(n)] / a[std::size_t(n)] * std::sin(phi)));
+  return {std::sin(phi), std::cos(phi), std::sqrt(1 - k * k * std::sin(phi) * std::sin(phi))};
+}
+
+/// Where the bob of `pendulum` is: sin(θ/2) = k cn/dn of √g t, k = sin 45°.
+inline Vec3 pendulum_at(double t) {
+  const auto [sn, cn, dn] = jacobi(std::sqrt(9.81) * t, std::sqrt(0.5));
+  const double half = std::sqrt(0.5) * cn / dn;
+  return {2 * half * std::sqrt(1 - half * half), 0, 2 * half * half - 1};
+}
 
 /// AC-10: two of them, level.
 template <class... Policies>
