@@ -1,4 +1,4 @@
-// expect: delassus: a compliance goes around a stabilisation, and its number comes second: WithCompliance{Baumgarte{}, 1e-7}
+// expect: delassus: WithCompliance goes around a stabilisation, once, and its number comes second: WithCompliance{Baumgarte{}, 1e-7}
 #include <delassus/delassus.hpp>
 #include <delassus/stabilisation/with_compliance.hpp>
 

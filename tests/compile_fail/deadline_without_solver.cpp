@@ -1,4 +1,4 @@
-// expect: delassus: a deadline goes around a solver, and the seconds come second: WithDeadline{AcceleratedGaussSeidel{}, 1e-3}
+// expect: delassus: WithDeadline and MinimumNorm go around a solver, each at most once, and numbers come second: WithDeadline{MinimumNorm{AcceleratedGaussSeidel{}}, 1e-3}
 #include <delassus/delassus.hpp>
 
 using namespace delassus;

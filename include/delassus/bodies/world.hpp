@@ -23,12 +23,13 @@ struct Tagged : Set {
 
 namespace inner {
 
-/// The scalar of the first set; a World without one is refused by its loop.
+/// The scalar of the first set; a World without one, or of something else, is refused by its loop.
 template <class... Sets>
 struct scalar_of {
   using type = double;
 };
 template <class First, class... Rest>
+  requires requires { typename First::Scalar; }
 struct scalar_of<First, Rest...> {
   using type = typename First::Scalar;
 };

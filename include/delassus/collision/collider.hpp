@@ -2,10 +2,14 @@
 #pragma once
 
 #include <delassus/core/index.hpp>
+#include <delassus/core/roles.hpp>
 #include <delassus/geometry/shape.hpp>
 #include <delassus/math/pose.hpp>
 
+#include <concepts>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace delassus {
 
@@ -49,5 +53,12 @@ struct ContactPoint {
 struct CollisionReport {
   Index pairs = 0, queries = 0, rejects = 0, points = 0;
 };
+
+/// Answers with the contact points of this step, sorted by pair and feature.
+template <class C>
+concept CollisionBackend = Plays<C, role::Collision> &&
+    requires(C backend, std::span<const Collider> colliders, double h, std::vector<ContactPoint>& points) {
+      { backend.detect(colliders, h, points) } -> std::same_as<CollisionReport>;
+    };
 
 }  // namespace delassus

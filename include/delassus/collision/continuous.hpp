@@ -33,14 +33,10 @@ namespace delassus {
 /// the same reason a ball within a fast body is held by its middle, also when the body touches already: then
 /// at once, and the next point that its turn would bring through the plane of that contact is held as well.
 /// Convex shapes and half-spaces only.
-template <class Backend>
+template <class Backend = inner::Absent>
 struct Continuous {
   using plays = role::Collision;
-  static_assert(
-      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; } &&
-          !requires { Backend::has_surfaces; },
-      "delassus: WithFilter, WithCompounds and WithSurfaces go around Continuous; write "
-      "WithCompounds{Continuous{...}}");
+  static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::continuous;
 
   Backend backend{};
 
@@ -280,6 +276,14 @@ struct Continuous {
   std::vector<Index> fast_;
   std::vector<bool> is_fast_;
   Patch patch_;
+};
+
+/// Around what is no backend, or in another order; the loop's checks say so.
+template <class Backend>
+  requires(!inner::Detects<Backend, inner::layer::continuous>)
+struct Continuous<Backend> : inner::Hollow {
+  using plays = role::Collision;
+  using inner::Hollow::Hollow;
 };
 
 template <class Backend>

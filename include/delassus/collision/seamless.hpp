@@ -24,13 +24,10 @@ namespace delassus {
 ///
 /// A lip lower than `level` is passed, and closed as an overlap where it is stood on. Source: none; the idea of
 /// leaving out features that lie in the plane of another contact is common in games' engines.
-template <class Backend>
+template <class Backend = inner::Absent>
 struct Seamless {
   using plays = role::Collision;
-  static_assert(
-      !requires { Backend::asks_for_joints; } && !requires { Backend::splits_bodies; } &&
-          !requires { Backend::has_surfaces; },
-      "delassus: WithFilter, WithCompounds and WithSurfaces go around Seamless; write WithCompounds{Seamless{...}}");
+  static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::seamless;
 
   Backend backend{};
   double level = 1e-3;  ///< m
@@ -124,6 +121,14 @@ struct Seamless {
 
   std::vector<Side> sides_;
   std::vector<char> is_seam_;
+};
+
+/// Around what is no backend, or in another order; the loop's checks say so.
+template <class Backend>
+  requires(!inner::Detects<Backend, inner::layer::seamless>)
+struct Seamless<Backend> : inner::Hollow {
+  using plays = role::Collision;
+  using inner::Hollow::Hollow;
 };
 
 template <class Backend>

@@ -17,17 +17,10 @@ namespace delassus {
 /// `WithCompounds{NativeCollision{}}` in the place of the backend, or `WithCompounds{WithMeshes{...}}`: each
 /// part of a body is a collider of its own to the backend, and its contacts are the body's. Parts of one body
 /// do not meet; the material is the body's. `WithFilter` goes around it.
-template <class Backend>
+template <class Backend = inner::Absent>
 struct WithCompounds {
   using plays = role::Collision;
-  static constexpr bool splits_bodies = true;
-  static_assert(
-      !requires { Backend::asks_for_joints; },
-      "delassus: WithFilter goes outermost; write WithFilter{WithCompounds{...}}");
-
-  static_assert(
-      !requires { Backend::has_surfaces; },
-      "delassus: WithSurfaces goes around WithCompounds; write WithSurfaces{WithCompounds{...}}");
+  static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::compounds;
 
   Backend backend{};
 
@@ -163,6 +156,14 @@ struct WithCompounds {
   std::uint32_t next_name_ = 0;
   std::vector<Collider> parts_;
   std::vector<Owner> owners_, by_key_;
+};
+
+/// Around what is no backend, or in another order; the loop's checks say so.
+template <class Backend>
+  requires(!inner::Detects<Backend, inner::layer::compounds>)
+struct WithCompounds<Backend> : inner::Hollow {
+  using plays = role::Collision;
+  using inner::Hollow::Hollow;
 };
 
 template <class Backend>

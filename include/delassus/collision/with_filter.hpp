@@ -17,9 +17,10 @@ namespace delassus {
 /// `WithFilter{NativeCollision{}}` in the place of the backend: bodies that hold each other by a joint do not
 /// collide, nor do the pairs given to `ignore`. Filtered pairs cost no query. Groups and masks of the bodies
 /// hold as ever. A change wakes nobody.
-template <class Backend>
+template <class Backend = inner::Absent>
 struct WithFilter {
   using plays = role::Collision;
+  static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::filter;
   static constexpr bool asks_for_joints = true;  ///< the loop calls refresh before each detect
 
   Backend backend{};
@@ -104,6 +105,14 @@ struct WithFilter {
 
   std::vector<Pair> named_;
   std::vector<std::uint64_t> pairs_;
+};
+
+/// Around what is no backend, or in another order; the loop's checks say so.
+template <class Backend>
+  requires(!inner::Detects<Backend, inner::layer::filter>)
+struct WithFilter<Backend> : inner::Hollow {
+  using plays = role::Collision;
+  using inner::Hollow::Hollow;
 };
 
 template <class Backend>

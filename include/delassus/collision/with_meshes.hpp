@@ -20,19 +20,10 @@ namespace delassus {
 /// with a shape that `add` returned meet convex ones and half-spaces by their triangles, and each other by
 /// their vertices, edges and triangles. The solid is behind the triangles, so a convex body whose middle is behind
 /// one does not meet it; a mesh wholly inside a closed one is pushed out. `WithFilter` goes around it.
-template <class Backend>
+template <class Backend = inner::Absent>
 struct WithMeshes {
   using plays = role::Collision;
-  static_assert(
-      !requires { Backend::asks_for_joints; },
-      "delassus: WithFilter goes outermost; write WithFilter{WithMeshes{...}}");
-
-  static_assert(
-      !requires { Backend::splits_bodies; },
-      "delassus: WithCompounds goes around WithMeshes; write WithCompounds{WithMeshes{...}}");
-
-  static_assert(!requires { Backend::has_surfaces; },
-                "delassus: WithSurfaces goes around WithMeshes; write WithSurfaces{WithMeshes{...}}");
+  static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::meshes;
 
   Backend backend{};
 
@@ -177,6 +168,14 @@ struct WithMeshes {
   std::vector<Collider> convex_;
   std::vector<Job> jobs_;
   inner::SurfacePairs pairs_;
+};
+
+/// Around what is no backend, or in another order; the loop's checks say so.
+template <class Backend>
+  requires(!inner::Detects<Backend, inner::layer::meshes>)
+struct WithMeshes<Backend> : inner::Hollow {
+  using plays = role::Collision;
+  using inner::Hollow::Hollow;
 };
 
 template <class Backend>

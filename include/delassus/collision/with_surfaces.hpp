@@ -18,13 +18,10 @@ namespace delassus {
 /// backend as ever; here their triangles and edges meet convex shapes, meshes, the surfaces of other such
 /// bodies, and, where `self_contact`, their own but for neighbours. A contact between nodes acts on the nodes
 /// around it, by their shares. Compounds meet nodes alone. `WithFilter` goes around it.
-template <class Backend>
+template <class Backend = inner::Absent>
 struct WithSurfaces {
   using plays = role::Collision;
-  static constexpr bool has_surfaces = true;
-  static_assert(
-      !requires { Backend::asks_for_joints; },
-      "delassus: WithFilter goes outermost; write WithFilter{WithSurfaces{...}}");
+  static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::surfaces;
 
   Backend backend{};
   bool self_contact = true;
@@ -291,6 +288,14 @@ struct WithSurfaces<Backend>::Pairing {
       if (shares[k] > 0 && !filter.lets(pair_key(collider_key(s.set(), s.block(t, k)), other))) return false;
     return true;
   }
+};
+
+/// Around what is no backend, or in another order; the loop's checks say so.
+template <class Backend>
+  requires(!inner::Detects<Backend, inner::layer::surfaces>)
+struct WithSurfaces<Backend> : inner::Hollow {
+  using plays = role::Collision;
+  using inner::Hollow::Hollow;
 };
 
 template <class Backend>

@@ -1,6 +1,7 @@
 /// What a constraint law is.
 #pragma once
 
+#include <delassus/core/wrapping.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 
@@ -96,11 +97,19 @@ void project(const L& law, const Item& item, C& local, M& memory) {
 template <class L>
 concept LawOfContact = requires { L::rows, L::kinds, typename L::Parameters{}; } && !ConstraintLaw<L>;
 
+/// A wrapper of contact laws around something else, inside Contact{...} or not.
+template <class L>
+concept HollowLaw = IsHollow<L> || requires { requires IsHollow<typename L::no_contact_law>; };
+
 /// One sentence for the first thing a law lacks.
 template <class L>
 consteval bool law_is_sound() {
+  constexpr bool is_filled = !HollowLaw<L>;
+  static_assert(is_filled,
+                "delassus: Restitution, SequentialRestitution and Penalty go around a contact law, and their numbers come second: "
+                "Contact{Restitution{Coulomb{.friction = 0.5}, 0.3}}, Contact{Penalty{Coulomb{}, 1e5, 50}}");
   constexpr bool is_around_a_law = !requires { typename L::no_contact_law; };
-  static_assert(is_around_a_law,
+  static_assert(is_around_a_law || !is_filled,
                 "delassus: Contact{...} takes a contact law, as in Contact{Coulomb{.friction = 0.5}}; this type lacks "
                 "`rows`, `kinds` or `Parameters`");
   constexpr bool is_wrapped_once = !requires(const L& law) { typename std::remove_cvref_t<decltype(law.law)>::wraps::wraps; };
@@ -110,15 +119,15 @@ consteval bool law_is_sound() {
   constexpr bool has_axis = !requires { typename L::no_coordinate; };
   static_assert(has_axis,
                 "delassus: Limit, Motor and Drive act on one axis of a joint; write Motor<Turn>{} for an angle (rad), "
-                "Motor<Slide>{} for a way (m)");
+                "Motor<Slide>{} for a way (m); a Coupling on two, as in Coupling<Turn, Slide>{}");
   constexpr bool is_around_a_joint = !requires { typename L::no_joint; };
   static_assert(is_around_a_joint,
                 "delassus: Breakable goes around a joint whose rows are forces and moments on its ends, as in Breakable<Hinge>{}; "
-                "this one does not say so, by `acts`");
+                "this one does not say so, by `acts`, or breaks already");
   constexpr bool has_shape = ConstraintLaw<L>, is_bare = LawOfContact<L>;
   static_assert(!is_bare,
                 "delassus: the law of a contact stands within Contact{...}, as in Constraints{Contact{Coulomb{.friction = 0.5}}}");
-  if constexpr (is_around_a_law && is_around_a_joint && has_axis && !is_bare)
+  if constexpr (is_filled && is_around_a_law && is_around_a_joint && has_axis && !is_bare)
     static_assert(has_shape,
                   "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
   if constexpr (has_shape) {

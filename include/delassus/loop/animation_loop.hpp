@@ -262,7 +262,7 @@ class AnimationLoop {
       sound, inner::Workspace<WorldType, Laws, typename Parts::Compliance, typename Parts::Solver,
                               typename Parts::Integrator, typename Parts::Stabilisation, typename Parts::Scheme,
                               typename Parts::Activity>,
-      inner::Workspace<WorldType, Constraints<>, void, void, void, void, void, void>>;
+      inner::Workspace<World<>, Constraints<>, void, void, void, void, void, void>>;
   using Channels = typename inner::channels_of_loop<sound, Parts, Policies...>::type;
 
   template <class P>
@@ -299,7 +299,7 @@ class AnimationLoop {
   [[no_unique_address]] typename inner::DefaultsFor<Policies...>::type defaults_{};
   [[no_unique_address]] Work work_;
   [[no_unique_address]] Channels channels_;
-  typename inner::widths_of<WorldType>::Scratch scratch_;
+  typename inner::widths_of<std::conditional_t<sound, WorldType, World<>>>::Scratch scratch_;
   StepReport report_;
   double h_ = 0, last_h_ = 0, start_ = 0;
   long steps_ = 0;

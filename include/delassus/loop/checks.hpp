@@ -27,18 +27,11 @@
 
 namespace delassus {
 
-/// Answers with the contact points of this step, sorted by pair and feature.
-template <class C>
-concept CollisionBackend = Plays<C, role::Collision> &&
-    requires(C backend, std::span<const Collider> colliders, double h, std::vector<ContactPoint>& points) {
-      { backend.detect(colliders, h, points) } -> std::same_as<CollisionReport>;
-    };
-
 namespace inner {
 
 /// What belongs into one of the policies of a loop, and is no policy itself.
 template <class P>
-concept LawOfConstraints = ConstraintLaw<P> || LawOfContact<P> || requires { typename P::no_contact_law; };
+concept LawOfConstraints = ConstraintLaw<P> || LawOfContact<P> || HollowLaw<P> || requires { typename P::no_contact_law; };
 
 template <class P>
 consteval bool has_role() {
@@ -62,20 +55,38 @@ consteval bool has_role() {
   return has;
 }
 
+/// A wrapper around what it is made for.
+template <class P>
+consteval bool is_filled() {
+  constexpr bool is = !IsHollow<P>;
+  if constexpr (Plays<P, role::Collision>)
+    static_assert(is,
+                  "delassus: the layers of a collision go around a backend and each other in this order, each at most once: "
+                  "WithFilter{WithSurfaces{WithCompounds{Continuous{WithMeshes{Seamless{NativeCollision{}}}}}}}; take out what "
+                  "is not wanted, and write numbers second, as in Seamless{NativeCollision{}, 1e-3}");
+  else if constexpr (Plays<P, role::Solver>)
+    static_assert(is,
+                  "delassus: WithDeadline and MinimumNorm go around a solver, each at most once, and numbers come second: "
+                  "WithDeadline{MinimumNorm{AcceleratedGaussSeidel{}}, 1e-3}");
+  else
+    static_assert(is,
+                  "delassus: WithCompliance goes around a stabilisation, once, and its number comes second: "
+                  "WithCompliance{Baumgarte{}, 1e-7}");
+  return is;
+}
+
 /// Sound so far, or stop: the first failed check is the only one that speaks.
 template <class P>
 consteval bool plays_its_role() {
-  if constexpr (Plays<P, role::Integrator>) {
+  if constexpr (IsHollow<P>) {
+    return is_filled<P>();
+  } else if constexpr (Plays<P, role::Integrator>) {
     static_assert(Integrator<P>,
                   "delassus: this type plays role::Integrator but lacks scale(h), impulse(set, p, h) or "
                   "advance(set, h); see integrators/integrator.hpp for their types");
     return Integrator<P>;
   } else if constexpr (Plays<P, role::Stabilisation>) {
-    constexpr bool is_around_one = !requires { typename P::no_stabilisation; };
-    static_assert(is_around_one,
-                  "delassus: a compliance goes around a stabilisation, and its number comes second: "
-                  "WithCompliance{Baumgarte{}, 1e-7}");
-    static_assert(!is_around_one || Stabilisation<P>,
+    static_assert(Stabilisation<P>,
                   "delassus: this type plays role::Stabilisation but lacks equality(phi, h) or penetration(phi, h), "
                   "which return double");
     return Stabilisation<P>;
@@ -117,7 +128,12 @@ template <class World>
 consteval bool has_bodies() {
   constexpr bool has = World::set_count > 0;
   static_assert(has, "delassus: a World needs at least one set of bodies; write World{RigidBodies{}}");
-  return has;
+  constexpr bool has_no_other = []<class... S>(const delassus::World<S...>*) {
+    return (requires { typename S::Scalar; S::width; } && ...);
+  }(static_cast<const World*>(nullptr));
+  static_assert(has_no_other,
+                "delassus: World{...} takes sets of bodies, as in World{RigidBodies{}, Particles{}}; take the rest out");
+  return has && has_no_other;
 }
 
 template <class World>
@@ -197,23 +213,15 @@ consteval bool compliance_is_sound() {
 
 template <class Solver, class Laws, class Rows, class Operator>
 consteval bool solver_is_sound() {
-  constexpr bool is_around_a_solver = !requires { typename Solver::no_solver; };
-  static_assert(is_around_a_solver,
-                "delassus: a deadline goes around a solver, and the seconds come second: "
-                "WithDeadline{AcceleratedGaussSeidel{}, 1e-3}; so does MinimumNorm{AcceleratedGaussSeidel{}}");
-  if constexpr (is_around_a_solver) {
-    using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
-    constexpr bool solves = requires(const Solver& solver, Problem& problem,
-                                     typename Solver::template Workspace<Rows>& workspace) {
-      { solver.solve(problem, workspace) } -> std::same_as<SolveReport>;
-    };
-    static_assert(solves,
-                  "delassus: this type plays role::Solver but lacks `template <class Rows> struct Workspace` or "
-                  "solve(problem, workspace), which returns a SolveReport; add it");
-    return solves;
-  } else {
-    return false;
-  }
+  using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
+  constexpr bool solves = requires(const Solver& solver, Problem& problem,
+                                   typename Solver::template Workspace<Rows>& workspace) {
+    { solver.solve(problem, workspace) } -> std::same_as<SolveReport>;
+  };
+  static_assert(solves,
+                "delassus: this type plays role::Solver but lacks `template <class Rows> struct Workspace` or "
+                "solve(problem, workspace), which returns a SolveReport; add it");
+  return solves;
 }
 
 /// The parts that meet in the rows: only a loop with constraints has them.

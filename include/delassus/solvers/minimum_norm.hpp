@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -41,9 +42,10 @@ struct NormSearch {
 /// far as it lets it, and on without the constraint that is at its limit. The motion is that of the solve, to
 /// its tolerance; otherwise λ* is kept. It costs a product with W for each of the distinct eigenvalues of W,
 /// about. Source: [HestenesStiefel1952].
-template <class Solver>
+template <class Solver = inner::Absent>
 struct MinimumNorm {
   using plays = role::Solver;
+  static constexpr unsigned layers = inner::layers_of<Solver> | inner::layer::minimum_norm;
   Solver solver{};
   int max_products = 200;  ///< with W; when they run out λ stays as it was solved
 
@@ -258,16 +260,17 @@ struct MinimumNorm {
   };
 };
 
-/// Around what is no solver, as in `MinimumNorm{1e-6}`; the loop's checks say so.
+/// Around what is no solver, as in `MinimumNorm{1e-6}`, or another one; the loop's checks say so.
 template <class Solver>
-  requires(!Plays<Solver, role::Solver>)
-struct MinimumNorm<Solver> {
+  requires(!inner::Fills<Solver, role::Solver, inner::layer::minimum_norm>)
+struct MinimumNorm<Solver> : inner::Hollow {
   using plays = role::Solver;
-  using no_solver = Solver;
-  Solver solver{};
+  using inner::Hollow::Hollow;
 };
 
 template <class Solver>
 MinimumNorm(Solver) -> MinimumNorm<Solver>;
+template <class Solver>
+MinimumNorm(Solver, int) -> MinimumNorm<Solver>;
 
 }  // namespace delassus

@@ -4,6 +4,7 @@
 #include <delassus/core/clock.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/impulses.hpp>
 #include <delassus/solvers/inner/timed_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
@@ -22,9 +23,10 @@ namespace delassus {
 /// would end too late. When the time is up what is half done is let go, and the iterate of the smallest
 /// measured residual is returned, with status `deadline`; islands that come later still get their
 /// `min_iterations` sweeps and a measure, since a contact that is new has no impulse before its first sweep.
-template <class Solver, Clock C = SteadyClock>
+template <class Solver = inner::Absent, Clock C = SteadyClock>
 struct WithDeadline {
   using plays = role::Solver;
+  static constexpr unsigned layers = inner::layers_of<Solver> | inner::layer::deadline;
   Solver solver{};
   double budget = std::numeric_limits<double>::infinity();  ///< s from the moment the first island is begun
   C clock{};
@@ -74,14 +76,12 @@ struct WithDeadline {
   }
 };
 
-/// Around what is no solver, as in `WithDeadline{1e-3}`; the loop's checks say so.
+/// Around what is no solver, as in `WithDeadline{1e-3}`, or has a deadline; the loop's checks say so.
 template <class Solver, Clock C>
-requires(!Plays<Solver, role::Solver>) struct WithDeadline<Solver, C> {
+  requires(!inner::Fills<Solver, role::Solver, inner::layer::deadline>)
+struct WithDeadline<Solver, C> : inner::Hollow {
   using plays = role::Solver;
-  using no_solver = Solver;
-  Solver solver{};
-  double budget = std::numeric_limits<double>::infinity();
-  C clock{};
+  using inner::Hollow::Hollow;
 };
 
 template <class Solver>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/core/wrapping.hpp>
 #include <delassus/stabilisation/baumgarte.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 
@@ -20,9 +21,10 @@ namespace delassus {
 /// rigid, for a compliance on them would creep; springs of their own rows too. A stabilisation without a rate
 /// of its own
 /// (`PositionProjection`, which sees no φ in the velocity solve) has β = 0, and nothing yields.
-template <class S>
+template <class S = inner::Absent>
 struct WithCompliance {
   using plays = role::Stabilisation;
+  static constexpr unsigned layers = inner::layers_of<S> | inner::layer::compliance;
   static constexpr bool projects_position = requires { requires S::projects_position; };
   S stabilisation{};
   double least = 0;  ///< C, m/N
@@ -47,14 +49,12 @@ struct WithCompliance {
   static constexpr double near = 1e-9;  ///< m, where no recovery is capped
 };
 
-/// Around what is no stabilisation, as in `WithCompliance{1e-7}`; the loop's checks say so.
+/// Around what is no stabilisation, as in `WithCompliance{1e-7}`, or has a compliance; the loop's checks say so.
 template <class S>
-  requires(!Stabilisation<S>)
-struct WithCompliance<S> {
+  requires(!(Stabilisation<S> && inner::Fills<S, role::Stabilisation, inner::layer::compliance>))
+struct WithCompliance<S> : inner::Hollow {
   using plays = role::Stabilisation;
-  using no_stabilisation = S;
-  S stabilisation{};
-  double least = 0;
+  using inner::Hollow::Hollow;
 };
 
 template <class S>

@@ -1,13 +1,19 @@
-/// What detection that goes around a backend asks of it, whatever kind it is.
+/// What detection that goes around a backend asks of it, whatever kind it is, and in which order it goes around.
 #pragma once
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/core/wrapping.hpp>
 
 #include <algorithm>
 #include <vector>
 
 namespace delassus::inner {
+
+/// What the layer `own` may go around: the lower ones, and the first three each other as they like.
+template <class Backend, unsigned own>
+concept Detects = CollisionBackend<Backend> && Fills<Backend, role::Collision, own> &&
+    layers_of<Backend> < (own < layer::compounds ? layer::compounds : own);
 
 /// What the backend keeps from step to step, in its engine or by itself.
 template <class Backend>

@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/contact/wrapped_law.hpp>
 #include <delassus/constraints/law.hpp>
+#include <delassus/core/wrapping.hpp>
 #include <delassus/rows/contact_record.hpp>
 
 #include <cmath>
@@ -40,7 +41,7 @@ Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
 
 /// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the next two tangent; a law with
 /// six rows goes on with (t₁, t₂, n) · (ω_B − ω_A).
-template <class Law>
+template <class Law = inner::Absent>
 struct Contact {
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
@@ -153,12 +154,6 @@ struct Contact<Law> {
 
 template <class Law>
 Contact(Law) -> Contact<Law>;
-
-namespace inner {
-/// Of `Contact{}`: the loop's checks say what it lacks.
-struct NoLaw {};
-}  // namespace inner
-Contact() -> Contact<inner::NoLaw>;
 
 /// A contact law for the material pairs that `Pairs::takes(a, b)` names.
 template <class Law, class Pairs>

@@ -1,7 +1,9 @@
 /// Penalty contact: a spring and a damper along the normal in place of a rigid surface.
 #pragma once
 
+#include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/wrapping.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/soft.hpp>
 
@@ -17,7 +19,7 @@ namespace delassus {
 /// As rows the spring is implicit Euler's, λ_n = max(0, h (k (δ − h u_n) − c u_n)) at the velocity after the step: stable
 /// for every k and h, and never a source of energy. Under the scheme `CollisionsFirst` with an explicit integrator it is
 /// a force of the free motion at the start of the step, with no row and no solve: stable for h √(k/m) < 2 only.
-template <class Law>
+template <class Law = inner::Absent>
 struct Penalty {
   using wraps = Law;
   static constexpr int rows = Law::rows;
@@ -62,8 +64,17 @@ struct Penalty {
   }
 };
 
+/// Around what is no contact law, as in `Penalty{1e5, 50}`; the loop's checks say so.
+template <class Law>
+  requires(!inner::LawOfContact<Law>)
+struct Penalty<Law> : inner::Hollow {
+  using inner::Hollow::Hollow;
+};
+
 template <class Law>
 Penalty(Law, double) -> Penalty<Law>;
+template <class Law>
+Penalty(Law) -> Penalty<Law>;
 template <class Law>
 Penalty(Law, double, double) -> Penalty<Law>;
 

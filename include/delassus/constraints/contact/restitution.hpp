@@ -1,13 +1,15 @@
 /// Restitution: a wrapper that gives a contact law's normal row a target velocity.
 #pragma once
 
+#include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/wrapping.hpp>
 
 namespace delassus {
 
 /// u_n⁺ ≥ −e u_n⁻ for a contact that closes within the step, u_n⁻ at its start. The stabilisation reads `restitution`
 /// and makes the bias; an energy guard per island keeps the impulses from adding energy (`guard_energy`).
-template <class Law>
+template <class Law = inner::Absent>
 struct Restitution {
   using wraps = Law;
   static constexpr int rows = Law::rows;
@@ -28,6 +30,13 @@ struct Restitution {
 
   Parameters parameters() const { return {law.parameters(), restitution}; }
   static void set_restitution(Parameters& p, double restitution) { p.restitution = restitution; }
+};
+
+/// Around what is no contact law, as in `Restitution{0.5}`; the loop's checks say so.
+template <class Law>
+  requires(!inner::LawOfContact<Law>)
+struct Restitution<Law> : inner::Hollow {
+  using inner::Hollow::Hollow;
 };
 
 template <class Law>

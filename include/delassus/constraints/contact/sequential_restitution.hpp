@@ -1,7 +1,9 @@
 /// Restitution whose impacts go from contact to contact, as in Newton's cradle.
 #pragma once
 
+#include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/wrapping.hpp>
 
 namespace delassus {
 
@@ -12,7 +14,7 @@ namespace delassus {
 /// The order is that of the contacts, round after round; what closes after `most_rounds` is left to the
 /// simultaneous law. Joints answer after the impacts, in the solve of the step. Source: docs/references.md,
 /// [Brogliato2016], chapters 5 and 6.
-template <class Law>
+template <class Law = inner::Absent>
 struct SequentialRestitution {
   using wraps = Law;
   static constexpr int rows = Law::rows;
@@ -39,8 +41,17 @@ struct SequentialRestitution {
   static void set_restitution(Parameters& p, double restitution) { p.restitution = restitution; }
 };
 
+/// Around what is no contact law, as in `SequentialRestitution{0.5}`; the loop's checks say so.
+template <class Law>
+  requires(!inner::LawOfContact<Law>)
+struct SequentialRestitution<Law> : inner::Hollow {
+  using inner::Hollow::Hollow;
+};
+
 template <class Law>
 SequentialRestitution(Law, double) -> SequentialRestitution<Law>;
+template <class Law>
+SequentialRestitution(Law, double, int) -> SequentialRestitution<Law>;
 template <class Law>
 SequentialRestitution(Law) -> SequentialRestitution<Law>;
 

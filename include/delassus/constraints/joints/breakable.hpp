@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/core/wrapping.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <cmath>
@@ -13,7 +14,7 @@ namespace delassus {
 /// moments about the joint's point. It carries that step to its end, stands in
 /// `loop.broken<Breakable<Hinge>>()` after it with its impulse, and is gone when the next step begins. The
 /// joint says `acts`, as `Reaction` wants it.
-template <class Joint>
+template <class Joint = inner::Absent>
 struct Breakable : Joint {
   struct Item : Joint::Item {
     double max_force = std::numeric_limits<double>::infinity();   ///< N
@@ -34,11 +35,15 @@ struct Breakable : Joint {
   }
 };
 
-/// Around what does not say of its rows whether they are forces or moments; the loop's checks say so.
+/// Around what does not say of its rows whether they are forces or moments, or breaks already; the loop's checks say so.
 template <class Joint>
-  requires(!requires { Joint::acts; })
+  requires(!requires { Joint::acts; } || requires { &Joint::breaks; })
 struct Breakable<Joint> {
   using no_joint = Joint;
+  explicit Breakable(const auto&...) {}
 };
+
+template <class Joint>
+Breakable(Joint) -> Breakable<Joint>;
 
 }  // namespace delassus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/joints/joint_rows.hpp>
+#include <delassus/core/wrapping.hpp>
 
 #include <cmath>
 #include <concepts>
@@ -51,9 +52,6 @@ concept AxisCoordinate = requires(const JointFrames& frames) {
 };
 
 namespace inner {
-
-/// Of `Motor{}`: the loop's checks say what it lacks.
-struct NoCoordinate {};
 
 /// `value` shifted by whole turns to the one nearest to `last`: a wheel is followed while it makes less than
 /// half a turn a step.

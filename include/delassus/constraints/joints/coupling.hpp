@@ -18,7 +18,7 @@ inline constexpr double from_pose = std::numeric_limits<double>::quiet_NaN();
 /// −ratio λ acts on b, and the carriers take the opposite of each, so that momentum and angular momentum of
 /// free bodies stay. The joints that leave a and b these coordinates are added beside it. Singular where the
 /// coordinates are.
-template <class First, class Second>
+template <class First = inner::Absent, class Second = inner::Absent>
 struct Coupling : Bilateral<1> {
   struct Item {
     Anchor a, b;               ///< what moves
@@ -55,6 +55,13 @@ struct Coupling : Bilateral<1> {
   struct Pair {
     const Anchor &a, &b;
   };
+};
+
+/// Of what is no coordinate of a joint; the loop's checks say so.
+template <class First, class Second>
+  requires(!AxisCoordinate<First> || !AxisCoordinate<Second>)
+struct Coupling<First, Second> {
+  using no_coordinate = First;
 };
 
 /// θ_a = ratio θ_b + phase; two wheels that mesh outside each other have the ratio −(teeth of b)/(teeth of

@@ -12,7 +12,7 @@ namespace delassus {
 /// stable for every k (N·m/rad or N/m), c (N·m·s/rad or N·s/m) and h. The target q* is that of the start of
 /// the step and moves at s = `speed`. Without a cap and with speed 0 a spring: `Drive<Turn>` beside a hinge,
 /// `Drive<Slide>` beside a slider.
-template <class Coordinate = inner::NoCoordinate>
+template <class Coordinate = inner::Absent>
 struct Drive : Bounded, OnAxis<Coordinate> {
   struct Item {
     Anchor a, b;

@@ -21,7 +21,7 @@ namespace delassus {
 /// step: one that is far costs nothing and does not weigh in the residual. Something that is hit and goes
 /// further than that in its first step passes the stop by that step's way, and is pushed back as from an
 /// overlap.
-template <class Coordinate = inner::NoCoordinate>
+template <class Coordinate = inner::Absent>
 struct Limit : OnAxis<Coordinate> {
   static constexpr int rows = 2;
   static constexpr std::array<RowKind, 2> kinds{RowKind::lower, RowKind::upper};

@@ -12,7 +12,7 @@ namespace delassus {
 /// q̇ = speed at the end of the step where |f| ≤ max_force allows it, else the whole force towards it. q =
 /// `Turn` or `Slide`: `Motor<Turn>` beside a hinge. Speed 0 is dry friction of that moment or force, which
 /// holds what is below its cap.
-template <class Coordinate = inner::NoCoordinate>
+template <class Coordinate = inner::Absent>
 struct Motor : Bounded, OnAxis<Coordinate> {
   struct Item {
     Anchor a, b;

@@ -1,0 +1,11 @@
+// expect: delassus: the layers of a collision go around a backend and each other in this order, each at most once: WithFilter{WithSurfaces{WithCompounds{Continuous{WithMeshes{Seamless{NativeCollision{}}}}}}}
+#include <delassus/delassus.hpp>
+#include <delassus/collision/seamless.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}},
+                     Seamless{AcceleratedGaussSeidel{}, 1e-3}};
+  loop.step(1e-3);
+}
