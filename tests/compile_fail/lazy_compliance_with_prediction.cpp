@@ -1,4 +1,4 @@
-// expect: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with restitution
+// expect: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance
 #include <delassus/bodies/elasticity/linear.hpp>
 #include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>

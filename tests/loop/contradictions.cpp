@@ -143,9 +143,9 @@ TEST_CASE("a joint with both ends on one body, or both in the world, is refused"
   auto& set = rigid_bodies(loop);
   const auto box = set.add({.mass = 1.0, .shape = Box{1, 1, 1}});
   REQUIRE_THROWS_WITH(loop.add(BallJoint::Item{anchor(set, box), anchor(set, box, {1, 0, 0})}),
-                      Catch::Contains("both ends are on rigid body #0; it would hold nothing, let one be on another body"));
+                      Catch::Contains("BallJoint: both ends are on rigid body #0; it would hold nothing, let one be on another body"));
   REQUIRE_THROWS_WITH(loop.add(BallJoint::Item{world_anchor({0, 0, 0}), world_anchor({0, 0, 1})}),
-                      Catch::Contains("both ends are in the world"));
+                      Catch::Contains("BallJoint: both ends are in the world"));
 }
 
 TEST_CASE("a joint between two bodies that do not answer has no impulse and spoils nothing") {

@@ -10,7 +10,8 @@ namespace delassus {
 
 /// Names a material point by set, block and local coordinates; the set alone knows which blocks move it.
 /// `local` is in the body's frame (m) for bodies with a frame, ignored for a particle. The world is the
-/// anchor without a set; its `local` is in world coordinates.
+/// anchor without a set; its `local` is in world coordinates, so that `Anchor{}`, an end that was not given, is the
+/// world's origin.
 struct Anchor {
   Index set = -1;
   Index block = -1;

@@ -3,6 +3,7 @@
 
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/compliance/uncoupled.hpp>
+#include <delassus/core/type_text.hpp>
 #include <delassus/io/inner/text.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
@@ -12,27 +13,11 @@
 #include <cstddef>
 #include <cstdlib>
 #include <string>
-#include <string_view>
 #include <type_traits>
 
 namespace delassus {
 
 namespace inner {
-
-/// The name of a type as the compiler has it, without the library's namespace.
-template <class P>
-std::string type_text() {
-  const std::string_view all = __PRETTY_FUNCTION__;
-  const std::size_t start = all.find("P = ") + 4;
-  std::size_t end = start;
-  for (int depth = 0; end < all.size() && (depth > 0 || (all[end] != ';' && all[end] != ']')); ++end)
-    depth += (all[end] == '<' || all[end] == '(') - (all[end] == '>' || all[end] == ')');
-  std::string text(all.substr(start, end - start));
-  constexpr std::string_view library = "delassus::";
-  for (std::size_t at; (at = text.find(library)) != text.npos;) text.erase(at, library.size());
-  for (std::size_t at; (at = text.find("> >")) != text.npos;) text.erase(at + 1, 1);
-  return text;
-}
 
 template <class P>
 std::string policy_name() {

@@ -15,7 +15,7 @@ struct BallJoint : Bilateral<3> {
   static constexpr std::array<int, 3> acts{0, 1, 2};  ///< see `Reaction`
 
   struct Item {
-    Anchor a, b;
+    Anchor a, b;  ///< one that is not given is the world's origin
   };
 
   void linearize(const Item& item, const auto& world, auto row) const {

@@ -1,6 +1,7 @@
 /// What a host calls of the loop, where it is more than a line: included by animation_loop.hpp.
 #pragma once
 
+#include <delassus/core/type_text.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
 namespace delassus {
@@ -74,10 +75,10 @@ auto AnimationLoop<Policies...>::add(Item item) {
       int k = 0;
       each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
       DELASSUS_EXPECT(item.a.is_world() || !inner::are_on_one_body(item.a, item.b),
-                      "constraint: both ends are on " + inner::name_of_body(world(), item.a) +
+                      inner::type_text<Law>() + ": both ends are on " + inner::name_of_body(world(), item.a) +
                           "; it would hold nothing, let one be on another body or a world_anchor");
       DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),
-                      "constraint: both ends are in the world; one must be on a body");
+                      inner::type_text<Law>() + ": both ends are in the world; one must be on a body");
     }
     return laws().template of<Law>().add(item);
   }

@@ -167,7 +167,7 @@ void AnimationLoop<Policies...>::solve() {
       if constexpr (RefinedOperator<typename Work::Operator>) {
         static_assert(!Work::predicts && !Work::restitutes,
                       "delassus: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with "
-                      "restitution; use AssembledCompliance");
+                      "restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance");
         while (refine(world(), work_, scratch_, h_)) solve_islands(work_, part<role::Solver>(), h_, observer);
         part<role::Compliance>().report = work_.W.report();
         if (!work_.W.is_settled()) report_.status = worse(report_.status, Status::max_iterations);
