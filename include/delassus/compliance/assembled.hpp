@@ -64,11 +64,20 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
           else
             return columns_.template prepare<s>(set, rows);
         }
-      if constexpr (!Inverse::is_whole && inner::may_couple<std::remove_cvref_t<decltype(set)>>) {
-        if (set.is_coupled())
-          inner::apply_mass_inverse(set, rows, s);
-        else
-          inner::apply_inverse(set, rows, s);
+      using Set = std::remove_cvref_t<decltype(set)>;
+      if constexpr (!Inverse::is_whole && inner::may_couple<Set>) {
+        constexpr bool has_masses = requires(const Mat<Set::width, 1, typename Set::Scalar>& x) {
+          set.template solve_mass<1>(0, x);
+        };
+        static_assert(has_masses,
+                      "delassus: UncoupledCompliance takes the mass of each node alone, which this set of bodies does not give (Rods "
+                      "do not); use AssembledCompliance");
+        if constexpr (has_masses) {
+          if (set.is_coupled())
+            inner::apply_mass_inverse(set, rows, s);
+          else
+            inner::apply_inverse(set, rows, s);
+        }
       } else {
         inner::apply_inverse(set, rows, s);
       }
