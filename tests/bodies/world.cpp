@@ -2,6 +2,9 @@
 
 #include <delassus/delassus.hpp>
 
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 #include "catch.hpp"
@@ -110,6 +113,23 @@ TEST_CASE("a handle that was never assigned is told so, wherever it is given") {
   CHECK_THROWS_WITH(loop.remove(joint), never("remove: ", "constraint"));
   CHECK_THROWS_WITH(loop.impulse(joint), never("impulse: ", "constraint"));
   CHECK_THROWS_WITH(loop.item(joint), never("item: ", "constraint"));
+}
+
+TEST_CASE("a world says where an anchor is that no loop has seen") {
+  AnimationLoop loop{World{Particles{}, RigidBodies{}}};
+  auto& set = bodies<RigidBodies>(loop.world());
+  const Quat turn(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3(0, 0, 1)));
+  const auto body = set.add({.position = {1, 2, 3}, .orientation = turn, .mass = 1.0, .shape = Sphere{1}});
+  const Anchor end = anchor(set, body, {1, 0, 0});
+  const double rounding = 8 * std::numeric_limits<double>::epsilon();
+  CHECK((loop.world().point(end) - Vec3(1, 3, 3)).norm() <= 4 * rounding);  // sums of numbers up to 3
+  CHECK((loop.world().axes(end) - turn.toRotationMatrix()).norm() <= rounding);
+  CHECK(loop.world().frame(end).angularDistance(turn) <= 2 * std::sqrt(rounding));  // by an arc cosine near 1
+  CHECK(loop.world().point(world_anchor({4, 5, 6})) == Vec3(4, 5, 6));
+  AnimationLoop other{World{Particles{}, RigidBodies{}}};
+  CHECK_THROWS_WITH(other.world().point(end), "delassus: point: the anchor belongs to a body of another world");
+  loop.remove(body);
+  CHECK_THROWS_WITH(loop.world().frame(end), "delassus: frame: rigid body #0 was removed; its anchor is stale");
 }
 
 TEST_CASE("an anchor on a body that is gone is refused") {

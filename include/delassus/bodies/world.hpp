@@ -91,19 +91,25 @@ class World {
     });
   }
 
-  /// Where an anchor is in the world now, m.
+  /// Where an anchor is in the world now, m. It may be one that no loop has seen, fresh from `anchor(set, body)`; those of
+  /// removed bodies and of other worlds are refused then.
   Vec3 point(const Anchor& a) const {
     Vec3 x = a.local;
-    visit(a.set, [&](const auto& set, auto) { x = set.point(a); });
+    bool is_known = a.owner == 0;
+    visit(a.set, [&](const auto& set, auto) { x = set.point(a), is_known = true; });
+    if (!is_known) [[unlikely]] return point_of_new(a);
     return x;
   }
 
   /// How the frame of an anchor is turned in the world now; a particle has none and says its anchor's own.
   Quat frame(const Anchor& a) const {
     Quat q = a.frame;
+    bool is_known = a.owner == 0;
     visit(a.set, [&](const auto& set, auto) {
       if constexpr (requires { set.frame(a); }) q = set.frame(a);
+      is_known = true;
     });
+    if (!is_known) [[unlikely]] return frame_of_new(a);
     return q;
   }
 
@@ -159,6 +165,21 @@ class World {
                   "delassus: this World has two sets of this type; make the second one Tagged<RigidBodies, struct "
                   "Debris>, and ask for it by that name");
     return count == 1;
+  }
+  /// Of an anchor that no loop has seen: the number of its set is found first.
+  [[gnu::cold, gnu::noinline]] Vec3 point_of_new(Anchor a) const {
+    resolve(a, "point");
+    Vec3 x = a.local;
+    visit(a.set, [&](const auto& set, auto) { x = set.point(a); });
+    return x;
+  }
+  [[gnu::cold, gnu::noinline]] Quat frame_of_new(Anchor a) const {
+    resolve(a, "frame");
+    Quat q = a.frame;
+    visit(a.set, [&](const auto& set, auto) {
+      if constexpr (requires { set.frame(a); }) q = set.frame(a);
+    });
+    return q;
   }
   template <class Self, class F, int... s>
   static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {
