@@ -54,6 +54,15 @@ TEST_CASE("what is no sheet is refused by its number") {
   mesh = good;
   std::swap(mesh.triangles[1][1], mesh.triangles[1][2]);
   CHECK(says(refusal(mesh), "are turned to different sides"));
+  mesh = good;
+  mesh.triangles.push_back({mesh.triangles[2][1], mesh.triangles[2][2], mesh.triangles[2][0]});
+  CHECK(says(refusal(mesh), "triangles #2 and #8 have the same points"));
+  std::swap(mesh.triangles[8][0], mesh.triangles[8][1]);  // as exporters write both sides of a face
+  CHECK(says(refusal(mesh), "triangles #2 and #8 have the same points"));
+  mesh.points.resize(3);  // a pillow of two, whose every edge has two triangles that agree
+  mesh.points[2] = {0, 1, 0};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+  CHECK(says(refusal(mesh), "triangles #0 and #1 have the same points"));
   const SheetMesh same = sheet(TriangleMesh(good.points, good.triangles), 1e-3);
   CHECK(same.points == good.points);
   CHECK(same.triangles == good.triangles);

@@ -9,8 +9,10 @@
 #include <delassus/geometry/triangle_mesh.hpp>
 #include <delassus/math/linear.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -39,8 +41,8 @@ inline double area(const SheetMesh& mesh, Index e) {
 inline double volume(const SheetMesh& mesh, Index e) { return mesh.thickness * area(mesh, e); }
 
 /// Refuses a mesh that is no sheet: a thickness that is none, points that are not finite or in no triangle,
-/// numbers of points that are not there, triangles without area (height below 1e-6 of the longest edge),
-/// edges of three triangles or of two that are turned to different sides.
+/// numbers of points that are not there, triangles without area (height below 1e-6 of the longest edge), two
+/// triangles of the same points, edges of three triangles or of two that are turned to different sides.
 inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
   const Index count = Index(mesh.points.size());
   DELASSUS_EXPECT(!mesh.triangles.empty(), who + ": the mesh has no triangle");
@@ -60,6 +62,18 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
     }
     DELASSUS_EXPECT(!is_zero(inner::triangle_normal(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])),
                     name + " has no area (height <= 1e-6 of its longest edge); drop it or join its points");
+  }
+  std::vector<std::array<Index, 4>> sorted;  // the points of a triangle in order, and its number
+  for (const auto& t : mesh.triangles) {
+    sorted.push_back({t[0], t[1], t[2], Index(sorted.size())});
+    std::sort(sorted.back().begin(), sorted.back().end() - 1);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t k = 1; k < sorted.size(); ++k) {
+    const auto &a = sorted[k - 1], &b = sorted[k];
+    DELASSUS_EXPECT(!std::equal(a.begin(), a.end() - 1, b.begin()),
+                    who + ": triangles #" + std::to_string(a[3]) + " and #" + std::to_string(b[3]) +
+                        " have the same points; drop one of them, since a sheet has both its sides anyway");
   }
   inner::SurfaceTopology(mesh.triangles, count).each_fault([&](const inner::SharedEdge& e, bool is_crowded) {
     const std::string which =
