@@ -36,7 +36,7 @@ struct ElasticNewton {
     for (auto* array : {&residual, &step}) array->resize(v.size());
     is_out.assign(v.size(), 0);
     set.shift(0);  // sets the places aside
-    const double crossing = reach(set) / ahead;
+    const double crossing = inner::reach(set) / ahead;
     Status status = Status::max_iterations, worst = Status::converged;
     double last = 0;
     for (int k = 0; k < integrator.max_iterations && status == Status::max_iterations; ++k) {
@@ -67,15 +67,6 @@ struct ElasticNewton {
   }
 
   static constexpr double rounding = std::numeric_limits<T>::epsilon();
-  /// How far from the origin the bodies reach, m: their places are no finer than `rounding` of it, so that
-  /// velocities mean nothing below `rounding` of the speed that crosses it in the step. Angles of rods
-  /// count as radians.
-  static double reach(const Set& set) {
-    double most = Set::width == 6 ? 1 : 0;
-    for (const Index b : set.active())
-      if (set.moves(b)) most = std::max(most, double(set.pose(b).position.norm()));
-    return most;
-  }
   /// Bodies with a step that is no number take part no more: they stand still, and their residual is
   /// nothing. Bodies of a set do not couple, so that the others go on.
   bool leave_out(const Set& set) {

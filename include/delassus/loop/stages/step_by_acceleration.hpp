@@ -60,6 +60,7 @@ struct StepByAcceleration {
     set.shift(0);  // sets x aside
     Status status = Status::max_iterations;
     double last = 0;
+    const double rounding = std::numeric_limits<T>::epsilon() * inner::reach(set) / (h * h);
     for (int k = 0; k < integrator.max_iterations && status == Status::max_iterations; ++k) {
       place(set, rule);
       set.factor({.mass = 1, .damping = rule.velocity_share(), .stiffness = rule.place_share()});
@@ -75,7 +76,7 @@ struct StepByAcceleration {
         change = std::max(change, double(p[b].norm()));
         size = std::max({size, double(next[b].norm()), double(v[b].norm()) / h});
       }
-      if (change <= integrator.tolerance * size)
+      if (change <= std::max(integrator.tolerance * size, rounding))
         status = Status::converged;
       else if (k > 0 && change > 0.5 * last && change <= 1e-7 * size)
         status = Status::stalled;

@@ -4,9 +4,25 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
+#include <algorithm>
 #include <tuple>
 
 namespace delassus {
+
+namespace inner {
+
+/// How far from the origin the bodies of a set reach, m: their places are no finer than rounding of it, so that
+/// velocities mean nothing below rounding of the speed that crosses it in the step, nor accelerations below
+/// rounding of what takes it there. Angles of rods count as radians.
+template <class Set>
+double reach(const Set& set) {
+  double most = Set::width == 6 ? 1 : 0;
+  for (const Index b : set.active())
+    if (set.moves(b)) most = std::max(most, double(set.pose(b).position.norm()));
+  return most;
+}
+
+}  // namespace inner
 
 /// `One<Set>` is the step of one set: `solve(set, integrator, h, factorizations)` leaves it in `v_next` and
 /// `v_free`, q and v as they were. What of it outlives a step it says in `memory`, if there is any.
