@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <thread>
@@ -13,12 +14,16 @@ using namespace delassus;
 namespace {
 
 // In the first million every message is met by a read, and both threads are interrupted in the middle of their work, on
-// one core too; in the second million they run free.
-constexpr std::uint64_t in_turn = 1'000'000, exchanges = 2'000'000;
+// one core too; in the second million they run free. Beside other programs a turn takes as long as those are given: after
+// twenty seconds the threads run free as well.
+constexpr std::uint64_t exchanges = 2'000'000;
+std::atomic<std::uint64_t> in_turn{exchanges / 2};
 
 /// Sixteen words that belong together.
 using Message = std::array<std::uint64_t, 16>;
 
+/// Not seen by the sanitizer as an agreement between the threads.
+bool is_in_turn(std::uint64_t k) { return k < in_turn.load(std::memory_order_relaxed); }
 void give_way(bool now) {
   if (now) std::this_thread::yield();
 }
@@ -30,16 +35,19 @@ int main() {
   std::atomic<std::uint64_t> last_published{0};
 
   std::thread writer([&] {
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     for (std::uint64_t k = 1; k <= exchanges; ++k) {
+      if (is_in_turn(k) && k % 1024 == 0 && std::chrono::steady_clock::now() > patience)
+        in_turn.store(k, std::memory_order_relaxed);
       Message& message = there.back();
       for (int w = 0; w < 16; ++w) {
-        give_way(k < in_turn && k % 32 == 0 && w == int(k / 32 % 16));
+        give_way(is_in_turn(k) && k % 32 == 0 && w == int(k / 32 % 16));
         message[w] = k;
       }
       there.publish();
       last_published.store(k, std::memory_order_release);
       back.fetch();
-      give_way(k < in_turn);
+      give_way(is_in_turn(k));
     }
   });
 
@@ -50,7 +58,7 @@ int main() {
     ++reads;
     Message& message = there.front();
     for (int w = 0; w < 16; ++w) {
-      give_way(last < in_turn && reads % 32 == 0 && w == int(reads / 32 % 16));
+      give_way(is_in_turn(last) && reads % 32 == 0 && w == int(reads / 32 % 16));
       torn += message[w] != message[0];
     }
     missed += message[0] < at_least;
@@ -58,7 +66,7 @@ int main() {
     last = message[0];
     back.back() = message;
     back.publish();
-    give_way(last < in_turn);
+    give_way(is_in_turn(last));
   }
   writer.join();
   back.fetch();
