@@ -11,9 +11,10 @@
 #include <utility>
 
 using namespace delassus;
-using inner::Columns;
 
 namespace dense_kernel_tests {
+
+using inner::Columns;
 
 template <class T>
 using Dense = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
