@@ -66,7 +66,8 @@ void elastic_balls(Ladder& ladder) {
     int edge;
     double h, seconds;
   };
-  for (const auto& [edge, h, seconds] : {Case{2, 1e-2, 60}, {3, 1e-2, 60}, {6, 1e-2, 60}, {6, 1e-3, 10}})
+  for (const auto& [edge, h, seconds] :
+       {Case{2, 1e-2, 60}, {3, 1e-2, 60}, {6, 1e-2, 60}, {6, 1e-3, 10}, {10, 1e-2, 60}})
     ladder.rung(format("%d balls, h = %g s", edge * edge * edge, h), [&, edge = edge, h = h, seconds = seconds]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 1}}}};
       auto& set = bodies<RigidBodies>(loop.world());
@@ -121,6 +122,32 @@ void simultaneous(Ladder& ladder) {
         turn = most(turn, set.velocity(box).head<2>().norm());
       });
       return {{"turn and drift (1/s)", turn, 1e-3, 1e-12}, energy_mark(seen, g * 0.5)};
+    });
+  // Fifteen balls in a triangle, all touching, and one that comes in along its axis: left and right must be
+  // alike.
+  for (const double e : {0.5, 1.})
+    ladder.rung(format("billiards, e = %g", e), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, e}}},
+                         AcceleratedGaussSeidel{.tolerance = 1e-13, .max_iterations = 5000}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.gravity.setZero();
+      std::vector<std::pair<RigidBodies::Handle, RigidBodies::Handle>> pairs;
+      for (int row = 0; row < 5; ++row) {
+        std::vector<RigidBodies::Handle> balls;
+        for (int k = 0; k <= row; ++k)
+          balls.push_back(set.add(
+              {.position = {std::sqrt(0.75) * row, k - 0.5 * row, 0}, .mass = 1.0, .shape = Sphere{0.5}}));
+        for (int k = 0; k <= row; ++k) pairs.emplace_back(balls[std::size_t(k)], balls[std::size_t(row - k)]);
+      }
+      set.add({.position = {-1.05, 0, 0}, .velocity = {1, 0, 0}, .mass = 1.0, .shape = Sphere{0.5}});
+      const Seen seen = run(ladder, loop, 2, 0.01);
+      double unlike = 0;
+      for (const auto& [left, right] : pairs)
+        unlike = most(unlike,
+                      (set.velocity(left) - Vec3(set.velocity(right).cwiseProduct(Vec3(1, -1, 1)))).norm());
+      return {{"left against right (m/s)", unlike, 1e-3, 1e-12},
+              {"momentum", std::abs(momentum(set).x() - 1), 1e-9, 1e-12},
+              {"energy gained", seen.gain / seen.first_energy, 1e-9, 1e-12, 1}};
     });
   ladder.rung("two balls hit a third from both sides", [&]() -> Marks {
     AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 1}}}};

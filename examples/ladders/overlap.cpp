@@ -88,6 +88,22 @@ void no_normal(Ladder& ladder) {
               {"momentum", momentum(set).norm() / size, 1e-9, 1e-12},
               {"angular momentum", angular_momentum(set).norm() / size, 1e-9, 1e-12}};
     });
+  // Two bodies on one point and a joint that keeps them at no distance, one of them hit.
+  ladder.rung("distance joint of no length", [&]() -> Marks {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{DistanceJoint{}}};
+    auto& set = bodies<RigidBodies>(loop.world());
+    set.gravity.setZero();
+    const Mat3 inertia = 0.1 * Mat3::Identity();
+    const auto a = set.add({.velocity = {1, 0.5, 0}, .mass = 1.0, .inertia = inertia});
+    const auto b = set.add({.mass = 2.0, .inertia = inertia});
+    loop.add(DistanceJoint::Item{anchor(set, a), anchor(set, b)});
+    const Vec3 start = momentum(set);
+    const Seen seen = run(ladder, loop, 4, frame);
+    return {{"gap after 4 s (m)", (set.position(a) - set.position(b)).norm(), 0.01, 1e-3},
+            {"speed / at the start", seen.speed / std::sqrt(1.25), 2, 1.01},
+            {"momentum", (momentum(set) - start).norm() / start.norm(), 1e-9, 1e-12},
+            energy_mark(seen, 0.625)};
+  });
 }
 
 }  // namespace ladders

@@ -14,13 +14,17 @@ void heavy_chain(Ladder&);
 void heavy_chain_newton(Ladder&);
 void heavy_chain_fine(Ladder&);
 void heavy_chain_midpoint(Ladder&);
+void hanging_chain(Ladder&);
 void stretched_chain(Ladder&);
 void joint_grid(Ladder&);
 void joint_grid_direct(Ladder&);
+void joint_grid_level(Ladder&);
 void stack(Ladder&);
 void stack_newton(Ladder&);
+void pyramid(Ladder&);
 void card_house(Ladder&);
 void dominoes(Ladder&);
+void dominoes_newton(Ladder&);
 void tower(Ladder&);
 void stiffness(Ladder&);
 void step_size(Ladder&);
@@ -65,7 +69,9 @@ void inverted_elements(Ladder&);
 void incompressible(Ladder&);
 void rigid_on_soft(Ladder&);
 void painleve(Ladder&);
+void drawer(Ladder&);
 void arch(Ladder&);
+void arch_that_spreads(Ladder&);
 void bollard(Ladder&);
 void screw(Ladder&);
 void crowding(Ladder&);
@@ -92,8 +98,10 @@ inline constexpr Row rows[] = {
      heavy_chain_fine, Level::gold},
     {"HC-03", "chain with a heavy end, 60 steps a second", "NewtonMidpoint", heavy_chain_midpoint,
      Level::gold},
+    {"HC-03", "hanging chain, its first swing", "NewtonMidpoint", hanging_chain, Level::gold},
     {"HC-04", "stack", "", stack, Level::gold},
     {"HC-04", "stack", "ProximalNewton", stack_newton, Level::gold},
+    {"HC-04", "pyramid", "ProximalNewton", pyramid, Level::gold},
     {"HC-05", "heavy top taken away", "", warm_start_energy, Level::gold},
     {"HC-06", "soft joint", "", stiffness, Level::gold},
     {"HC-07", "step size", "PositionProjection", step_size, Level::gold},
@@ -124,11 +132,14 @@ inline constexpr Row rows[] = {
     {"HC-22", "bar without room", "", no_room, Level::gold},
     {"HC-22", "opposed motors", "", opposed_motors, Level::gold},
     {"HC-23", "a rod that is pushed on its tip", "", painleve, Level::gold},
+    {"HC-23", "drawer that jams", "", drawer, Level::gold},
     {"HC-24", "elastic balls", "", elastic_balls, Level::silver},
     {"HC-25", "impacts at one moment", "", simultaneous, Level::gold},
     {"HC-26", "card house", "ProximalNewton", card_house, Level::gold},
     {"HC-27", "arch", "ProximalNewton", arch, Level::silver},
-    {"HC-28", "dominoes", "ProximalNewton", dominoes, Level::silver},
+    {"HC-27", "arch whose support gives way", "ProximalNewton", arch_that_spreads, Level::silver},
+    {"HC-28", "dominoes", "", dominoes, Level::silver},
+    {"HC-28", "dominoes", "ProximalNewton", dominoes_newton, Level::silver},
     {"HC-29", "tower of blocks, one taken out", "ProximalNewton", tower, Level::gold},
     {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-5}", heap, Level::gold},
     {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}",
@@ -144,6 +155,8 @@ inline constexpr Row rows[] = {
     {"HC-35", "net of ball joints", "AcceleratedGaussSeidel{.tolerance = 1e-6}, WholeViolation", joint_grid,
      Level::gold},
     {"HC-35", "net of ball joints", "DirectGaussSeidel, WholeViolation", joint_grid_direct, Level::silver},
+    {"HC-35", "net of ball joints, let go level", "DirectGaussSeidel, WholeViolation, Substeps{.count = 16}",
+     joint_grid_level, Level::silver},
     {"HC-36", "stretched chain", "PositionProjection", stretched_chain, Level::gold},
     {"HC-37", "crowding", "ProximalNewton", crowding, Level::gold},
     {"HC-37", "crowding",

@@ -43,6 +43,30 @@ void climb_stack(Ladder& ladder, const Solver& solver) {
 
 }  // namespace
 
+// Rows of unit boxes a finger's breadth apart, each on two of the row below, for 10 s.
+void pyramid(Ladder& ladder) {
+  for (const int base : {10, 20, 50, 100})
+    ladder.rung(format("%d boxes wide", base), [&]() -> Marks {
+      auto loop = standing_loop(0.6);
+      auto& set = bodies<RigidBodies>(loop.world());
+      const auto ground = set.add_fixed(HalfSpace{});
+      RigidBodies::Handle top;
+      for (int row = 0; row < base; ++row)
+        for (int k = 0; k < base - row; ++k)
+          top = set.add(
+              {.position = {1.02 * (k + 0.5 * row), 0, 0.5 + row}, .mass = 1.0, .shape = Box{1, 1, 1}});
+      const Vec3 start = set.position(top);
+      const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.3 : 10, frame);
+      const double weight = 0.5 * base * (base + 1) * g;
+      return {{"drift of the top (m)", (set.position(top) - start).norm(), 0.5, 1e-2},
+              {"speed at the end (m/s)", top_speed(loop), 1e-3, 1e-3},
+              {"penetration / size", seen.penetration, unbounded, 1e-3},
+              {"error of the ground's force", std::abs(force_from(loop, ground.index) / weight - 1),
+               unbounded, 1e-4},
+              energy_mark(seen, weight)};
+    });
+}
+
 void stack(Ladder& ladder) { climb_stack(ladder, AcceleratedGaussSeidel{}); }
 void stack_newton(Ladder& ladder) { climb_stack(ladder, ProximalNewton{}); }
 
@@ -94,14 +118,17 @@ void card_house(Ladder& ladder) {
     });
 }
 
-// A line of dominoes of 1 × 0.5 × 0.2 m, 0.6 m apart; the first is pushed over.
-void dominoes(Ladder& ladder) {
-  for (const int count : {5, 15, 50})
+namespace {
+
+/// A line of dominoes of 1 × 0.5 × 0.2 m, 0.6 m apart; the first is pushed over.
+template <class Solver>
+void climb_dominoes(Ladder& ladder, const Solver& solver) {
+  for (const int count : {5, 15, 50, 500})
     ladder.rung(format("%d dominoes", count), [&]() -> Marks {
       double arrival[2] = {0, 0};
       int out_of_order = 0, standing = 0;
       for (const int fine : {0, 1}) {
-        auto loop = standing_loop(0.4);
+        AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}, solver};
         auto& set = bodies<RigidBodies>(loop.world());
         set.add_fixed(HalfSpace{});
         std::vector<RigidBodies::Handle> line;
@@ -110,7 +137,7 @@ void dominoes(Ladder& ladder) {
         set.set_velocity(line[0], {0.75, 0, 0}, {0, 1.5, 0});
         std::vector<double> fell(std::size_t(count), -1);
         const double h = fine ? frame / 4 : frame;
-        run(ladder, loop, 3 + 0.3 * count, h, [&](int n) {
+        run(ladder, loop, 3 + 0.22 * count, h, [&](int n) {
           for (std::size_t k = 0; k < fell.size(); ++k)
             if (fell[k] < 0 && set.position(line[k]).z() < 0.45) fell[k] = (n + 1) * h;
         });
@@ -125,6 +152,11 @@ void dominoes(Ladder& ladder) {
               {"wave at h against h/4", std::abs(arrival[0] / arrival[1] - 1), unbounded, 1e-2}};
     });
 }
+
+}  // namespace
+
+void dominoes(Ladder& ladder) { climb_dominoes(ladder, AcceleratedGaussSeidel{}); }
+void dominoes_newton(Ladder& ladder) { climb_dominoes(ladder, ProximalNewton{}); }
 
 // Blocks of 3 × 1 × 0.6, three a layer, every layer across the one below; a middle one is taken out.
 void tower(Ladder& ladder) {
