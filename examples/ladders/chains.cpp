@@ -100,7 +100,7 @@ void hanging_chain(Ladder& ladder) {
         if (before > 0 && now <= 0) passed = (n + before / (before - now)) * frame;
         before = now;
       });
-      const double cost = double(std::clock() - start) / std::lround(until / frame);
+      const double cost = double(std::clock() - start) / double(std::lround(until / frame));
       if (links == 40) of_first = cost;
       return {
           {"period against Bernoulli's", ladder.is_quick() ? 0 : std::abs(passed / quarter - 1), 0.05, 5e-3},

@@ -120,14 +120,16 @@ void card_house(Ladder& ladder) {
 
 namespace {
 
-/// A line of dominoes of 1 × 0.5 × 0.2 m, 0.6 m apart; the first is pushed over.
+/// A line of dominoes of 1 × 0.5 × 0.2 m, 0.6 m apart; the first is pushed over. The wave's pace must not
+/// depend on the step; five hundred are run once, against the pace of fifty.
 template <class Solver>
 void climb_dominoes(Ladder& ladder, const Solver& solver) {
+  double pace_of_fifty = 0;
   for (const int count : {5, 15, 50, 500})
     ladder.rung(format("%d dominoes", count), [&]() -> Marks {
-      double arrival[2] = {0, 0};
       int out_of_order = 0, standing = 0;
-      for (const int fine : {0, 1}) {
+      // Seconds a domino, in steps of h.
+      const auto pace = [&](double h) {
         AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}, solver};
         auto& set = bodies<RigidBodies>(loop.world());
         set.add_fixed(HalfSpace{});
@@ -136,7 +138,6 @@ void climb_dominoes(Ladder& ladder, const Solver& solver) {
           line.push_back(set.add({.position = {0.6 * k, 0, 0.5}, .mass = 1.0, .shape = Box{0.2, 0.5, 1}}));
         set.set_velocity(line[0], {0.75, 0, 0}, {0, 1.5, 0});
         std::vector<double> fell(std::size_t(count), -1);
-        const double h = fine ? frame / 4 : frame;
         run(ladder, loop, 3 + 0.22 * count, h, [&](int n) {
           for (std::size_t k = 0; k < fell.size(); ++k)
             if (fell[k] < 0 && set.position(line[k]).z() < 0.45) fell[k] = (n + 1) * h;
@@ -145,11 +146,14 @@ void climb_dominoes(Ladder& ladder, const Solver& solver) {
           standing += fell[k] < 0;
           out_of_order += k > 0 && fell[k] <= fell[k - 1];
         }
-        arrival[fine] = fell.back() - fell[1];
-      }
+        return (fell.back() - fell[1]) / (count - 2);
+      };
+      const double coarse = pace(frame), other = count <= 50 ? pace(frame / 4) : pace_of_fifty;
+      if (count == 50) pace_of_fifty = coarse;
       return {{"dominoes that stand", double(standing), 0, 0},
               {"out of order", double(out_of_order), 0, 0},
-              {"wave at h against h/4", std::abs(arrival[0] / arrival[1] - 1), unbounded, 1e-2}};
+              {count <= 50 ? "wave at h against h/4" : "wave against that of 50",
+               std::abs(coarse / other - 1), unbounded, 1e-2}};
     });
 }
 
