@@ -110,6 +110,28 @@ TEST_CASE("in a corner of a mesh a vertex touches floor and wall") {
   }
 }
 
+TEST_CASE("a blade that lies on a keel's deck does not meet the keel through it") {
+  // Deck z = 0, the keel (.5 or so, 0, −.9) away from it; the blade's edge, along y, is 1 mm in the deck. Its
+  // upper side looks the other way than the keel, 0.42 m below it, and the two edges cross.
+  const std::vector<Vec3> v{{0, 0, -.6}, {.52, 0, -.3},  {1.04, .5, 0},
+                            {0, .5, 0},  {1.04, -.5, 0}, {0, -.5, 0}};
+  const TriangleMesh hull(
+      v, std::vector<Corners>{
+             {0, 3, 1}, {1, 3, 2}, {0, 1, 5}, {1, 4, 5}, {0, 5, 3}, {1, 2, 4}, {2, 3, 5}, {2, 5, 4}});
+  const std::vector<Vec3> w{{0, -.3, 0}, {0, .3, 0}, {1, -.3, 0}, {1, .3, 0}, {1, -.3, .2}, {1, .3, .2}};
+  const TriangleMesh blade(
+      w, std::vector<Corners>{
+             {0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}});
+  REQUIRE(hull.is_closed());
+  REQUIRE(blade.is_closed());
+  const MeshScene scene = pair_of(hull, blade, {0.2, 0, -1e-3});
+  REQUIRE(scene.contacts.size() == 4);
+  for (const ContactPoint& p : scene.contacts) {
+    CHECK((p.normal - Vec3(0, 0, 1)).norm() < 1e-12);
+    CHECK(std::abs(p.gap + 1e-3) < 1e-12);
+  }
+}
+
 TEST_CASE(
     "a meshed box that slides over coplanar triangles stays in their plane, and its contacts keep their "
     "names") {

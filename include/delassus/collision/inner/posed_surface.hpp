@@ -81,6 +81,23 @@ struct PosedSurface {
     return is_shortest;
   }
 
+  /// Whether x, `depth` behind the surface at `foot` whose normal there is n, is nearer to its far side: to a
+  /// triangle that looks away from n and is not at the foot, as the other side of a sharp edge is.
+  bool is_near_far_side(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {
+    const Vec3 at = pose.to_local(x), normal = pose.rotation.transpose() * n, base = pose.to_local(foot);
+    const Vec3 wide = Vec3::Constant(depth);
+    const Bounds near{at - wide, at + wide};
+    bool is_near = false;
+    surface.visit([&](const Bounds& box) { return !is_near && box.meets(near); },
+                  [&](Index t) {
+                    if (is_near || !(normal.dot(surface.normal(t)) < 0)) return;
+                    const Triangle other = plain(t);
+                    is_near = (at - nearest_on(other, at)).norm() < 0.999 * depth &&
+                              (base - nearest_on(other, base)).norm() > 1e-3 * depth;
+                  });
+    return is_near;
+  }
+
  private:
   /// In the surface's own frame, without what it knows of its neighbours.
   Triangle plain(Index t) const {

@@ -66,7 +66,8 @@ class SurfaceCrossing {
             compare(t, s);
     });
     drop_twins();
-    for (FeatureContact& c : out_) c.is_dropped = c.edge_a >= 0 && c.point.gap < 0 && is_parted(c);
+    for (FeatureContact& c : out_)
+      c.is_dropped = c.edge_a >= 0 && c.point.gap < 0 && (is_parted(c) || is_through(c));
     std::erase_if(out_, [](const FeatureContact& c) { return c.is_dropped; });
     return queries_;
   }
@@ -166,6 +167,19 @@ class SurfaceCrossing {
     }
     return false;
   }
+
+  /// Whether a point of edges that crossed is nearer to the far side of the other solid: they are not what
+  /// touches there. Of surfaces that move by themselves, which may have no inside, nothing is said.
+  bool is_through(const FeatureContact& c) const {
+    if constexpr (is_rigid<A> && is_rigid<B>)
+      return a_.is_near_far_side(c.point.b, c.point.a, c.normal, -c.point.gap) ||
+             b_.is_near_far_side(c.point.a, c.point.b, -c.normal, -c.point.gap);
+    return false;
+  }
+  template <class Surface>
+  static constexpr bool is_rigid = !requires(const Surface& s) {
+    s.outward_at(Index{});
+  };
 
   const PosedSurface<A>& a_;
   const PosedSurface<B>& b_;
