@@ -25,6 +25,13 @@ inline bool passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t, V
   return true;
 }
 
+/// Whether all corners of s are on one side of the plane of t.
+inline bool is_beside(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t) {
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const bool is_above = n.dot(s[0] - t[0]) > 0;
+  return (n.dot(s[1] - t[0]) > 0) == is_above && (n.dot(s[2] - t[0]) > 0) == is_above;
+}
+
 /// The curve in which two surfaces cut each other: stretches along n_A × n_B, one of every two triangles that
 /// cross.
 struct Cut {
@@ -34,8 +41,8 @@ struct Cut {
 template <class A, class B>
 void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, std::vector<Cut>& cuts) {
   cuts.clear();
-  const auto compare = [&](Index t, Index s) {
-    const std::array<Vec3, 3> T = a.points_of(t), S = b.points_of(s);
+  const auto compare = [&](Index t, const std::array<Vec3, 3>& T, Index s, const std::array<Vec3, 3>& S) {
+    if (is_beside(S, T) || is_beside(T, S)) return;
     Vec3 end[2], x;
     int count = 0;
     const auto add = [&](const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& through) {
@@ -51,9 +58,12 @@ void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, std::vector<C
     cuts.push_back({end[is_forward ? 0 : 1], end[is_forward ? 1 : 0], t, s});
   };
   const auto meets = [&](const Bounds& x, const Bounds& y) { return a.bounds(x).meets(b.bounds(y)); };
-  FlatTree::cross(a.surface.tree(), b.surface.tree(), meets, [&](Index i, Index j) {
-    for (Index t = i * A::triangles_per_item; t < (i + 1) * A::triangles_per_item; ++t)
-      for (Index s = j * B::triangles_per_item; s < (j + 1) * B::triangles_per_item; ++s) compare(t, s);
+  FlatTree::cross(a.surface.tree(), b.surface.tree(), meets, [&](auto of_a, auto of_b) {
+    const PosedLeaf<A> ours(a, of_a);
+    const PosedLeaf<B> theirs(b, of_b);
+    for (const auto& x : ours)
+      for (const auto& y : theirs)
+        if (x.box.meets(y.box)) compare(x.t, x.point, y.t, y.point);
   });
 }
 

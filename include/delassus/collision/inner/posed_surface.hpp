@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace delassus::inner {
 
@@ -22,6 +24,7 @@ struct PosedSurface {
     for (Vec3& x : p) x = pose.to_world(x);
     return p;
   }
+  Vec3 normal(Index t) const { return pose.rotation * surface.normal(t); }
   Triangle triangle(Index t) const {
     Triangle out = surface.triangle(t);
     for (Vec3& x : out.point) x = pose.to_world(x);
@@ -106,6 +109,34 @@ struct PosedSurface {
     out.normal = surface.normal(t);
     return out;
   }
+};
+
+/// The triangles of a leaf of the surface's tree, posed once for all that they are compared with.
+template <class Surface>
+class PosedLeaf {
+ public:
+  struct Posed {
+    Index t;
+    std::array<Vec3, 3> point;
+    Bounds box;
+  };
+
+  PosedLeaf(const PosedSurface<Surface>& of, std::span<const Index> items) {
+    constexpr Index each = Surface::triangles_per_item;
+    for (const Index i : items)
+      for (Index t = i * each; t < (i + 1) * each; ++t) {
+        Posed& posed = triangle_[count_++];
+        posed.t = t;
+        posed.point = of.points_of(t);
+        for (const Vec3& p : posed.point) posed.box.add(p);
+      }
+  }
+  const Posed* begin() const { return triangle_.data(); }
+  const Posed* end() const { return triangle_.data() + count_; }
+
+ private:
+  std::array<Posed, std::size_t(FlatTree::leaf_size * Surface::triangles_per_item)> triangle_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace delassus::inner

@@ -59,11 +59,12 @@ class SurfaceCrossing {
   Index collect() {
     queries_ = 0;
     const auto meets = [&](const Bounds& x, const Bounds& y) { return near(a_.bounds(x), b_.bounds(y)); };
-    FlatTree::cross(a_.surface.tree(), b_.surface.tree(), meets, [&](Index i, Index j) {
-      for (Index t = i * A::triangles_per_item; t < (i + 1) * A::triangles_per_item; ++t)
-        for (Index s = j * B::triangles_per_item; s < (j + 1) * B::triangles_per_item; ++s)
-          if ((t != s || !is_self_) && near(bounds_of(a_.points_of(t)), bounds_of(b_.points_of(s))))
-            compare(t, s);
+    FlatTree::cross(a_.surface.tree(), b_.surface.tree(), meets, [&](auto of_a, auto of_b) {
+      const PosedLeaf<A> ours(a_, of_a);
+      const PosedLeaf<B> theirs(b_, of_b);
+      for (const auto& x : ours)
+        for (const auto& y : theirs)
+          if ((x.t != y.t || !is_self_) && near(x.box, y.box)) compare(x, y);
     });
     drop_twins();
     for (FeatureContact& c : out_)
@@ -73,11 +74,6 @@ class SurfaceCrossing {
   }
 
  private:
-  static Bounds bounds_of(const std::array<Vec3, 3>& points) {
-    Bounds b;
-    for (const Vec3& p : points) b.add(p);
-    return b;
-  }
   bool near(Bounds x, const Bounds& y) const {
     const Vec3 wide = Vec3::Constant(range_.before);
     x.low -= wide;
@@ -105,15 +101,27 @@ class SurfaceCrossing {
     return is_one;
   }
 
-  /// Of one surface with itself every two triangles come in both orders.
-  void compare(Index t, Index s) {
+  /// The least height of the points over the plane.
+  static double lowest(const std::array<Vec3, 3>& points, const Vec3& normal, const Vec3& on_plane) {
+    double least = normal.dot(points[0] - on_plane);
+    for (int k = 1; k < 3; ++k) least = std::min(least, normal.dot(points[k] - on_plane));
+    return least;
+  }
+
+  /// Of one surface with itself every two triangles come in both orders. What lies wholly in front of a
+  /// triangle by more than the range has no contact with its face, and none with its edges.
+  void compare(const auto& x, const auto& y) {
     ++queries_;
+    const Index t = x.t, s = y.t;
+    const bool is_s_near = lowest(y.point, a_.normal(t), x.point[0]) <= range_.before,
+               is_t_near = lowest(x.point, b_.normal(s), y.point[0]) <= range_.before;
+    if (!is_s_near && !is_t_near) return;
     const Triangle T = a_.triangle(t), S = b_.triangle(s);
     for (int k = 0; k < 3; ++k) {
       if (b_.surface.owns_corner(s, k)) put_on(a_, t, T, b_, s, S, k, false);
       if (a_.surface.owns_corner(t, k) && !is_self_) put_on(b_, s, S, a_, t, T, k, true);
     }
-    if (is_self_ && t > s) return;
+    if ((is_self_ && t > s) || !is_s_near || !is_t_near) return;
     for (int k = 0; k < 3; ++k) {
       if (T.lean[k] < cone_slack || !a_.surface.owns_edge(t, k)) continue;
       for (int l = 0; l < 3; ++l)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace delassus::inner {
@@ -35,6 +36,8 @@ struct Bounds {
 /// visit needs no stack: a node that is not met is skipped with all below it. Leaves hold up to four items.
 class FlatTree {
  public:
+  static constexpr Index leaf_size = 4;
+
   /// bounds_of(item) gives the Bounds of an item in [0, count).
   template <class BoundsOf>
   void build(Index count, const BoundsOf& bounds_of) {
@@ -82,8 +85,8 @@ class FlatTree {
     }
   }
 
-  /// Descends two trees together: calls visit(i, j) for the items of every two leaves whose boxes pass
-  /// `meets(box, other_box)`, which must hold for all boxes around them too.
+  /// Descends two trees together: calls visit(items, other_items), spans of up to `leaf_size`, for every two
+  /// leaves whose boxes pass `meets(box, other_box)`, which must hold for all boxes around them too.
   template <class Meets, class Visit>
   static void cross(const FlatTree& a, const FlatTree& b, const Meets& meets, const Visit& visit) {
     if (!a.node_.empty() && !b.node_.empty()) cross_from(a, 0, b, 0, meets, visit);
@@ -105,8 +108,7 @@ class FlatTree {
     const Node &x = a.node_[n], &y = b.node_[m];
     if (!meets(x.box, y.box)) return;
     if (x.count > 0 && y.count > 0) {
-      for (Index i = x.first; i < x.first + x.count; ++i)
-        for (Index j = y.first; j < y.first + y.count; ++j) visit(a.item_[i], b.item_[j]);
+      visit(a.items(x), b.items(y));
     } else if (y.count > 0 || (x.count == 0 && length2(x.box) >= length2(y.box))) {
       cross_from(a, n + 1, b, m, meets, visit);
       cross_from(a, a.node_[n + 1].skip, b, m, meets, visit);
@@ -115,13 +117,16 @@ class FlatTree {
       cross_from(a, n, b, b.node_[m + 1].skip, meets, visit);
     }
   }
+  std::span<const Index> items(const Node& leaf) const {
+    return std::span<const Index>(item_).subspan(std::size_t(leaf.first), std::size_t(leaf.count));
+  }
   static double length2(const Bounds& b) { return (b.high - b.low).squaredNorm(); }
 
   /// Halves the items across the axis along which their centres spread most.
   void split(Index first, Index last, const std::vector<Vec3>& centre) {
     const std::size_t n = node_.size();
     node_.emplace_back();
-    if (last - first <= 4) {
+    if (last - first <= leaf_size) {
       node_[n].first = first, node_[n].count = last - first;
     } else {
       Bounds spread;
