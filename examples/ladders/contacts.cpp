@@ -1,4 +1,4 @@
-// HC-23, HC-27, HC-31, HC-32, HC-37: paradoxes, arches, ropes around posts, screws, crowds.
+// HC-23, HC-27, HC-31, HC-37: paradoxes, arches, ropes around posts, crowds.
 #include "rows.hpp"
 #include "watch.hpp"
 
@@ -225,23 +225,6 @@ void bollard(Ladder& ladder) {
       return {{"slip of the load that should hang, or what is missing (m)", wrong, share < 1 ? 0.05 : 0,
                share < 1 ? 0.01 : 0},
               energy_mark(seen, (1 + edge) * g)};
-    });
-}
-
-// A nut that is turned on a thread of 1.75 mm.
-void screw(Ladder& ladder) {
-  for (const double turns : {1., 10., 100.})
-    ladder.rung(format("%g turns", turns), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Screw{}, Motor<Turn>{}}};
-      auto& set = bodies<RigidBodies>(loop.world());
-      const auto nut = set.add({.mass = 0.02, .inertia = Mat3(1e-6 * Mat3::Identity())});
-      const Anchor bolt = world_anchor({0, 0, 0}), end = anchor(set, nut);
-      loop.add(Screw::Item{.a = bolt, .b = end, .pitch = 1.75e-3});
-      loop.add(Motor<Turn>::Item{.a = bolt, .b = end, .speed = 2 * pi});
-      const double until = ladder.is_quick() ? 1 : turns;
-      run(ladder, loop, until, 0.01);
-      return {
-          {"way against pitch × turns", std::abs(set.position(nut).z() / (1.75e-3 * until) - 1), 0.05, 5e-3}};
     });
 }
 

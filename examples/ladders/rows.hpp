@@ -74,6 +74,7 @@ void arch(Ladder&);
 void arch_that_spreads(Ladder&);
 void bollard(Ladder&);
 void screw(Ladder&);
+void thread_by_contacts(Ladder&);
 void crowding(Ladder&);
 void crowding_foreseen(Ladder&);
 
@@ -146,6 +147,8 @@ inline constexpr Row rows[] = {
      heap_loose, Level::gold},
     {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
      bollard, Level::silver},
+    {"HC-32", "nut on a bolt, by its contacts", "AcceleratedGaussSeidel{.tolerance = 1e-4}, WithMeshes{NativeCollision{.margin = 5e-5}}",
+     thread_by_contacts, Level::silver},
     {"HC-32", "nut on a bolt, by a joint", "", screw, Level::silver},
     {"HC-33", "train of gears", "", gear_train, Level::gold},
     {"HC-33", "train of gears", "DirectGaussSeidel", gear_train_direct, Level::silver},
