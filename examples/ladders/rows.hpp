@@ -51,6 +51,8 @@ void far_away(Ladder&);
 void scale(Ladder&);
 void seams(Ladder&);
 void seams_left_out(Ladder&);
+void slide_over_triangles(Ladder&);
+void edges(Ladder&);
 void bullet(Ladder&);
 void bullet_watched(Ladder&);
 void elastic_balls(Ladder&);
@@ -121,6 +123,8 @@ inline constexpr Row rows[] = {
     {"HC-16", "no normal", "", no_normal, Level::gold},
     {"HC-17", "seams of a floor", "", seams, Level::bronze},
     {"HC-17", "seams of a floor", "Seamless", seams_left_out, Level::gold},
+    {"HC-17", "floor of triangles", "WithMeshes{NativeCollision{}}", slide_over_triangles, Level::gold},
+    {"HC-17", "edges on edges", "", edges, Level::gold},
     {"HC-18", "bullet and thin plate", "", bullet, Level::gold},
     {"HC-18", "bullet and thin plate", "Continuous", bullet_watched, Level::gold},
     {"HC-19", "inverted elements", "TetrahedralFem, ImplicitEuler", inverted_elements, Level::gold},
