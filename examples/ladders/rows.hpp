@@ -69,6 +69,8 @@ void limits(Ladder&);
 void limits_in_parts(Ladder&);
 void inverted_elements(Ladder&);
 void incompressible(Ladder&);
+void squeezed(Ladder&);
+void squeezed_tetrahedra(Ladder&);
 void rigid_on_soft(Ladder&);
 void painleve(Ladder&);
 void drawer(Ladder&);
@@ -129,6 +131,9 @@ inline constexpr Row rows[] = {
     {"HC-18", "bullet and thin plate", "Continuous", bullet_watched, Level::gold},
     {"HC-19", "inverted elements", "TetrahedralFem, ImplicitEuler", inverted_elements, Level::gold},
     {"HC-20", "nearly incompressible beam", "HexahedralFem", incompressible, Level::gold},
+    {"HC-20", "squeezed block", "HexahedralFem<StableNeoHookean>", squeezed, Level::silver},
+    {"HC-20", "squeezed block", "TetrahedralFem<StableNeoHookean>, which locks", squeezed_tetrahedra,
+     Level::silver},
     {"HC-21", "four-bars through their singular pose", "ProximalNewton, WholeViolation", four_bars,
      Level::bronze},
     {"HC-21", "four-bars through their singular pose", "NewtonMidpoint", four_bars_midpoint, Level::silver},
