@@ -4,6 +4,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
+#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -27,6 +28,19 @@ struct NormSearch {
     for (auto* v : {&x, &b, &r, &p, &q}) v->assign(unknowns, 0);
   }
 };
+
+/// The residual that a solver, or the one it goes around, was asked for; 0 where it stops by another measure.
+template <template <class...> class Solver, class... More>
+double wanted_residual(const Solver<Residual, More...>& solver) {
+  return solver.all_verified ? 0 : solver.tolerance;
+}
+template <class Solver>
+double wanted_residual(const Solver& solver) {
+  if constexpr (requires { solver.solver; })
+    return wanted_residual(solver.solver);
+  else
+    return 0;
+}
 
 }  // namespace inner
 
@@ -77,7 +91,9 @@ struct MinimumNorm {
     for (int round = 0; round < 4; ++round)
       if (!now.shrink(max_products)) break;
     const Measure after = problem.measure();
-    if (after.residual <= std::max(2 * report.measure.residual, after.floor))
+    // Conjugate gradients end at 1e-13, a solve may by chance have come closer.
+    if (after.residual <=
+        std::max({2 * report.measure.residual, after.floor, inner::wanted_residual(solver)}))
       report.measure = after;
     else
       problem.load(work.solved);
