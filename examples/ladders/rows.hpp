@@ -35,6 +35,9 @@ void grip(Ladder&);
 void duplicates(Ladder&);
 void many_hinges(Ladder&);
 void many_hinges_midpoint(Ladder&);
+void supports(Ladder&);
+void supports_shared(Ladder&);
+void loops_in_space(Ladder&);
 void vanishing_mass(Ladder&);
 void vanishing_mass_midpoint(Ladder&);
 void no_room(Ladder&);
@@ -115,6 +118,10 @@ inline constexpr Row rows[] = {
     {"HC-09", "duplicate constraints", "", duplicates, Level::gold},
     {"HC-10", "redundant hinges", "WholeViolation, Substeps{.count = 4}", many_hinges, Level::gold},
     {"HC-10", "redundant hinges", "NewtonMidpoint", many_hinges_midpoint, Level::gold},
+    {"HC-10", "box and table on many supports", "", supports, Level::silver},
+    {"HC-10", "box and table on many supports", "MinimumNorm{AcceleratedGaussSeidel{.tolerance = 1e-10}}",
+     supports_shared, Level::gold},
+    {"HC-10", "redundant loops", "NewtonMidpoint", loops_in_space, Level::gold},
     {"HC-11", "vanishing mass in a chain", "PositionProjection", vanishing_mass, Level::gold},
     {"HC-11", "vanishing mass in a chain", "NewtonMidpoint", vanishing_mass_midpoint, Level::gold},
     {"HC-12", "free spin, 100 s at 60 steps a second", "", free_spin, Level::gold},
