@@ -42,6 +42,7 @@ void vanishing_mass(Ladder&);
 void vanishing_mass_midpoint(Ladder&);
 void no_room(Ladder&);
 void opposed_motors(Ladder&);
+void no_way(Ladder&);
 void free_spin(Ladder&);
 void long_spin(Ladder&);
 void long_pendulum(Ladder&);
@@ -65,6 +66,7 @@ void heap_loose(Ladder&);
 void four_bars(Ladder&);
 void four_bars_midpoint(Ladder&);
 void four_bars_midpoint_in_parts(Ladder&);
+void dead_centres(Ladder&);
 void gear_train(Ladder&);
 void gear_train_direct(Ladder&);
 void gear_train_rattle(Ladder&);
@@ -146,8 +148,10 @@ inline constexpr Row rows[] = {
     {"HC-21", "four-bars through their singular pose", "NewtonMidpoint", four_bars_midpoint, Level::silver},
     {"HC-21", "four-bars through their singular pose", "NewtonMidpoint, Substeps{.count = 4}",
      four_bars_midpoint_in_parts, Level::gold},
+    {"HC-21", "slider-crank and five-bar at their dead centres", "NewtonMidpoint", dead_centres, Level::gold},
     {"HC-22", "bar without room", "", no_room, Level::gold},
     {"HC-22", "opposed motors", "", opposed_motors, Level::gold},
+    {"HC-22", "limits, a loop and a pin that cannot be", "PositionProjection", no_way, Level::gold},
     {"HC-23", "a rod that is pushed on its tip", "", painleve, Level::gold},
     {"HC-23", "drawer that jams", "", drawer, Level::gold},
     {"HC-24", "elastic balls", "", elastic_balls, Level::silver},
