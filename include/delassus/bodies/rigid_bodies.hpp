@@ -156,8 +156,8 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     return twist<T>(Vec<3, T>::Zero(), axis.template cast<T>());
   }
   Vec3 point(const Anchor& a) const {
-    return (state_.x[a.block] + state_.R[a.block] * Vec<3, T>(a.local.template cast<T>()))
-        .template cast<double>();
+    return state_.x[a.block] +
+           Vec<3, T>(state_.R[a.block] * a.local.template cast<T>()).template cast<double>();
   }
   Quat frame(const Anchor& a) const { return state_.q[a.block].template cast<double>() * a.frame; }
   Mat3 axes(const Anchor& a) const { return state_.R[a.block].template cast<double>() * a.frame.toRotationMatrix(); }
@@ -236,7 +236,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   }
 
  private:
-  Vec3 position_of(Index b) const { return state_.x[b].template cast<double>(); }
+  Vec3 position_of(Index b) const { return state_.x[b]; }
   void check_velocity(const Vec3& velocity, const Vec3& angular_velocity, Index b) const {
     DELASSUS_EXPECT(is_finite(velocity) && is_finite(angular_velocity), who(b) + ": velocity is not finite");
     DELASSUS_EXPECT(inner::fits<T>(velocity), who(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));

@@ -174,7 +174,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
  private:
   using Nodes::slots_, Nodes::v_, Nodes::load_;
 
-  Vec3 position_of(Index b) const { return state_.x[b].template cast<double>(); }
+  Vec3 position_of(Index b) const { return state_.x[b]; }
   Vec3 chord(Index b) const { return position_of(next_[b]) - position_of(b); }
   Vec3 on_segment(Index b, double share) const {
     return share == 0 ? position_of(b) : Vec3(position_of(b) + share * chord(b));

@@ -136,8 +136,8 @@ class ElasticLine {
 
   Beam::Strain strain(std::size_t e, const RigidState<T>& nodes) const {
     const Index a = blocks_[e], b = blocks_[e + 1];
-    return beams_[e].strain(nodes.x[a].template cast<double>(), nodes.q[a].template cast<double>(),
-                            nodes.x[b].template cast<double>(), nodes.q[b].template cast<double>());
+    return beams_[e].strain(nodes.x[a], nodes.q[a].template cast<double>(), nodes.x[b],
+                            nodes.q[b].template cast<double>());
   }
 
   void add_beam(std::size_t e, const Beam::State& s, bool with_stiffness) {

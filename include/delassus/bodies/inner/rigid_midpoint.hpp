@@ -65,13 +65,13 @@ class RigidMidpoint {
       body.turn = cayley_matrix(body.t);
       body.stiffness.setZero();
     }
-    s.x[b] = body.x + h * body.mean;
+    s.x[b] = body.x + Vector(h * body.mean).template cast<double>();
     s.R[b] = body.R * body.turn;
   }
   /// q ← the mean of both ends; the mean of two rotations is none, and is not made one.
   void to_middle(RigidState<T>& s, Index b, T h) const {
     const Body& body = bodies_[b];
-    s.x[b] = body.x + (h / 2) * body.mean;
+    s.x[b] = body.x + Vector((h / 2) * body.mean).template cast<double>();
     s.R[b] = T(0.5) * (body.R + s.R[b]);
   }
   void back(RigidState<T>& s, Index b) const {
@@ -129,7 +129,7 @@ class RigidMidpoint {
   /// off by rounding would turn a slender body far.
   Twist go(RigidState<T>& s, Index b, T h) const {
     const Body& body = bodies_[b];
-    s.x[b] = body.x + h * body.mean;
+    s.x[b] = body.x + Vector(h * body.mean).template cast<double>();
     s.q[b] = unit(s.q[b] * cayley<T>(h * body.mean_rate));
     s.turn(b);
     return twist<T>(Vector(T(2) * body.mean - body.velocity),
@@ -144,7 +144,8 @@ class RigidMidpoint {
 
  private:
   struct Body {
-    Vector x, velocity, rate, mean, mean_rate, t, missing, missing_moment;
+    Vec3 x;
+    Vector velocity, rate, mean, mean_rate, t, missing, missing_moment;
     Matrix R, turn, stiffness, inverse, response;
     T over_mass = 0;
     bool moves = false;

@@ -44,7 +44,7 @@ class RigidPath {
     const Vector spatial = s.R[b] * (s.inertia[b] * (s.R[b].transpose() * angular_part(w)));
     const Eigen::Quaternion<T> turned =
         turn_freely<T>(s.inverse_inertia[b], s.q[b], spatial, h, &body.response);
-    put(s, b, body.x + h * linear_part(w), turned.coeffs());
+    put(s, b, body.x + Vector(h * linear_part(w)).template cast<double>(), turned.coeffs());
     return twist<T>(linear_part(w), s.R[b] * (s.inverse_inertia[b] * (s.R[b].transpose() * spatial)));
   }
   /// What impulses at the start do to where `drift` ends: each column of X.
@@ -105,14 +105,15 @@ class RigidPath {
     Vector v = Vector::Zero(), rate = Vector::Zero();
   };
   struct Body {
-    Vector x, rate, stage_x;
+    Vec3 x, stage_x;
+    Vector rate;
     Four q, stage_q;
     Twist v;
     Slope slope, sum;
     Matrix response;
   };
 
-  static void put(RigidState<T>& s, Index b, const Vector& x, const Four& q) {
+  static void put(RigidState<T>& s, Index b, const Vec3& x, const Four& q) {
     s.x[b] = x;
     s.q[b].coeffs() = q;
     s.turn(b);
@@ -120,7 +121,7 @@ class RigidPath {
   Twist place(RigidState<T>& s, Index b, const Slope& slope, T t) {
     const Body& body = bodies_[b];
     const Four q = body.q + t * slope.q;
-    put(s, b, body.x + t * slope.x, q / q.norm());
+    put(s, b, body.x + Vector(t * slope.x).template cast<double>(), q / q.norm());
     const Vector rate = body.rate + t * slope.rate;
     return twist<T>(linear_part(body.v) + t * slope.v, s.R[b] * rate);
   }

@@ -26,7 +26,7 @@ class Targets {
       if (!targets_[b].is_set) continue;
       are_any_ = true;
       const Quat now = state.q[b].template cast<double>();
-      const Vec3 way = targets_[b].position - state.x[b].template cast<double>(),
+      const Vec3 way = targets_[b].position - state.x[b],
                  turn = logarithm<double>(targets_[b].orientation * now.conjugate());
       f(b, twist<T>((way / h).template cast<T>(), (turn / h).template cast<T>()));
     }
