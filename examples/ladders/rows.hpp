@@ -31,6 +31,8 @@ void step_size(Ladder&);
 void drives(Ladder&);
 void friction_range(Ladder&);
 void friction_range_newton(Ladder&);
+void jams(Ladder&);
+void jams_newton(Ladder&);
 void grip(Ladder&);
 void duplicates(Ladder&);
 void many_hinges(Ladder&);
@@ -52,6 +54,7 @@ void overlap_projected(Ladder&);
 void no_normal(Ladder&);
 void bad_input(Ladder&);
 void far_away(Ladder&);
+void far_away_in_float(Ladder&);
 void scale(Ladder&);
 void seams(Ladder&);
 void seams_left_out(Ladder&);
@@ -117,6 +120,8 @@ inline constexpr Row rows[] = {
     {"HC-07", "step size", "PositionProjection", step_size, Level::gold},
     {"HC-08", "range of friction", "", friction_range, Level::gold},
     {"HC-08", "range of friction", "ProximalNewton", friction_range_newton, Level::gold},
+    {"HC-08", "range of friction, wedge and arch", "", jams, Level::gold},
+    {"HC-08", "range of friction, wedge and arch", "ProximalNewton", jams_newton, Level::gold},
     {"HC-09", "duplicate constraints", "", duplicates, Level::gold},
     {"HC-10", "redundant hinges", "WholeViolation, Substeps{.count = 4}", many_hinges, Level::gold},
     {"HC-10", "redundant hinges", "NewtonMidpoint", many_hinges_midpoint, Level::gold},
@@ -131,6 +136,7 @@ inline constexpr Row rows[] = {
     {"HC-13", "overlap at the start", "PositionProjection", overlap_projected, Level::gold},
     {"HC-14", "bad input", "", bad_input, Level::gold},
     {"HC-15", "far from the origin", "", far_away, Level::gold},
+    {"HC-15", "far from the origin, single precision", "RigidBodiesF", far_away_in_float, Level::gold},
     {"HC-16", "no normal", "", no_normal, Level::gold},
     {"HC-17", "seams of a floor", "", seams, Level::bronze},
     {"HC-17", "seams of a floor", "Seamless", seams_left_out, Level::gold},
