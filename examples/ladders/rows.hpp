@@ -80,6 +80,7 @@ void incompressible(Ladder&);
 void squeezed(Ladder&);
 void squeezed_tetrahedra(Ladder&);
 void rigid_on_soft(Ladder&);
+void soft_grip(Ladder&);
 void painleve(Ladder&);
 void drawer(Ladder&);
 void arch(Ladder&);
@@ -195,6 +196,7 @@ inline constexpr Row rows[] = {
     {"HC-38", "stiff drive", "", drives, Level::gold},
     {"HC-39", "grip", "ProximalNewton", grip, Level::silver},
     {"HC-40", "rigid on soft", "HexahedralFem, ImplicitEuler", rigid_on_soft, Level::silver},
+    {"HC-40", "soft body between rigid fingers", "HexahedralFem, ImplicitEuler", soft_grip, Level::gold},
     {"HC-41", "long spin", "", long_spin, Level::gold},
     {"HC-41", "long pendulum", "ImplicitMidpoint, PositionProjection", long_pendulum, Level::gold},
     {"HC-41", "long pendulum", "NewtonMidpoint", long_pendulum_midpoint, Level::gold},

@@ -180,4 +180,63 @@ void rigid_on_soft(Ladder& ladder) {
     });
 }
 
+// A soft cube of 1 kg, 0.1 m, between two rigid fingers of r kg that are pushed on it with 20 N each, for 10
+// s: friction 0.5 holds up to twice its weight.
+void soft_grip(Ladder& ladder) {
+  for (const double r : {1., 0.1, 1e-2, 1e-3, 10., 100., 1e3})
+    ladder.rung(format("fingers of %g kg", r), [&]() -> Marks {
+      using Soft = HexahedralFem<Corotational>;
+      AnimationLoop loop{World{RigidBodies{}, Soft{}},
+                         Constraints{Contact{Coulomb{.friction = 0.5}}, Slider{}},
+                         ImplicitEuler{.rayleigh_stiffness = 0.01},
+                         AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 5000}};
+      auto& rigid = bodies<RigidBodies>(loop.world());
+      auto& soft = bodies<Soft>(loop.world());
+      const double push = 20, h = 0.01, side = 0.1, young = 5e4, nu = 0.3;
+      const double squeeze = push / (young * side);  // F L/(E A), m
+      const auto cube = soft.add({.mesh = hexahedral_box({side, side, side}, {3, 3, 3}),
+                                  .elasticity = {.young = young, .poisson = nu},
+                                  .density = 1000,
+                                  .contact_radius = 0.002});
+      const Vec3 stretch = Vec3(-1, nu, nu) * squeeze / side, middle_of(side / 2, side / 2, side / 2);
+      for (Index k = 0; k < soft.node_count(cube); ++k) {
+        const Vec3 x = soft.position(soft.node(cube, k));
+        soft.place(soft.node(cube, k), x + stretch.cwiseProduct(x - middle_of));
+      }
+      const Quat along = frame_along({1, 0, 0});
+      RigidBodies::Handle finger[2];
+      for (const int k : {0, 1}) {
+        const Vec3 at(k ? 0.112 - squeeze / 2 : squeeze / 2 - 0.012, 0.05, 0.05);
+        finger[k] = rigid.add({.position = at, .mass = r, .shape = Box{0.02, 0.12, 0.12}});
+        loop.add(Slider::Item{world_anchor(at, along), anchor_at(rigid, finger[k], at, along)});
+      }
+      const auto height = [&] {
+        double sum = 0;
+        for (Index k = 0; k < soft.node_count(cube); ++k) sum += soft.position(soft.node(cube, k)).z();
+        return sum / soft.node_count(cube);
+      };
+      const double until = ladder.is_quick() ? 2 : 10, start = height();
+      double middle = 0;
+      const auto press = [&] {
+        for (const int k : {0, 1}) rigid.apply_force(finger[k], {k ? -push : push, 0, 0});
+      };
+      press();
+      run(ladder, loop, until, h, [&](int n) {
+        press();
+        if ((n + 1) * h <= until / 2) middle = height();
+      });
+      Vec3 held = Vec3::Zero();
+      double pressed = 0;
+      for (const ContactResult& c : loop.contacts()) {
+        const bool is_b = c.record.b.set == 1;
+        held += (is_b ? 1 : -1) * c.impulse / h;
+        pressed += std::abs(c.impulse.x()) / h / 2;
+      }
+      return {{"error of the force that holds it", std::abs(held.z() / g - 1), 0.05, 1e-3},
+              {"error of the fingers' force", std::abs(pressed / push - 1), 0.05, 1e-3},
+              {"fallen (m)", start - height(), 0.05, 0.01},
+              {"creep (m/s)", std::abs(middle - height()) / (until / 2), 1e-3, 1e-6}};
+    });
+}
+
 }  // namespace ladders
