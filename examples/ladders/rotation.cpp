@@ -73,7 +73,7 @@ namespace {
 
 template <class... Policies>
 void climb_pendulum(Ladder& ladder, const Policies&... policies) {
-  for (int power = 3; power <= 6; ++power)
+  for (int power = 3; power <= 7; ++power)
     ladder.rung(format("1e%d steps", power), [&]() -> Marks {
       AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, policies...};
       auto& set = bodies<RigidBodies>(loop.world());
@@ -95,5 +95,94 @@ void long_pendulum(Ladder& ladder) {
                  ImplicitMidpoint{});
 }
 void long_pendulum_midpoint(Ladder& ladder) { climb_pendulum(ladder, NewtonMidpoint{}); }
+
+namespace {
+
+/// Runs many steps; look() after each thousandth.
+template <class Loop>
+void endure(Ladder& ladder, Loop& loop, long steps, double h, const auto& look) {
+  for (long n = 0; n < steps; ++n) {
+    loop.step(h);
+    if (n % 1000 != 999) continue;
+    look();
+    ladder.show((n + 1.0) / double(steps));
+  }
+}
+
+Mark time_mark(const auto& loop, long steps, double h) {
+  return {"t − n h (s)", std::abs(loop.time() - double(steps) * h), 1e-6, 0};
+}
+
+/// |q| − 1, the worst of all bodies.
+double off_unit(const auto& set) {
+  double worst = 0;
+  for (const Index b : alive(set))
+    worst = most(worst, std::abs(set.orientation(set.handle(b)).coeffs().norm() - 1));
+  return worst;
+}
+
+/// Five boxes on the ground, of which the upper ones are a little off the middle.
+template <class... Policies>
+void climb_rest(Ladder& ladder, int hardest, const Policies&... policies) {
+  for (int power = 4; power <= hardest; ++power)
+    ladder.rung(format("1e%d steps", power), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}, policies...};
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.add_fixed(HalfSpace{});
+      RigidBodies::Handle top;
+      for (int k = 0; k < 5; ++k)
+        top = set.add({.position = {0.125 * k / 16, 0, 0.5 + k}, .mass = 1.0, .shape = Box{1, 1, 1}});
+      for (int n = 0; n < 1000; ++n) loop.step(frame);  // it settles
+      const long steps = ladder.is_quick() ? 1000 : std::lround(std::pow(10., power));
+      const Vec3 start = set.position(top);
+      const double first = energy(loop);
+      double drift = 0, change = 0, norm = 0;
+      endure(ladder, loop, steps, frame, [&] {
+        drift = most(drift, (set.position(top) - start).norm());
+        change = most(change, std::abs(energy(loop) / first - 1));
+        norm = most(norm, off_unit(set));
+      });
+      return {{"drift of the top (m)", drift, 1e-6, 1e-9},
+              {"change of energy", change, 1e-6, 1e-9},
+              {"|q| − 1", norm, 1e-12, 1e-15},
+              time_mark(loop, steps + 1000, frame)};
+    });
+}
+
+}  // namespace
+
+// A heavy top at 50 rad/s on its tip, leaning by 0.5 rad; it nods and goes round.
+void long_top(Ladder& ladder) {
+  for (int power = 4; power <= 7; ++power)
+    ladder.rung(format("1e%d steps", power), [&]() -> Marks {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, NewtonMidpoint{}};
+      auto& set = bodies<RigidBodies>(loop.world());
+      const Vec3 axis(std::sin(0.5), 0, std::cos(0.5));
+      const auto top = set.add({.position = 0.1 * axis,
+                                .orientation = exponential<double>({0, 0.5, 0}),
+                                .angular_velocity = 50 * axis,
+                                .mass = 1.0,
+                                .inertia = Mat3(Vec3(2e-3, 2e-3, 3e-3).asDiagonal())});
+      loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor(set, top, {0, 0, -0.1})});
+      const double start = energy(loop), h = 2e-3;
+      const long steps = std::lround(std::pow(10., power));
+      double change = 0, norm = 0, gap = 0;
+      endure(ladder, loop, steps, h, [&] {
+        change = most(change, std::abs(energy(loop) / start - 1));
+        norm = most(norm, off_unit(set));
+        gap = most(gap, loop.report().max_joint_violation);
+      });
+      return {{"change of energy", change, 1e-6, 1e-6},
+              {"joint gap (m)", gap, 1e-6, 1e-9},
+              {"|q| − 1", norm, 1e-12, 1e-15},
+              time_mark(loop, steps, h)};
+    });
+}
+
+void long_rest(Ladder& ladder) { climb_rest(ladder, 6); }
+void long_rest_exact(Ladder& ladder) {
+  climb_rest(ladder, 6, AcceleratedGaussSeidel{.tolerance = 1e-12, .max_iterations = 5000});
+}
+void long_sleep(Ladder& ladder) { climb_rest(ladder, 7, Sleeping{}); }
 
 }  // namespace ladders

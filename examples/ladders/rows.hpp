@@ -49,6 +49,10 @@ void free_spin(Ladder&);
 void long_spin(Ladder&);
 void long_pendulum(Ladder&);
 void long_pendulum_midpoint(Ladder&);
+void long_top(Ladder&);
+void long_rest(Ladder&);
+void long_rest_exact(Ladder&);
+void long_sleep(Ladder&);
 void overlap(Ladder&);
 void overlap_projected(Ladder&);
 void no_normal(Ladder&);
@@ -200,6 +204,11 @@ inline constexpr Row rows[] = {
     {"HC-41", "long spin", "", long_spin, Level::gold},
     {"HC-41", "long pendulum", "ImplicitMidpoint, PositionProjection", long_pendulum, Level::gold},
     {"HC-41", "long pendulum", "NewtonMidpoint", long_pendulum_midpoint, Level::gold},
+    {"HC-41", "long heavy top", "NewtonMidpoint", long_top, Level::gold},
+    {"HC-41", "long rest of a stack", "", long_rest, Level::silver},
+    {"HC-41", "long rest of a stack", "AcceleratedGaussSeidel{.tolerance = 1e-12}", long_rest_exact,
+     Level::gold},
+    {"HC-41", "long rest of a stack", "Sleeping", long_sleep, Level::gold},
     {"HC-42", "tiny and huge", "", scale, Level::gold},
 };
 
