@@ -6,6 +6,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/parting.hpp>
 #include <delassus/collision/inner/reduce.hpp>
 #include <delassus/collision/inner/resting_pair.hpp>
 #include <delassus/collision/inner/settle.hpp>
@@ -174,9 +175,16 @@ class CollisionEngine {
     if (is_half_space(b))
       return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
     const Vec3 guess = a.pose.rotation.transpose() * last.normal;
-    const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, b_in_a, reach, scale, guess);
+    // Centres in one point: the normal of B moved by 1e-4 of the size, far above what round shapes resolve. Along it B
+    // is then put back, and the depth is within 4e-4 of the size of the least.
+    const bool is_moved = is_zero(b_in_a.position) && is_zero(last.normal);
+    Vec3 shift = Vec3::Zero();
+    if (is_moved) shift = a.pose.rotation.transpose() * (1e-4 * scale * inner::parting(a.key, b.key));
+    const Pose pose{.position = b_in_a.position + shift, .rotation = b_in_a.rotation};
+    const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, pose, reach, scale, guess);
     report_.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
+    if (is_moved) r.distance -= r.normal.dot(shift), r.point_b -= shift;
     if (r.status == PairStatus::near)
       now.owner = inner::settle_normal(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
