@@ -1,4 +1,4 @@
-// HC-23, HC-27, HC-31, HC-37: paradoxes, arches, ropes around posts, crowds.
+// HC-23, HC-27, HC-31: paradoxes, arches, ropes around posts.
 #include "rows.hpp"
 #include "watch.hpp"
 
@@ -226,41 +226,6 @@ void bollard(Ladder& ladder) {
                share < 1 ? 0.01 : 0},
               energy_mark(seen, (1 + edge) * g)};
     });
-}
-
-// Spheres on a plane that all want to the middle.
-template <class... Policies>
-void crowd(Ladder& ladder, const Policies&... policies) {
-  for (const int edge : {5, 10, 20})
-    ladder.rung(format("%d spheres", edge * edge), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, policies...};
-      auto& set = bodies<RigidBodies>(loop.world());
-      set.add_fixed(HalfSpace{});
-      std::vector<RigidBodies::Handle> all;
-      for (int i = 0; i < edge; ++i)
-        for (int k = 0; k < edge; ++k)
-          all.push_back(
-              set.add({.position = {0.3 * (i - 0.5 * (edge - 1)), 0.3 * (k - 0.5 * (edge - 1)), 0.1},
-                       .mass = 1.0,
-                       .shape = Sphere{0.1}}));
-      const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.2 : 10, frame, [&](int) {
-        for (const auto& body : all) {
-          const Vec3 x = set.position(body);
-          set.apply_force(body, -10 * Vec3(x.x(), x.y(), 0) / std::max(1e-3, std::hypot(x.x(), x.y())));
-        }
-      });
-      double square = 0;
-      for (const auto& body : all) square += set.velocity(body).squaredNorm() / double(all.size());
-      return {{"rms speed at the end (m/s)", std::sqrt(square), ladder.is_quick() ? 10 : 0.1,
-               ladder.is_quick() ? 10 : 1e-3},
-              {"largest overlap / diameter", seen.penetration / 0.2, 0.1, 0.01}};
-    });
-}
-void crowding(Ladder& ladder) { crowd(ladder, ProximalNewton{}); }
-// Spheres that come in at 7 m/s go half a diameter in a step: a margin as wide lets none in unseen.
-void crowding_foreseen(Ladder& ladder) {
-  crowd(ladder, AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300},
-        NativeCollision{.margin = 0.1});
 }
 
 }  // namespace ladders

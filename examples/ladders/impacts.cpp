@@ -1,4 +1,4 @@
-// HC-17, HC-18, HC-24, HC-25, HC-30: seams, bullets, elastic balls, impacts at one moment, a heap.
+// HC-17, HC-18, HC-24, HC-25: seams, bullets, elastic balls, impacts at one moment.
 #include "rows.hpp"
 #include "watch.hpp"
 
@@ -164,40 +164,5 @@ void simultaneous(Ladder& ladder) {
             {"energy gained", seen.gain / seen.first_energy, 1e-9, 1e-12, 1}};
   });
 }
-
-namespace {
-
-/// Spheres poured into a box without a lid.
-void pour(Ladder& ladder, const AcceleratedGaussSeidel& solver) {
-  for (const int count : {64, 216, 512, 1000})
-    ladder.rung(format("%d spheres", count), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}, solver};
-      auto& set = bodies<RigidBodies>(loop.world());
-      const int edge = int(std::lround(std::cbrt(count)));
-      set.add_fixed(HalfSpace{});
-      for (int axis = 0; axis < 2; ++axis)
-        for (const double side : {-1., 1.}) {
-          const Vec3 n = -side * unit_axis(axis);
-          set.add_fixed(HalfSpace{n}, 0.11 * edge * side * unit_axis(axis));
-        }
-      for (int i = 0; i < count; ++i) {
-        const Vec3 cell(i % edge, i / edge % edge, i / edge / edge);
-        const double wobble = 0.008 * std::sin(12.9 * i);
-        set.add({.position = 0.22 * (cell - 0.5 * (edge - 1) * Vec3(1, 1, 0)) + Vec3(wobble, -wobble, 0.12),
-                 .mass = 1.0,
-                 .shape = Sphere{0.1}});
-      }
-      const Seen seen = run(ladder, loop, ladder.is_quick() ? 1 : 5, frame);
-      return {{"mean overlap / diameter", seen.last_overlap / 0.2, 0.01, 1e-3},
-              {"largest overlap at the end / diameter", seen.last_penetration / 0.2, 0.1, 0.01},
-              {"largest overlap of the run / diameter", seen.penetration / 0.2, unbounded, unbounded},
-              energy_mark(seen, count * g * 0.11 * edge)};
-    });
-}
-
-}  // namespace
-
-void heap(Ladder& ladder) { pour(ladder, {.tolerance = 1e-5}); }
-void heap_loose(Ladder& ladder) { pour(ladder, {.tolerance = 1e-3, .max_iterations = 300}); }
 
 }  // namespace ladders

@@ -55,6 +55,8 @@ void long_rest_exact(Ladder&);
 void long_sleep(Ladder&);
 void overlap(Ladder&);
 void overlap_projected(Ladder&);
+void one_place(Ladder&);
+void one_place_projected(Ladder&);
 void no_normal(Ladder&);
 void bad_input(Ladder&);
 void far_away(Ladder&);
@@ -94,6 +96,9 @@ void screw(Ladder&);
 void thread_by_contacts(Ladder&);
 void crowding(Ladder&);
 void crowding_foreseen(Ladder&);
+void confined(Ladder&);
+void confined_yielding(Ladder&);
+void confined_soft(Ladder&);
 
 struct Row {
   const char* id;
@@ -139,6 +144,12 @@ inline constexpr Row rows[] = {
     {"HC-12", "free spin, 100 s at 60 steps a second", "", free_spin, Level::gold},
     {"HC-13", "overlap at the start", "", overlap, Level::bronze},
     {"HC-13", "overlap at the start", "PositionProjection", overlap_projected, Level::gold},
+    {"HC-13", "bodies in one place",
+     "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 300}, MatrixFreeCompliance", one_place,
+     Level::bronze},
+    {"HC-13", "bodies in one place",
+     "PositionProjection, AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 300}, MatrixFreeCompliance",
+     one_place_projected, Level::gold},
     {"HC-14", "bad input", "", bad_input, Level::gold},
     {"HC-15", "far from the origin", "", far_away, Level::gold},
     {"HC-15", "far from the origin, single precision", "RigidBodiesF", far_away_in_float, Level::gold},
@@ -197,6 +208,10 @@ inline constexpr Row rows[] = {
     {"HC-37", "crowding",
      "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}, NativeCollision{.margin = 0.1}",
      crowding_foreseen, Level::gold},
+    {"HC-37", "box that is too small", "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}", confined,
+     Level::gold},
+    {"HC-37", "box that is too small", "SoftContact", confined_soft, Level::gold},
+    {"HC-37", "box that is too small", "WithCompliance{Baumgarte{}, 1e-5}", confined_yielding, Level::gold},
     {"HC-38", "stiff drive", "", drives, Level::gold},
     {"HC-39", "grip", "ProximalNewton", grip, Level::silver},
     {"HC-40", "rigid on soft", "HexahedralFem, ImplicitEuler", rigid_on_soft, Level::silver},
