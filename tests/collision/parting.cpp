@@ -30,24 +30,29 @@ TEST_CASE("the places of n keys in a row stay half of n^(-1/3) apart, in any set
       CHECK(nearest_places(first, n) > 0.5 / std::cbrt(double(n)));
 }
 
-// v_i = s p_i with s = max 1/(n_ij·(p_j − p_i)) meets every n_ij·(v_j − v_i) ≥ 1 as long as all these products are positive.
+// v_i = s p_i with s = max 1/(n_ij·(p_j − p_i)) meets every n_ij·(v_j − v_i) ≥ 1 as long as all these
+// products are positive.
 TEST_CASE("bodies in one place part by normals that do not contradict each other") {
-  for (const Shape& shape : {Shape(Sphere{0.5}), Shape(Box{1, 1, 1}), Shape(Box{1, 0.8, 0.6}), Shape(Capsule{0.3, 1}),
-                             Shape(Cylinder{0.5, 2}), Shape(Ellipsoid{0.5, 0.4, 0.3})}) {
+  for (const Shape& shape :
+       {Shape(Sphere{0.5}), Shape(Box{1, 1, 1}), Shape(Box{1, 0.8, 0.6}), Shape(Capsule{0.3, 1}),
+        Shape(Cylinder{0.5, 2}), Shape(Ellipsoid{0.5, 0.4, 0.3})}) {
     Scene scene;
     for (int k = 0; k < 40; ++k) scene.add(shape, {0.3, -2, 1});
     scene.detect();
     CAPTURE(name(shape.kind));
     REQUIRE(scene.report.pairs == 780);
     int against = 0;
-    for (const ContactPoint& c : scene.contacts)
+    for (const ContactPoint& c : scene.contacts) {
+      CHECK((c.point_b - c.point_a - c.gap * c.normal).norm() < 1e-13);
       against += !(c.normal.dot(inner::parting(scene.colliders[c.a].key, scene.colliders[c.b].key)) > 0);
+    }
     CHECK(against == 0);
   }
 }
 
 // Contacts without friction leave the velocities of the least ½ Σ v² among those that part all pairs at the
-// push-out's 1 m/s, and v = p/min |p_j − p_i| is one of them. In one row of n they would have n (n² − 1)/24 J.
+// push-out's 1 m/s, and v = p/min |p_j − p_i| is one of them. In one row of n they would have n (n² − 1)/24
+// J.
 TEST_CASE("a hundred spheres in one place are pushed apart no faster than their places ask") {
   constexpr int n = 100;
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, MatrixFreeCompliance{},

@@ -184,7 +184,7 @@ class CollisionEngine {
     const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, pose, reach, scale, guess);
     report_.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
-    if (is_moved) r.distance -= r.normal.dot(shift), r.point_b -= shift;
+    if (is_moved) r.distance -= r.normal.dot(shift), r.point_b -= r.normal * r.normal.dot(shift);
     if (r.status == PairStatus::near)
       now.owner = inner::settle_normal(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
