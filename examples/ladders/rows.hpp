@@ -96,6 +96,8 @@ void screw(Ladder&);
 void thread_by_contacts(Ladder&);
 void crowding(Ladder&);
 void crowding_foreseen(Ladder&);
+void hopper(Ladder&);
+void hopper_of_many(Ladder&);
 void confined(Ladder&);
 void confined_yielding(Ladder&);
 void confined_soft(Ladder&);
@@ -187,6 +189,9 @@ inline constexpr Row rows[] = {
     {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-5}", heap, Level::gold},
     {"HC-30", "heap of spheres", "AcceleratedGaussSeidel{.tolerance = 1e-3, .max_iterations = 300}",
      heap_loose, Level::gold},
+    {"HC-30", "hopper", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", hopper, Level::silver},
+    {"HC-30", "hopper, many grains", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", hopper_of_many,
+     Level::silver},
     {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
      bollard, Level::silver},
     {"HC-32", "nut on a bolt, by its contacts",
