@@ -1,8 +1,7 @@
-// HC-23, HC-27, HC-31: paradoxes, arches, ropes around posts.
+// HC-23, HC-27: paradoxes, drawers, arches.
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 #include <numbers>
@@ -170,62 +169,5 @@ void climb_arches(Ladder& ladder, std::initializer_list<Arch> arches) {
 void arch(Ladder& ladder) { climb_arches(ladder, {{3}, {2}, {1.5}, {1.2}, {1.2, 4}, {1.07}, {0.93}}); }
 // A hundredth of the span is lost, 1 s long: the arch opens into three hinges and stands.
 void arch_that_spreads(Ladder& ladder) { climb_arches(ladder, {{2, 0, 0.2}, {1.5, 0, 0.2}, {1.2, 0, 0.2}}); }
-
-namespace {
-
-/// The load that a rope of beads holds over a post by the load 1 at its other end: Euler's exp(π μ) for links
-/// that meet at angles 2 α and beads of mass m. A bead that is about to slip, at θ from the light side, bears
-/// N = T sin α + T' sin α' + m g sin θ, and T' cos α' = T cos α + m g cos θ + μ N.
-double capstan(double mu, int around, double mass) {
-  double load = 1;
-  for (int k = 0; k <= around; ++k) {
-    const double theta = pi * k / around, alpha = 0.5 * pi / around;
-    const double in = k == 0 ? 0 : alpha, out = k == around ? 0 : alpha;  // the loads hang straight
-    load = (load * (std::cos(in) + mu * std::sin(in)) + mass * (std::cos(theta) + mu * std::sin(theta))) /
-           (std::cos(out) - mu * std::sin(out));
-  }
-  return load;
-}
-
-}  // namespace
-
-// A rope of small beads hangs over a fixed post, one end loaded more.
-void bollard(Ladder& ladder) {
-  constexpr int around = 40, down = 1;
-  constexpr double bead = 1e-2;
-  const double mu = 0.3, edge = capstan(mu, around, bead);
-  for (const double share : {0.5, 0.8, 0.9, 1.1, 1.25, 0.95, 1.05})
-    ladder.rung(format("loads at %g of the capstan's", share), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}, Particles{}},
-                         Constraints{Contact{Coulomb{.friction = mu}}, DistanceJoint{}},
-                         DirectGaussSeidel{.tolerance = 1e-8}, WholeViolation{}};
-      auto& rigid = bodies<RigidBodies>(loop.world());
-      auto& beads = bodies<Particles>(loop.world());
-      rigid.add_fixed(Cylinder{1, 4}, {0, 0, 0}, frame_along({0, 1, 0}));
-      const double radius = 0.02, r = 1 + radius, length = 2 * r * std::sin(pi / around / 2);
-      std::vector<Particles::Handle> rope;
-      const auto add = [&](const Vec3& at, double mass) {
-        rope.push_back(
-            beads.add({.position = at, .mass = mass, .radius = radius, .group = 2, .collides_with = ~2u}));
-      };
-      for (int k = down; k > 0; --k) add({-r, 0, -length * k}, k == down ? 1 : bead);
-      for (int k = 0; k <= around; ++k)
-        add({-r * std::cos(pi * k / around), 0, r * std::sin(pi * k / around)}, bead);
-      for (int k = 1; k <= down; ++k) add({r, 0, -length * k}, k == down ? share * edge : bead);
-      for (std::size_t k = 0; k + 1 < rope.size(); ++k)
-        loop.add(DistanceJoint::Item{
-            .a = anchor(beads, rope[k]), .b = anchor(beads, rope[k + 1]), .length = length});
-      const double start = beads.position(rope.back()).z();
-      const Seen seen = run(ladder, loop, ladder.is_quick() ? 0.1 : 1, 0.002);
-      const double fall = start - beads.position(rope.back()).z();
-      // Beyond it the loads move with a = g (s − 1)/(s + 1), less what the rope's own weight holds: a third
-      // will do.
-      const double free = share > 1 && !ladder.is_quick() ? 0.5 * g * (share - 1) / (share + 1) : 0;
-      const double wrong = share < 1 ? fall : free / 3 - fall;
-      return {{"slip of the load that should hang, or what is missing (m)", wrong, share < 1 ? 0.05 : 0,
-               share < 1 ? 0.01 : 0},
-              energy_mark(seen, (1 + edge) * g)};
-    });
-}
 
 }  // namespace ladders

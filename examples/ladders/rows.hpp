@@ -92,6 +92,7 @@ void drawer(Ladder&);
 void arch(Ladder&);
 void arch_that_spreads(Ladder&);
 void bollard(Ladder&);
+void knot(Ladder&);
 void screw(Ladder&);
 void thread_by_contacts(Ladder&);
 void crowding(Ladder&);
@@ -194,6 +195,8 @@ inline constexpr Row rows[] = {
      Level::silver},
     {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
      bollard, Level::silver},
+    {"HC-31", "overhand knot in a rope of 200 links, 960 steps a second",
+     "DirectGaussSeidel{.tolerance = 1e-6}, WholeViolation, WithFilter", knot, Level::silver},
     {"HC-32", "nut on a bolt, by its contacts",
      "AcceleratedGaussSeidel{.tolerance = 1e-4}, WithMeshes{NativeCollision{.margin = 5e-5}}",
      thread_by_contacts, Level::silver},

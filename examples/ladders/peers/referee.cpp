@@ -87,6 +87,7 @@ const char* why_not(const Row& row) {
       {"HC-20", "", "needs a deformable"},
       {"HC-23", "", "its figure is a contact's impulse"},
       {"HC-30", "hopper", "puts grains back on top while it runs"},
+      {"HC-31", "overhand", "the description has no word for neighbours that pass through each other"},
       {"HC-31", "", "needs particles"},
       {"HC-40", "", "needs a deformable"},
       {"HC-41", "long spin", "10⁷ steps of one loop"},
