@@ -1,4 +1,5 @@
 // HC-21, HC-33, HC-34: loops through their singular pose, trains of gears, joints at their limits.
+#include "plane_loop.hpp"
 #include "rows.hpp"
 #include "watch.hpp"
 
@@ -78,43 +79,19 @@ void climb_four_bars(Ladder& ladder, double until, const Policies&... policies) 
     });
 }
 
-/// Unit rods of 1 kg in the plane of x and z, on hinges along y, without weight.
-struct PlaneLoop {
-  AnimationLoop<World<RigidBodies>, Constraints<Hinge, Slider>, NewtonMidpoint> loop{
-      World{RigidBodies{}}, Constraints{Hinge{}, Slider{}}, NewtonMidpoint{}};
-  RigidBodies& set = bodies<RigidBodies>(loop.world());
-  const Quat across = frame_along({0, 1, 0});
-
-  PlaneLoop() { set.gravity.setZero(); }
-  RigidBodies::Handle rod(const Vec3& from, const Vec3& to, const Vec3& v_from, const Vec3& v_to) {
-    const Vec3 way = to - from;
-    return set.add({.position = 0.5 * (from + to),
-                    .orientation = exponential<double>({0, std::atan2(-way.z(), way.x()), 0}),
-                    .velocity = 0.5 * (v_from + v_to),
-                    .angular_velocity = way.cross(Vec3(v_to - v_from)),
-                    .mass = 1.0,
-                    .inertia = Mat3(Vec3(1e-3, 1. / 12, 1. / 12).asDiagonal())});
-  }
-  void pin(const Anchor& a, RigidBodies::Handle b, const Vec3& at) {
-    loop.add(Hinge::Item{a, anchor_at(set, b, at, across)});
-  }
-  Anchor on(RigidBodies::Handle body, const Vec3& at) { return anchor_at(set, body, at, across); }
-  Vec3 end(RigidBodies::Handle body) { return set.position(body) + set.orientation(body) * Vec3(0.5, 0, 0); }
-
-  /// 20 s; off(time) says how far it is from its branch, m.
-  Marks twenty_seconds(Ladder& ladder, double h, const auto& off) {
-    double change = 0, worst = 0;
-    const double start = kinetic_energy(set);
-    const Seen seen = run(ladder, loop, ladder.is_quick() ? 2 : 20, h, [&](int n) {
-      change = most(change, std::abs(kinetic_energy(set) / start - 1));
-      worst = most(worst, off((n + 1) * h));
-    });
-    return {{"off its branch (m)", worst, 1e-2, 1e-6},
-            {"change of energy", change, 1e-3, 1e-5},
-            {"joint gap (m)", seen.joint_gap, 1e-2, 1e-4},
-            {"steps not converged", double(seen.unconverged), unbounded, 0}};
-  }
-};
+/// 20 s; off(time) says how far it is from its branch, m.
+Marks twenty_seconds(Ladder& ladder, PlaneLoop& m, double h, const auto& off) {
+  double change = 0, worst = 0;
+  const double start = kinetic_energy(m.rigid);
+  const Seen seen = run(ladder, m.loop, ladder.is_quick() ? 2 : 20, h, [&](int n) {
+    change = most(change, std::abs(kinetic_energy(m.rigid) / start - 1));
+    worst = most(worst, off((n + 1) * h));
+  });
+  return {{"off its branch (m)", worst, 1e-2, 1e-6},
+          {"change of energy", change, 1e-3, 1e-5},
+          {"joint gap (m)", seen.joint_gap, 1e-2, 1e-4},
+          {"steps not converged", double(seen.unconverged), unbounded, 0}};
+}
 
 // A crank and a rod of one length: where the slider is over the crank's axle it could stay there while both
 // turn on. On its branch x = 2 cos θ, and 2 T = M θ̇² with M = ⅔ + 6 sin² θ: θ comes at the time ∫ √(M/2T) dθ.
@@ -124,24 +101,24 @@ Marks slider_crank(Ladder& ladder, double h) {
   const Vec3 tip(c, 0, s), v_tip = speed * Vec3(-s, 0, c), at(2 * c, 0, 0), v_at(-2 * s * speed, 0, 0);
   const auto crank = m.rod({0, 0, 0}, tip, {0, 0, 0}, v_tip), link = m.rod(tip, at, v_tip, v_at);
   const auto slider =
-      m.set.add({.position = at, .velocity = v_at, .mass = 1.0, .inertia = Mat3(0.1 * Mat3::Identity())});
+      m.rigid.add({.position = at, .velocity = v_at, .mass = 1.0, .inertia = Mat3(0.1 * Mat3::Identity())});
   m.pin(world_anchor({0, 0, 0}, m.across), crank, {0, 0, 0});
   m.pin(m.on(crank, tip), link, tip);
   m.pin(m.on(slider, at), link, at);
   const Quat along = frame_along({1, 0, 0});
-  m.loop.add(Slider::Item{world_anchor(at, along), anchor_at(m.set, slider, at, along)});
+  m.loop.add(Slider::Item{world_anchor(at, along), anchor_at(m.rigid, slider, at, along)});
   const auto slowness = [&](double x) {
     const auto M = [](double y) { return 2. / 3 + 6 * std::sin(y) * std::sin(y); };
     return std::sqrt(M(x) / M(first)) / speed;
   };
   double theta = first, time = 0, late = 0;
-  Marks marks = m.twenty_seconds(ladder, h, [&](double now) {
-    const Vec3 end = m.end(crank);
+  Marks marks = twenty_seconds(ladder, m, h, [&](double now) {
+    const Vec3 end = m.end(crank, 1);
     const double turn = std::remainder(std::atan2(end.z(), end.x()) - theta, 2 * pi);
     time += turn / 6 * (slowness(theta) + 4 * slowness(theta + turn / 2) + slowness(theta + turn));
     theta += turn;
     late = most(late, std::abs(time - now) / 20);
-    return std::abs(m.set.position(slider).x() - 2 * end.x());
+    return std::abs(m.rigid.position(slider).x() - 2 * end.x());
   });
   marks.push_back({"late / 20 s", late, 1e-2, 1e-3});
   if (!ladder.is_quick())
@@ -167,9 +144,9 @@ Marks five_bar(Ladder& ladder, double h) {
   m.pin(m.on(b, right), q, right);
   m.pin(m.on(p, tip), q, tip);
   double lowest = 1;
-  Marks marks = m.twenty_seconds(ladder, h, [&](double) {
-    const Vec3 elbow = m.end(a), other = m.end(b);
-    lowest = std::min(lowest, m.end(p).z() - 0.5 * (elbow.z() + other.z()));
+  Marks marks = twenty_seconds(ladder, m, h, [&](double) {
+    const Vec3 elbow = m.end(a, 1), other = m.end(b, 1);
+    lowest = std::min(lowest, m.end(p, 1).z() - 0.5 * (elbow.z() + other.z()));
     return lowest > -0.1 ? std::abs(elbow.x() + other.x() - 1) : 0.;
   });
   if (!ladder.is_quick())
