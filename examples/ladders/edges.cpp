@@ -1,11 +1,9 @@
-// HC-17: a floor of a thousand triangles, edges on edges, corners on corners.
+// HC-17: edges on edges, corners on corners.
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/collision/with_meshes.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 
-#include <array>
 #include <numbers>
 #include <vector>
 
@@ -14,29 +12,6 @@ namespace ladders {
 namespace {
 
 using std::numbers::pi;
-
-/// [−2, 18] × [−2, 2] at z = 0 in 60 × 12 squares of two triangles, whose inner corners are moved by up to
-/// 0.3 of a square within the plane.
-TriangleMesh floor_of_triangles() {
-  const int columns = 60, rows = 12;
-  unsigned state = 7;
-  const auto draw = [&] { return 0.6 * ((state = state * 1664525u + 1013904223u) / 4294967296. - 0.5); };
-  std::vector<Vec3> vertices;
-  std::vector<std::array<Index, 3>> triangles;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) {
-      const bool is_inner = i > 0 && j > 0 && i < columns && j < rows;
-      const double dx = is_inner ? draw() : 0, dy = is_inner ? draw() : 0;
-      vertices.push_back({(i + dx) * 20 / columns - 2, (j + dy) * 4 / rows - 2, 0});
-    }
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const Index v = j * (columns + 1) + i, up = v + columns + 1;
-      triangles.push_back({v, v + 1, up + 1});
-      triangles.push_back({v, up + 1, up});
-    }
-  return TriangleMesh(vertices, triangles);
-}
 
 /// A box of 1 m and 1 kg that begins at rest at `height`, turned so, and is watched for five seconds: it
 /// stays, or where it tips at last does not jump.
@@ -58,38 +33,6 @@ Marks rest(Ladder& ladder, auto& loop, double height, const Quat& turn, double i
 }
 
 }  // namespace
-
-// A body slides without friction over a floor that is one mesh of 1440 triangles of random shape, 2 m/s for 7
-// s.
-void slide_over_triangles(Ladder& ladder) {
-  struct Slider {
-    const char* name;
-    Shape shape;
-    double height;
-    Quat turn;
-  };
-  const Quat upright = Quat::Identity(), lying(Eigen::AngleAxisd(pi / 2, Vec3::UnitX()));
-  for (const Slider& s :
-       {Slider{"sphere", Sphere{0.5}, 0.5, upright}, Slider{"box", Box{1, 1, 1}, 0.5, upright},
-        Slider{"lying capsule", Capsule{0.3, 0.6}, 0.3, lying}})
-    ladder.rung(format("%s over 1440 triangles", s.name), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}},
-                         WithMeshes{NativeCollision{}}};
-      auto& set = bodies<RigidBodies>(loop.world());
-      set.add_fixed(loop.get<WithMeshes<NativeCollision>>().add(floor_of_triangles()));
-      const auto body = set.add({.position = {0, 0.1, s.height},
-                                 .orientation = s.turn,
-                                 .velocity = {2, 0.05, 0},
-                                 .mass = 1.0,
-                                 .shape = s.shape});
-      double hop = 0;
-      const Seen seen = run(ladder, loop, ladder.is_quick() ? 2 : 7, frame,
-                            [&](int) { hop = most(hop, std::abs(set.position(body).z() - s.height)); });
-      return {{"hop / size", hop, 1e-3, 1e-6},
-              {"speed lost", std::abs(set.velocity(body).x() / 2 - 1), 1e-2, 1e-6},
-              energy_mark(seen, 0.5 * 4)};
-    });
-}
 
 // A box that lies on the edges of two thin wedges; one that stands on an edge across another's edge, and one
 // that stands on a corner on another's corner. These two tip, from a push of the last digit within five

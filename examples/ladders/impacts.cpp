@@ -1,40 +1,10 @@
-// HC-17, HC-18, HC-24, HC-25: seams, bullets, elastic balls, impacts at one moment.
+// HC-18, HC-24, HC-25: bullets, elastic balls, impacts at one moment.
 #include "rows.hpp"
 #include "watch.hpp"
 
 #include <delassus/collision/continuous.hpp>
-#include <delassus/collision/seamless.hpp>
 
 namespace ladders {
-
-// A body slides without friction over a floor of tiles that lie level: no seam may be felt.
-template <class Collision>
-void slide_over_seams(Ladder& ladder, const Collision& collision) {
-  struct Slider {
-    const char* name;
-    Shape shape;
-    double height;
-    Quat turn;
-  };
-  const Quat upright = Quat::Identity(), lying(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitX()));
-  for (const Slider& s : {Slider{"sphere", Sphere{0.5}, 0.5, upright}, Slider{"box", Box{1, 1, 1}, 0.5, upright},
-                          Slider{"lying capsule", Capsule{0.3, 0.6}, 0.3, lying}})
-    ladder.rung(format("%s over 40 tiles", s.name), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, collision};
-      auto& set = bodies<RigidBodies>(loop.world());
-      for (int k = 0; k < 40; ++k) set.add_fixed(Box{0.5, 4, 1}, {0.5 * k, 0, -0.5});
-      const auto body = set.add(
-          {.position = {2, 0, s.height}, .orientation = s.turn, .velocity = {2, 0, 0}, .mass = 1.0, .shape = s.shape});
-      double hop = 0;
-      const Seen seen = run(ladder, loop, 7, frame,
-                            [&](int) { hop = most(hop, std::abs(set.position(body).z() - s.height)); });
-      return {{"hop / size", hop, 1e-3, 1e-6},
-              {"speed lost", std::abs(set.velocity(body).x() / 2 - 1), 1e-2, 1e-6},
-              energy_mark(seen, 0.5 * 4)};
-    });
-}
-void seams(Ladder& ladder) { slide_over_seams(ladder, NativeCollision{}); }
-void seams_left_out(Ladder& ladder) { slide_over_seams(ladder, Seamless{NativeCollision{}}); }
 
 // A ball of 1 cm flies at a plate of 1 mm, at 60 steps a second.
 template <class Collision>
