@@ -86,9 +86,8 @@ TEST_CASE(
   CHECK(are_of_order(orders, 2));
   const auto run = euler_top::after_ten_seconds(NewtonMidpoint{}, 1600);
   CHECK(run.angle <= 1.5 * 5.86e-5);
-  // As in free_rotation.cpp.
-  CHECK(run.momentum <= 1600 * 2 * 0x1p-53);
-  CHECK(run.energy <= 1600 * 4 * 0x1p-53);
+  CHECK(run.momentum <= euler_top::of_rounding(1600));
+  CHECK(run.energy <= euler_top::of_rounding(1600));
 }
 
 namespace {

@@ -149,12 +149,14 @@ TEST_CASE("in single precision the midpoint rule turns a grain of 0.1 mm as it t
   }
 }
 
-TEST_CASE("a quaternion of any size gives a rotation") {
+TEST_CASE("a quaternion that is nearly a unit one gives a rotation, and becomes one") {
   const Quat unit_size = exponential(Vec3(0.3, -1.2, 0.8));
-  for (const double size : {1e-3, 1 - 1e-9, 1.0, 1e3}) {
-    const Mat3 R = rotation_matrix(Quat(size * unit_size.w(), size * unit_size.x(), size * unit_size.y(), size * unit_size.z()));
+  for (const double size : {1 - 1e-9, 1.0, 1 + 1e-9}) {
+    const Quat q(size * unit_size.w(), size * unit_size.x(), size * unit_size.y(), size * unit_size.z());
+    const Mat3 R = rotation_matrix(q);
     CAPTURE(size);
-    // Sums of three products, each factor within 4 roundings.
+    // Sums of three products, each factor within 4 roundings; the squares of 2e-9 are no more than a twentieth of one.
+    REQUIRE(std::abs(unit_again(q).norm() - 1) < 4 * 0x1p-53);
     REQUIRE((R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 3e-15);
     REQUIRE((R - unit_size.toRotationMatrix()).cwiseAbs().maxCoeff() < 3e-15);
   }

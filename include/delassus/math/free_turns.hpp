@@ -46,7 +46,7 @@ Eigen::Quaternion<T> turn_freely(const Mat<3, 3, T>& inverse_inertia, Eigen::Qua
     const Vec<3, T> turn = (share * a.dot(L)) * a;
     q = exponential<T>(turn) * q;
   }
-  return unit(q);
+  return unit_again(q);
 }
 
 }  // namespace delassus

@@ -14,13 +14,29 @@ inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
   return {q.w() / size, q.x() / size, q.y() / size, q.z() / size};
 }
 
-/// The rotation matrix of q, whatever its size: I + s (w v^ + v^²), s = 2/|q|². That of a unit quaternion, s = 2, is as far from
-/// a rotation as |q| is from 1, and a rounded |q| is above 1 more often than below: a spinning body would gain by it.
+/// 1 − |q|², of a unit quaternion nearly without rounding.
+template <class T>
+inline T lack_of_unit(const Eigen::Quaternion<T>& q) {
+  return (((T(1) - q.w() * q.w()) - q.x() * q.x()) - q.y() * q.y()) - q.z() * q.z();
+}
+
+/// q / |q| of what is nearly a unit quaternion, q (1 + δ/2) with δ = 1 − |q|²: of a product of two, say, which is off by
+/// rounding. Here it ends as often above 1 as below; of q / |q| what is above stays there more often, since numbers are
+/// farther apart above 1, and a body that turns in every step would gain by it.
+template <class T>
+inline Eigen::Quaternion<T> unit_again(const Eigen::Quaternion<T>& q) {
+  const T e = T(0.5) * lack_of_unit(q);
+  return {q.w() + e * q.w(), q.x() + e * q.x(), q.y() + e * q.y(), q.z() + e * q.z()};
+}
+
+/// The rotation matrix of what is nearly a unit quaternion: I + s (w v^ + v^²), s = 2/|q|² = 2 (1 + δ + …), δ = 1 − |q|². That of
+/// a unit quaternion, s = 2, is as far from a rotation as |q| is from 1; and 2/|q|², rounded, is off to one side, since numbers
+/// lie farther apart above 2 than below.
 template <class T>
 Mat<3, 3, T> rotation_matrix(const Eigen::Quaternion<T>& q) {
   const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
-  const T s = T(2) / (w * w + x * x + y * y + z * z);
-  const T sx = s * x, sy = s * y, sz = s * z;
+  const T e = lack_of_unit(q);
+  const T sx = T(2) * (x + e * x), sy = T(2) * (y + e * y), sz = T(2) * (z + e * z);
   const T xx = sx * x, yy = sy * y, zz = sz * z, xy = sx * y, yz = sy * z, zx = sz * x, wx = sx * w, wy = sy * w, wz = sz * w;
   Mat<3, 3, T> R;
   R << T(1) - (yy + zz), xy - wz, zx + wy,  //
@@ -51,6 +67,19 @@ Vec<3, T> logarithm(const Eigen::Quaternion<T>& q) {
 template <class T>
 Eigen::Quaternion<T> cayley(const Vec<3, T>& theta) {
   return unit(Eigen::Quaternion<T>(T(1), T(0.5) * theta[0], T(0.5) * theta[1], T(0.5) * theta[2]));
+}
+
+/// Ω = I⁻¹ L by I = U D Uᵀ with a unit upper triangle, both in the body's axes. Of moments along the axes it is L_k / I_k, each
+/// rounded once: products with a rounded I⁻¹ would all be off by its rounding, in every step the same way.
+template <class T>
+Vec<3, T> rate_of(const Mat<3, 3, T>& inertia, const Vec<3, T>& momentum) {
+  const T* I = inertia.data();
+  const T u02 = I[6] / I[8], u12 = I[7] / I[8];
+  const T d1 = I[4] - u12 * I[7], e = I[3] - u02 * I[7];
+  const T u01 = e / d1, d0 = I[0] - u02 * I[6] - u01 * e;
+  const T y1 = momentum[1] - u12 * momentum[2], y0 = momentum[0] - u02 * momentum[2] - u01 * y1;
+  const T x = y0 / d0, y = y1 / d1 - u01 * x;
+  return {x, y, momentum[2] / I[8] - u02 * x - u12 * y};
 }
 
 /// Ω̄ of `midpoint_rate`, what its equation lacks and what one rounding of it is, kg·m²/s.
@@ -125,13 +154,6 @@ Eigen::Quaternion<T> turn_about_momentum(const Vec<3, T>& rate, const Vec<3, T>&
   return exponential<T>(std::remainder(h * rate.dot(axis), T(4 * EIGEN_PI)) * axis);
 }
 
-/// I⁻¹ L, scaled by tr I as `midpoint_rate` does.
-template <class T>
-Vec<3, T> rate_of(const Mat<3, 3, T>& inertia, const Vec<3, T>& momentum) {
-  const T scale = T(1) / inertia.trace();
-  return inverse(Mat<3, 3, T>(scale * inertia)) * (scale * momentum);
-}
-
 /// `midpoint_turn` of a step that may be halved `halvings` times more.
 template <class T>
 Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
@@ -155,7 +177,7 @@ Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const 
   const Eigen::Quaternion<T> first = midpoint_turn_halving<T>(inertia, rate, a, c, h / 2, halvings);
   const Vec<3, T> momentum = first.conjugate() * c;
   const Vec<3, T> then = rate_of<T>(inertia, momentum);
-  return unit(first * midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings));
+  return unit_again(first * midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings));
 }
 
 }  // namespace inner

@@ -130,7 +130,7 @@ class RigidMidpoint {
   Twist go(RigidState<T>& s, Index b, T h) const {
     const Body& body = bodies_[b];
     s.x[b] = body.x + Vector(h * body.mean).template cast<double>();
-    s.q[b] = unit(s.q[b] * cayley<T>(h * body.mean_rate));
+    s.q[b] = unit_again(s.q[b] * cayley<T>(h * body.mean_rate));
     s.turn(b);
     return twist<T>(Vector(T(2) * body.mean - body.velocity),
                     s.R[b] * Vector(T(2) * body.mean_rate - body.rate));

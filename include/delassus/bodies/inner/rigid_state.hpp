@@ -93,7 +93,7 @@ struct RigidState {
   /// x + step, and the axes turned by the vector `turn_by`, rad. False when that is not finite: then nothing moves.
   bool displace(Index b, const Vector& step, const Vector& turn_by) {
     const Vec3 moved = x[b] + step.template cast<double>();
-    const Eigen::Quaternion<T> turned = unit(exponential<T>(turn_by) * q[b]);
+    const Eigen::Quaternion<T> turned = unit_again(exponential<T>(turn_by) * q[b]);
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
     x[b] = moved;
     q[b] = turned;
@@ -114,11 +114,11 @@ struct RigidState {
     const Vector impulse = inertia[b] * kicked;
     const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
     const Vector spatial = R[b] * impulse;
-    q[b] = unit(q[b] * midpoint_turn<T>(inertia[b], start, old_impulse, impulse, h));
+    q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], start, old_impulse, impulse, h));
     turn(b);
     // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
     // ones.
-    const Vector rate = R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial));
+    const Vector rate = R[b] * rate_of<T>(inertia[b], R[b].transpose() * spatial);
     // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
     if (!is_finite(x[b]) || !is_finite(rate)) [[unlikely]] {
       x[b] = old_x;
@@ -139,7 +139,7 @@ struct RigidState {
     x[b] = moved;
     q[b] = turned;
     turn(b);
-    v = twist<T>(linear_part(next), R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial)));
+    v = twist<T>(linear_part(next), R[b] * rate_of<T>(inertia[b], R[b].transpose() * spatial));
     return true;
   }
 
