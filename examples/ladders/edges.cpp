@@ -28,8 +28,9 @@ Marks rest(Ladder& ladder, auto& loop, double height, const Quat& turn, double i
     hop = most(hop, set.position(box).z() - height);
     away = most(away, (set.position(box) - place).norm());
   });
-  return {{tips ? "hop / size" : "way from its place / size", tips ? hop : away, 1e-3, 1e-6},
-          energy_mark(seen, g * 0.5)};
+  Marks marks{{"hop / size", hop, 1e-3, 1e-6}, energy_mark(seen, g * 0.5)};
+  if (!tips) marks.push_back({"way from its place / size", away, unbounded, 1e-6});
+  return marks;
 }
 
 }  // namespace

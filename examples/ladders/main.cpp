@@ -27,7 +27,8 @@ engines do) and gold (meets a stated number). Writes DIR/ladders.csv with every 
   --out DIR      the folder of what is written, made if missing; "out/ladders" if not said
   --docs FILE    replaces the table of this page, between its two ladder marks
   --peers FILE   what delassus_peers measured of other engines; docs/ladders/peers.csv of the tree if not said
-  --seconds S    a rung that takes more processor time has failed, and no harder one of its row is tried; 60 if not said
+  --seconds S    a rung that takes more processor time has failed, and no harder one of its row is tried; 60 if not said,
+                 and in rows of very many bodies ten times that
   --quick        the easiest rung of each row, cut short; fails where one reaches less than it is known to
   --help         this text
 )text";
@@ -115,7 +116,7 @@ bool climb(const Options& options) {
     const Row& row = *list[k];
     Ladder ladder("row " + std::to_string(k + 1) + " of " + std::to_string(list.size()) + "  " + row.id +
                       " " + row.title,
-                  options.is_quick, options.seconds);
+                  options.is_quick, options.seconds * row.patience);
     row.climb(ladder);
     all.push_back({&row, ladder.rungs()});
     double seconds = 0;
