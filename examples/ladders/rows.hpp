@@ -31,6 +31,7 @@ void step_size(Ladder&);
 void drives(Ladder&);
 void friction_range(Ladder&);
 void friction_range_newton(Ladder&);
+void friction_range_in_200(Ladder&);
 void jams(Ladder&);
 void jams_newton(Ladder&);
 void grip(Ladder&);
@@ -134,6 +135,8 @@ inline constexpr Row rows[] = {
     {"HC-07", "step size", "PositionProjection", step_size, Level::gold},
     {"HC-08", "range of friction", "", friction_range, Level::gold},
     {"HC-08", "range of friction", "ProximalNewton", friction_range_newton, Level::gold},
+    {"HC-08", "range of friction up to 1, all its scenes", "AcceleratedGaussSeidel{.tolerance = 1e-6, .max_iterations = 200}",
+     friction_range_in_200, Level::silver},
     {"HC-08", "range of friction, wedge and arch", "", jams, Level::gold},
     {"HC-08", "range of friction, wedge and arch", "ProximalNewton", jams_newton, Level::gold},
     {"HC-09", "duplicate constraints", "", duplicates, Level::gold},
