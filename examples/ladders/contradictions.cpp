@@ -69,30 +69,40 @@ Marks pin_through_floor(Ladder& ladder) {
       [&] { return std::abs(set.position(box).z() - 0.45) / 0.05; }, [&] { loop.remove(pin); });
 }
 
-/// Three rods of 1 m between hooks 3.03 m apart: a quarter of the 0.03 m in each of four joints.
-Marks short_loop(Ladder& ladder) {
+/// Three rods of 1 m that shall reach over 3.03 m: a quarter of the 0.03 m in each of four joints. The loop is
+/// closed by a rod of that length, or by the world, in which the ends are hooks.
+Marks short_loop(Ladder& ladder, bool is_closed_by_rod) {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, PositionProjection{}};
   auto& set = bodies<RigidBodies>(loop.world());
   set.gravity.setZero();
+  const auto add_rod = [&](double middle, double length) {
+    const double across = length * length / 12;
+    return set.add({.position = {middle, 0, 0},
+                    .mass = 1.0,
+                    .inertia = Mat3(Vec3(1e-2, across, across).asDiagonal())});
+  };
   std::vector<ConstraintHandle<BallJoint>> joints;
   std::vector<RigidBodies::Handle> rods;
-  Anchor end = world_anchor({0, 0, 0});
+  Anchor end = world_anchor({0, 0, 0}), last = world_anchor({3.03, 0, 0});
+  if (is_closed_by_rod) {
+    const auto rod = add_rod(1.515, 3.03);
+    end = anchor(set, rod, {-1.515, 0, 0}), last = anchor(set, rod, {1.515, 0, 0});
+  }
+  const Anchor first = end;
   for (int k = 0; k < 3; ++k) {
-    rods.push_back(set.add({.position = {0.5 + k, 0, 0},
-                            .mass = 1.0,
-                            .inertia = Mat3(Vec3(1e-2, 1. / 12, 1. / 12).asDiagonal())}));
+    rods.push_back(add_rod(0.5 + k, 1));
     joints.push_back(loop.add(BallJoint::Item{end, anchor(set, rods.back(), {-0.5, 0, 0})}));
     end = anchor(set, rods.back(), {0.5, 0, 0});
   }
-  joints.push_back(loop.add(BallJoint::Item{end, world_anchor({3.03, 0, 0})}));
+  joints.push_back(loop.add(BallJoint::Item{end, last}));
   const auto off = [&] {
-    Vec3 before = Vec3::Zero();
+    Vec3 before = loop.world().point(first);
     double worst = 0;
     for (std::size_t k = 0; k <= rods.size(); ++k) {
       const auto tip = [&](double side) {
         return Vec3(set.position(rods[k]) + set.orientation(rods[k]) * Vec3(side, 0, 0));
       };
-      const Vec3 next = k < rods.size() ? tip(-0.5) : Vec3(3.03, 0, 0);
+      const Vec3 next = k < rods.size() ? tip(-0.5) : Vec3(loop.world().point(last));
       worst = most(worst, std::abs((next - before).norm() / (0.03 / 4) - 1));
       if (k < rods.size()) before = tip(0.5);
     }
@@ -139,7 +149,8 @@ Marks crossed_limits(Ladder& ladder) {
 void no_way(Ladder& ladder) {
   ladder.rung("limit beyond its other end", [&] { return crossed_limits(ladder); });
   ladder.rung("pin through the floor", [&] { return pin_through_floor(ladder); });
-  ladder.rung("loop a per cent too short", [&] { return short_loop(ladder); });
+  ladder.rung("loop a per cent too short", [&] { return short_loop(ladder, true); });
+  ladder.rung("chain a per cent too short for its hooks", [&] { return short_loop(ladder, false); });
 }
 
 // Two motors on one axis that want opposite speeds, with caps that differ by a share.
