@@ -127,6 +127,7 @@ Outcome outcome_of(const std::string& line) {
 void Referee::begin(const std::string& difficulty) {
   worst_ = {};
   spent_ = 0;
+  has_marks_ = true;
   steps_.clear();
   std::fprintf(out_, "begin\t%s\n", clean(difficulty).c_str());
   std::fflush(out_);
@@ -153,7 +154,8 @@ void Referee::note(double seconds, const Reading& reading) {
 /// Every rung says the gauge's own figures too, without limits.
 void Referee::judge(Marks& marks) {
   std::erase_if(marks, [](const Mark& mark) { return !counts(mark); });
-  if (marks.empty() || steps_.empty()) throw Unsayable("none of its marks is of poses and velocities");
+  has_marks_ = !marks.empty() && !steps_.empty();
+  if (!has_marks_) throw Unsayable("none of its marks is of poses and velocities");
   marks.push_back({"gauge: deepest overlap (m)", worst_.penetration, unbounded, unbounded});
   marks.push_back({"gauge: joint gap (m or rad)", worst_.joint_gap, unbounded, unbounded});
   marks.push_back({"gauge: growth of overlaps and gaps (m/s)", worst_.growth, unbounded, unbounded});
@@ -164,7 +166,7 @@ bool Referee::end(const Rung& rung) {
   Outcome outcome{.difficulty = rung.difficulty,
                   .said = rung.trouble,
                   .level = rung.level,
-                  .is_refused = !rung.trouble.empty() && steps_.empty()};
+                  .is_refused = !rung.trouble.empty() && (steps_.empty() || !has_marks_)};
   for (const Mark& mark : rung.marks)
     outcome.figures.push_back({mark.what, mark.value, mark.silver, mark.gold, mark.level()});
   if (!steps_.empty()) {

@@ -15,7 +15,8 @@ namespace ladders::peers {
 /// Why a row is not compared; null where it is.
 const char* why_not(const Row& row);
 
-/// One rung as an engine did it. `said` says what stopped it; `is_refused` that nothing was stepped.
+/// One rung as an engine did it. `said` says what stopped it; `is_refused` that nothing was stepped, or
+/// that no mark is of poses and velocities.
 struct Outcome {
   std::string difficulty, said;
   Level level = Level::failed;
@@ -52,6 +53,7 @@ class Referee : public Comparison {
   Reading worst_;
   double spent_ = 0;
   std::vector<double> steps_;
+  bool has_marks_ = true;
 };
 
 }  // namespace ladders::peers
