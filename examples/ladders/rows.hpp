@@ -100,6 +100,8 @@ void crowding(Ladder&);
 void crowding_foreseen(Ladder&);
 void hopper(Ladder&);
 void hopper_of_many(Ladder&);
+void repose(Ladder&);
+void silo(Ladder&);
 void confined(Ladder&);
 void confined_yielding(Ladder&);
 void confined_soft(Ladder&);
@@ -197,6 +199,8 @@ inline constexpr Row rows[] = {
     {"HC-30", "hopper", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", hopper, Level::silver},
     {"HC-30", "hopper, many grains", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", hopper_of_many,
      Level::silver},
+    {"HC-30", "angle of repose", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", repose, Level::silver},
+    {"HC-30", "silo", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", silo, Level::silver},
     {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
      bollard, Level::silver},
     {"HC-31", "overhand knot in a rope of 200 links, 960 steps a second",

@@ -110,6 +110,10 @@ void hopper_of_many(Ladder& ladder) {
   ladder.rung("10 000 spheres, hole of 10 diameters", [&] {
     return overlaps(drain(ladder, {.count = 10000, .opening = 10, .width = 26, .seconds = 2}));
   });
+  ladder.rung("10 000 cubes, hole of 10 diameters", [&] {
+    return overlaps(
+        drain(ladder, {.count = 10000, .opening = 10, .width = 26, .seconds = 2, .are_cubes = true}));
+  });
 }
 
 }  // namespace ladders

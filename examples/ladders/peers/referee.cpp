@@ -87,6 +87,8 @@ const char* why_not(const Row& row) {
       {"HC-20", "", "needs a deformable"},
       {"HC-23", "", "its figure is a contact's impulse"},
       {"HC-30", "hopper", "puts grains back on top while it runs"},
+      {"HC-30", "angle", "pours its grains while it runs"},
+      {"HC-30", "silo", "pours its grains while it runs"},
       {"HC-31", "overhand", "the description has no word for neighbours that pass through each other"},
       {"HC-31", "", "needs particles"},
       {"HC-40", "", "needs a deformable"},
