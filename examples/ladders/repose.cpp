@@ -192,14 +192,14 @@ void repose(Ladder& ladder) {
     return {"degrees outside of 19.5 to 23.8", most(most(0, 19.5 - angle), angle - 23.8), 5, 2};
   });
   rung("friction 0.1 in place of 0.5", Coulomb{.friction = 0.1}, 1, [&](double angle) -> Mark {
-    return {"degrees missing to two less", most(0, angle - usual + 2), 2, 0};
+    return {"degrees missing to two less", most(0, angle - usual + 2), 1, 0};
   });
   rung("a tenth of the tolerance", Coulomb{.friction = 0.5}, 10, [&](double angle) -> Mark {
     return {"change by it (degrees)", std::abs(angle - usual), 5, 2};
   });
   rung("rolling friction of a twentieth of d", RollingCoulomb{.friction = 0.5, .rolling_friction = 0.05 * d},
        1, [&](double angle) -> Mark {
-         return {"degrees missing to two more", most(0, usual + 2 - angle), 2, 0};
+         return {"degrees missing to two more", most(0, usual + 2 - angle), 1, 0};
        });
 }
 
