@@ -1,6 +1,7 @@
 // A program of its own: it counts every call of operator new, and has Eigen stop at an allocation in a warm step.
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "allocation_scenes.hpp"
+#include "solvers/knotted_rope.hpp"
 
 #include <delassus/loop/newton_midpoint.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
@@ -53,6 +54,19 @@ TEST_CASE("a warm step of a chain that lies on the ground allocates nothing unde
     last = link;
   }
   REQUIRE(allocations_of(loop, 100, 1000) == 0);
+}
+
+TEST_CASE("a warm step of a tight knot, whose contacts jam, allocates nothing under the direct path") {
+  auto loop = knotted_rope::rope(DirectGaussSeidel{.tolerance = 1e-6});
+  for (int n = 0; n < knotted_rope::tight; ++n) knotted_rope::sink(loop);
+  int by_newton = 0;
+  for (int n = 0; n < 300; ++n) {
+    const long before = allocations;
+    knotted_rope::sink(loop);
+    REQUIRE(allocations == before);
+    by_newton += loop.island_reports()[0].factorizations > 1;
+  }
+  REQUIRE(by_newton > 30);
 }
 
 TEST_CASE("a warm step of a swinging chain allocates nothing under the midpoint rule by Newton's method") {

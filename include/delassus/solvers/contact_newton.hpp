@@ -58,14 +58,20 @@ struct BasicContactNewton {
     DELASSUS_EXPECT(max_rows >= 0, "ContactNewton: max_rows " + inner::text(max_rows) + " must be >= 0");
   }
 
+  /// What a factorization takes with all around it, in sweeps on a dense W of n rows, n² multiplications each:
+  /// n³/3, some three products for the matrix, and those of the halved steps.
+  static double cost_in_sweeps(int rows) { return rows / 3.0 + 10; }
+
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
     SolveReport report = sweep(problem, work, first_sweeps, min_iterations);
     if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
-    if (work.space.gather(problem, max_rows)) {
+    if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem, max_rows)) {
+      const double before = Criterion::sum(report.measure);
       problem.save(work.best);
       descend(problem, work, report);
       problem.load(work.best);
+      problem.attempted(Criterion::sum(report.measure) < 0.5 * before);
       report.ended_by = "newton";
     }
     if (!is_done(report.measure, problem.row_count()) && !problem.is_out_of_time() &&
@@ -88,8 +94,8 @@ struct BasicContactNewton {
     double epsilon = 1e-4, last = Criterion::sum(report.measure);
     space.take(problem);
     for (int stalled = 0; stalled < 8 && !is_done(report.measure, rows);) {
-      if (report.factorizations >= max_iterations || problem.is_out_of_time()) return;
-      const double fall = approach(space, epsilon, report);
+      if (report.factorizations >= max_iterations || !problem.has_time_for(cost_in_sweeps(rows))) return;
+      const double fall = approach(problem, space, epsilon, report);
       space.give(problem);
       const Measure now = problem.measure();
       problem.tell(report.sweeps + report.factorizations, now);
@@ -107,11 +113,12 @@ struct BasicContactNewton {
   }
 
   /// Newton's method around one λ̂, until |F| has fallen by a hundred or does not fall; how far it fell.
-  template <class Space>
-  double approach(Space& space, double epsilon, SolveReport& report) const {
-    const double first = space.evaluate(epsilon);
+  template <class Problem, class Space>
+  double approach(Problem& problem, Space& space, double epsilon, SolveReport& report) const {
+    const double work = cost_in_sweeps(problem.row_count()), first = space.evaluate(epsilon);
     double size = first;
     for (int step = 0; step < 12 && size > 1e-2 * first && report.factorizations < max_iterations; ++step) {
+      if (step > 0 && !problem.has_time_for(work)) break;
       if (!space.find_direction(epsilon)) return 1;
       ++report.factorizations;
       double best = 0, least = std::numeric_limits<double>::infinity();

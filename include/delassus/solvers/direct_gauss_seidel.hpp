@@ -8,6 +8,7 @@
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
 #include <delassus/solvers/inner/schur_complement.hpp>
+#include <delassus/solvers/inner/sweeps_then_newton.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -23,7 +24,8 @@ namespace delassus {
 ///   S = W_cc − W_cb W_bb⁻¹ W_bc,   u_c = d_c + W_cb λ_b + W_cc λ_c with λ_b such that the joints hold,
 ///
 /// by `AcceleratedGaussSeidel`; S is dense, and an island with more than `max_swept_rows` rows of them is
-/// swept whole, as is one whose A couples bodies by springs. Impulses of joints start from zero: where rows
+/// swept whole, as is one whose A couples bodies by springs. Where contacts jam and sweeps do not end it,
+/// Newton's method acts on S, `inner::SweepsThenNewton`. Impulses of joints start from zero: where rows
 /// depend on each other they come out the smallest that do. Rows that contradict each other get a compromise,
 /// as springs of 1e-4 of their compliance would give, and the status says so. Cannot mend what an explicit
 /// constraint force does to a heavy chain: see docs/decisions/0009.
@@ -45,9 +47,9 @@ struct BasicDirectGaussSeidel {
     inner::DirectSystem<Rows> joints;
     inner::SchurComplement<Rows> others;
     Impulses<Rows> before;
-    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    typename inner::SweepsThenNewton<Criterion>::template Workspace<Rows> contacts;
     void reset(const Rows& rows) {
-      sweeps.reset(rows);
+      contacts.reset(rows);
       before.resize_like(rows);
     }
   };
@@ -67,7 +69,7 @@ struct BasicDirectGaussSeidel {
     if (!std::isfinite(report.measure.residual))
       return {.status = Status::quarantined, .measure = report.measure};
     auto& joints = work.joints;
-    if (!gather(problem, joints)) return sweeper(max_iterations).solve(problem, work.sweeps);
+    if (!gather(problem, joints)) return sweeper(max_iterations).solve(problem, work.contacts.newton.sweeps);
     problem.tell(0, report.measure);
     report.ended_by = "factorization";
     for (const double epsilon : {fine, coarse}) {
@@ -179,8 +181,11 @@ struct BasicDirectGaussSeidel {
     problem.save(work.before);
     Rest<Problem, decltype(work.others)> rest(problem, work.others);
     rest.each([&](auto p, Index i) { rest.template prepare<p>(i, work.others.template diagonal<p>(i)); });
-    const SolveReport swept = sweeper(max_iterations - report.sweeps, share).solve(rest, work.sweeps);
+    const inner::SweepsThenNewton<Criterion> solver{sweeper(max_iterations - report.sweeps, share)};
+    const SolveReport swept = solver.solve(rest, work.contacts);
     report.sweeps += swept.sweeps;
+    report.factorizations += swept.factorizations;
+    if (swept.factorizations > 0) report.ended_by = swept.ended_by;
     if (swept.status == Status::infeasible) report.status = swept.status;
     rest.each([&](auto p, Index i) {
       auto& lambda = problem.impulse(p, i);
@@ -201,6 +206,9 @@ struct BasicDirectGaussSeidel {
     Rest(Problem& problem, Others& others)
         : RestOf<Problem, Others>(problem.with(others, others)), whole(problem) {}
     bool is_out_of_time() { return whole.is_out_of_time(); }
+    bool has_time_for(double sweeps) { return whole.has_time_for(sweeps); }
+    bool may_attempt(double sweeps) { return whole.may_attempt(sweeps); }
+    void attempted(bool was_of_use) { whole.attempted(was_of_use); }
   };
 };
 

@@ -33,6 +33,13 @@ class ContactSpace {
   };
 
  public:
+  /// Whether the law of pool p has such a form.
+  template <class Problem, int p>
+  static constexpr bool knows() {
+    return Problem::BookType::template has_cone<p>() ||
+           (Rows::template rows_of<p> == 1 && has_rows_alone<Problem, p>());
+  }
+
   /// False where a law has no such form, or there are more rows than `most`.
   template <class Problem>
   bool gather(Problem& problem, int most) {
@@ -42,7 +49,7 @@ class ContactSpace {
     problem.each([&](auto p, Index i) {
       constexpr int R = Rows::template rows_of<p>;
       constexpr bool is_cone = Problem::BookType::template has_cone<p>();
-      is_known = is_known && (is_cone || (R == 1 && has_rows_alone<Problem, p>()));
+      is_known = is_known && knows<Problem, p>();
       Item item{p, i, row, R, is_cone, false, 0, 0, Mat3::Zero(), Mat3::Zero()};
       if constexpr (is_cone) item.friction = problem.book().template friction<p>(i);
       if constexpr (Problem::BookType::template kinds<p>()[0] == RowKind::equality) item.friction = -1;

@@ -1,0 +1,104 @@
+/// Sweeps on a dense W, and Newton's method where contacts jam.
+#pragma once
+
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/contact_newton.hpp>
+#include <delassus/solvers/impulses.hpp>
+#include <delassus/solvers/inner/contact_space.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace delassus::inner {
+
+/// Where joints press contacts on each other from several sides, as in a knot that is drawn tight, sweeps may
+/// end at a residual near one. What `first` of them did not end is for Newton's method in the impulses, from
+/// where they came to and then from λ = 0: a jam may be far from the last step's impulses. Then the rest of
+/// the sweeps, from the smallest error of all. Each of both may cost half of what that rest does, so that no
+/// solve takes more than some twice the time of its sweeps alone. Without contacts, with a law that Newton's
+/// method has no form of, or without a rest, there are sweeps alone.
+template <class Criterion>
+struct SweepsThenNewton {
+  using Newton = BasicContactNewton<Criterion>;
+  static constexpr int first = 400;
+  BasicAcceleratedGaussSeidel<Criterion> sweeps;  ///< and how many in all
+
+  template <class Rows>
+  struct Workspace {
+    typename Newton::template Workspace<Rows> newton;
+    Impulses<Rows> best;
+    /// What Newton's method needs is made where it acts.
+    void reset(const Rows& rows) { newton.sweeps.reset(rows); }
+  };
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work) const {
+    if constexpr (has_contacts<Problem>(std::make_integer_sequence<int, Problem::pools>()))
+      if (const int most = factorizations(problem); most > 0) return solve(problem, work, most);
+    return sweeps.solve(problem, work.newton.sweeps);
+  }
+
+ private:
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work, int factorizations) const {
+    work.newton.best.resize_like(problem.rows());
+    work.best.resize_like(problem.rows());
+    SolveReport report = newton(first, factorizations).solve(problem, work.newton);
+    const auto goes_on = [&] { return report.status == Status::max_iterations && !problem.is_out_of_time(); };
+    if (report.factorizations > 0 && goes_on()) {
+      problem.save(work.best);
+      problem.each([&](auto p, Index i) {
+        problem.template assign<p>(i, 0 * problem.rows().template pool<p>().lambda[i]);
+      });
+      if (!add(newton(1, factorizations).solve(problem, work.newton), report)) problem.load(work.best);
+    }
+    if (goes_on()) {
+      auto rest = sweeps;
+      rest.max_iterations -= report.sweeps;
+      add(rest.solve(problem, work.newton.sweeps), report);
+    }
+    return report;
+  }
+
+  /// The later report with the work of both; the error is that of the better. Whether that is the later.
+  static bool add(SolveReport later, SolveReport& report) {
+    const bool is_better =
+        later.status == Status::infeasible || Criterion::sum(later.measure) < Criterion::sum(report.measure);
+    later.sweeps += report.sweeps;
+    later.factorizations += report.factorizations;
+    if (!is_better) later.measure = report.measure, later.status = report.status;
+    report = later;
+    return is_better;
+  }
+
+  /// That one run of Newton's method may make; none where it cannot act.
+  template <class Problem>
+  int factorizations(const Problem& problem) const {
+    bool is_known = sweeps.max_iterations > first;
+    problem.each([&](auto p, Index) {
+      is_known = is_known && ContactSpace<typename Problem::RowsType>::template knows<Problem, p>();
+    });
+    if (!is_known) return 0;
+    const double rest = sweeps.max_iterations - first;
+    return std::min(100, int(0.5 * rest / Newton::cost_in_sweeps(problem.row_count())));
+  }
+  Newton newton(int swept, int factorizations) const {
+    return {.tolerance = sweeps.tolerance,
+            .max_iterations = factorizations,
+            .min_iterations = std::min(sweeps.min_iterations, swept),
+            .first_sweeps = swept,
+            .max_sweeps = swept,
+            .max_rows = std::numeric_limits<int>::max(),
+            .scale_tolerance = sweeps.scale_tolerance,
+            .all_verified = sweeps.all_verified};
+  }
+
+  template <class Problem, int... p>
+  static constexpr bool has_contacts(std::integer_sequence<int, p...>) {
+    return (Problem::BookType::template has_cone<p>() || ...);
+  }
+};
+
+}  // namespace delassus::inner
