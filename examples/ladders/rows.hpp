@@ -100,6 +100,7 @@ void crowding(Ladder&);
 void crowding_foreseen(Ladder&);
 void hopper(Ladder&);
 void hopper_of_many(Ladder&);
+void hopper_of_cubes(Ladder&);
 void repose(Ladder&);
 void silo(Ladder&);
 void confined(Ladder&);
@@ -199,6 +200,9 @@ inline constexpr Row rows[] = {
     {"HC-30", "hopper", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", hopper, Level::silver},
     {"HC-30", "hopper, many grains", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", hopper_of_many,
      Level::silver, 10},
+    {"HC-30", "hopper, cubes",
+     "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}, NativeCollision{.margin = 0.01}, CheaperCompliance",
+     hopper_of_cubes, Level::silver, 10},
     {"HC-30", "angle of repose", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", repose, Level::silver, 10},
     {"HC-30", "silo", "AcceleratedSweeps{.tolerance = 1e-3, .max_iterations = 100}", silo, Level::silver},
     {"HC-31", "rope around a bollard, loads by the capstan's formula", "DirectGaussSeidel, WholeViolation",
