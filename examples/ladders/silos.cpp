@@ -20,6 +20,7 @@ struct Hopper {
   double seconds = 5;
   double effort = 1;  ///< 10: a tenth of the tolerance, and ten times the sweeps
   bool are_cubes = false;
+  double h = 1. / 240;  ///< s
 };
 
 /// What ran out a second, of the time after the first second, and how much the grains overlapped.
@@ -57,17 +58,16 @@ Flow drain(Ladder& ladder, const Hopper& hopper, const Parts&... parts) {
     grains.push_back(set.add({.position = place(i) + Vec3(0, 0, pitch * (i / edge / edge) + 0.6 * d),
                               .mass = 1e-3,
                               .shape = hopper.are_cubes ? Shape(Box{d, d, d}) : Shape(Sphere{0.5 * d})}));
-  constexpr double h = 1. / 240;
   const double top = pitch * ((hopper.count - 1) / edge / edge + 1) + 2.6 * d;
   int out = 0, next = 0;
-  const double seconds = ladder.is_quick() ? 40 * h : hopper.seconds;
+  const double seconds = ladder.is_quick() ? 40 * hopper.h : hopper.seconds;
   Flow flow;
-  flow.seen = run(ladder, loop, seconds, h, [&](int step) {
+  flow.seen = run(ladder, loop, seconds, hopper.h, [&](int step) {
     for (const auto& grain : grains) {
       if (set.position(grain).z() > -3 * d) continue;
       set.place(grain, place(next++) + Vec3(0, 0, top));
       set.set_velocity(grain, {0, 0, -2});
-      out += (step + 1) * h > 1;
+      out += (step + 1) * hopper.h > 1;
     }
   });
   flow.grains_a_second = out / (seconds - 1);
@@ -111,11 +111,12 @@ void hopper_of_many(Ladder& ladder) {
   });
 }
 
-// What falls goes 0.1 d in a step and pushes others into what is as far: a margin of d/10 sees it. A cube then has
-// up to 26 neighbours with four contacts each, all coupled: those go without W.
+// What falls at up to 4 m/s goes 0.08 d in a step of 1/480 s and pushes others into what is as far: a margin
+// of d/10 sees it. A cube then has up to 26 neighbours with four contacts each, all coupled: those go without
+// W.
 void hopper_of_cubes(Ladder& ladder) {
   const auto rung = [&](const char* difficulty, Hopper hopper) {
-    hopper.seconds = 2, hopper.are_cubes = true;
+    hopper.seconds = 2, hopper.are_cubes = true, hopper.h = 1. / 480;
     ladder.rung(difficulty, [&] {
       return overlaps(drain(ladder, hopper, NativeCollision{.margin = 0.1 * d}, CheaperCompliance{}));
     });
