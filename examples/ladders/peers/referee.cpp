@@ -83,6 +83,7 @@ const char* why_not(const Row& row) {
       {"HC-06", "", "needs particles"},
       {"HC-07", "step size", "one of its rungs steps its loop itself"},
       {"HC-14", "", "asks what is refused"},
+      {"HC-15", "far from the origin, single", "is about single precision, in which no other engine here runs"},
       {"HC-19", "", "needs a deformable"},
       {"HC-20", "", "needs a deformable"},
       {"HC-23", "", "its figure is a contact's impulse"},
