@@ -86,10 +86,10 @@ struct Bodies {
     x[b] += h * linear;
     v[b] = linear;
     const Vec3 rate = R[b].transpose() * angular, momentum = inertia[b] * rate, spatial = R[b] * momentum;
-    q[b] = (q[b] * midpoint_turn<double>(inertia[b], rate, momentum, momentum, h)).normalized();
+    q[b] = unit_again(q[b] * midpoint_turn<double>(inertia[b], rate, momentum, momentum, h));
     R[b] = rotation_matrix<double>(q[b]);
     inverse_inertia_world[b].noalias() = R[b] * inverse_inertia[b] * R[b].transpose();
-    omega[b] = R[b] * (inverse_inertia[b] * (R[b].transpose() * spatial));
+    omega[b] = R[b] * rate_of<double>(inertia[b], R[b].transpose() * spatial);
     return true;
   }
 };

@@ -33,7 +33,7 @@ inline Eigen::Quaternion<T> unit_again(const Eigen::Quaternion<T>& q) {
 /// a unit quaternion, s = 2, is as far from a rotation as |q| is from 1; and 2/|q|², rounded, is off to one side, since numbers
 /// lie farther apart above 2 than below.
 template <class T>
-Mat<3, 3, T> rotation_matrix(const Eigen::Quaternion<T>& q) {
+[[gnu::always_inline]] inline Mat<3, 3, T> rotation_matrix(const Eigen::Quaternion<T>& q) {
   const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const T e = lack_of_unit(q);
   const T sx = T(2) * (x + e * x), sy = T(2) * (y + e * y), sz = T(2) * (z + e * z);
