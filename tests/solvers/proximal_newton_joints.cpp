@@ -62,12 +62,12 @@ TEST_CASE("a stack with joints and springs in it converges in every step") {
   CHECK(seen.sweeps == 0);
 }
 
-// Sliding, bouncing, hanging in a closed loop of joints. One run is chance, since its bounces are; of 2400
-// steps of eight accelerated sweeps give up in 260, this method in 161, and both in one chain, the default,
-// in 19.
+// Sliding, bouncing, hanging in a closed loop of joints. One run is chance, since its bounces are; of 7200
+// steps of twenty-four accelerated sweeps give up in 244, this method in 173, and both in one chain, the
+// default, in 41.
 TEST_CASE("where sweeps give up Newton's method gives up less often, and the chain of both much less") {
   int alone = 0, swept = 0, chained = 0;
-  for (const double foot : {2.5, 2.7, 2.8, 2.9, 3.0, 3.1, 3.2, 3.3}) {
+  for (double foot = 2.5; foot < 3.45; foot += 0.04) {
     auto newton = jointed_loop(ProximalNewton{.tolerance = 1e-9}, foot);
     auto sweeps = jointed_loop(AcceleratedSweeps{.tolerance = 1e-9}, foot);
     auto chain = jointed_loop(AcceleratedGaussSeidel{.tolerance = 1e-9}, foot);
