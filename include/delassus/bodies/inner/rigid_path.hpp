@@ -45,7 +45,7 @@ class RigidPath {
     const Eigen::Quaternion<T> turned =
         turn_freely<T>(s.inverse_inertia[b], s.q[b], spatial, h, &body.response);
     put(s, b, body.x + Vector(h * linear_part(w)).template cast<double>(), turned.coeffs());
-    return twist<T>(linear_part(w), s.R[b] * rate_of<T>(s.inertia[b], s.R[b].transpose() * spatial));
+    return twist<T>(linear_part(w), s.R[b] * s.own_rate(b, s.R[b].transpose() * spatial));
   }
   /// What impulses at the start do to where `drift` ends: each column of X.
   template <int C, class Set>

@@ -7,6 +7,7 @@
 #include <delassus/rows/body_set.hpp>
 
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace delassus::inner {
@@ -101,6 +102,13 @@ struct RigidState {
     return true;
   }
 
+  /// Ω = I⁻¹ L in the body's axes. In single precision by the inverse that was made in double: what a needle's
+  /// matrix in turned axes is rounded to need not be positive.
+  Vector own_rate(Index b, const Vector& momentum) const {
+    if constexpr (std::is_same_v<T, double>) return rate_of<T>(inertia[b], momentum);
+    else return inverse_inertia[b] * momentum;
+  }
+
   /// q and v of one dynamic body after a step from its velocity before and after the impulses; v is the one it ends
   /// with. `old_share` of the old velocity in the mean that moves it: 0 for kick and drift, ½ for the midpoint rule.
   /// False when q or v is not finite: then both stay.
@@ -118,7 +126,7 @@ struct RigidState {
     turn(b);
     // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
     // ones.
-    const Vector rate = R[b] * rate_of<T>(inertia[b], R[b].transpose() * spatial);
+    const Vector rate = R[b] * own_rate(b, R[b].transpose() * spatial);
     // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
     if (!is_finite(x[b]) || !is_finite(rate)) [[unlikely]] {
       x[b] = old_x;
@@ -139,7 +147,7 @@ struct RigidState {
     x[b] = moved;
     q[b] = turned;
     turn(b);
-    v = twist<T>(linear_part(next), R[b] * rate_of<T>(inertia[b], R[b].transpose() * spatial));
+    v = twist<T>(linear_part(next), R[b] * own_rate(b, R[b].transpose() * spatial));
     return true;
   }
 
