@@ -107,3 +107,17 @@ TEST_CASE("a batch of tetrahedra has the forces and the stiffness of each of the
     }
   }
 }
+
+TEST_CASE("rows of lanes become columns") {
+  Lanes rows[lane_count];
+  double numbers[lane_count];
+  for (int i = 0; i < lane_count; ++i) {
+    for (int k = 0; k < lane_count; ++k) numbers[k] = 100 * i + k;
+    rows[i] = load_lanes(numbers);
+  }
+  inner::transpose_lanes(rows);
+  for (int i = 0; i < lane_count; ++i) {
+    store_lanes(numbers, rows[i]);
+    for (int k = 0; k < lane_count; ++k) CHECK(numbers[k] == 100 * k + i);
+  }
+}

@@ -5,7 +5,9 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstring>
+#include <utility>
 
 namespace delassus {
 
@@ -15,12 +17,9 @@ inline constexpr int lane_count = int(sizeof(Lanes) / sizeof(double));
 
 /// x in every lane.
 inline Lanes all_lanes(double x) { return Lanes{} + x; }
-inline Lanes load_lanes(const double* from) {
-  Lanes x;
-  std::memcpy(&x, from, sizeof x);
-  return x;
-}
-inline void store_lanes(double* to, const Lanes& x) { std::memcpy(to, &x, sizeof x); }
+/// One instruction each, where std::memcpy makes two if the compiler prefers vectors of half the length.
+inline Lanes load_lanes(const double* from) { return Eigen::internal::ploadu<Lanes>(from); }
+inline void store_lanes(double* to, const Lanes& x) { Eigen::internal::pstoreu(to, x); }
 inline Lanes root_of_lanes(const Lanes& x) { return Eigen::internal::psqrt(x); }
 inline Lanes size_of_lanes(const Lanes& x) { return Eigen::internal::pabs(x); }
 inline Lanes larger_lanes(const Lanes& x, const Lanes& y) { return x > y ? x : y; }
@@ -52,14 +51,28 @@ inline LaneMatrix times_transposed(const LaneMatrix& A, const LaneMatrix& B) {
 
 namespace inner {
 
-/// Row k of `rows` becomes what was column k. P is Lanes.
-template <class P>
-void transpose_lanes(P* rows) {
-  if constexpr (lane_count > 1) {
-    Eigen::internal::PacketBlock<P, lane_count> square;
-    for (int k = 0; k < lane_count; ++k) square.packet[k] = rows[k];
-    Eigen::internal::ptranspose(square);
-    for (int k = 0; k < lane_count; ++k) rows[k] = square.packet[k];
+/// The element i of what `exchange_lanes` makes of a (the first half) and b, counted through a and then b.
+constexpr int exchanged_lane(bool is_first, int step, int i) {
+  const bool is_upper = i & step;
+  if (is_first) return is_upper ? lane_count + i - step : i;
+  return is_upper ? lane_count + i : i + step;
+}
+/// The upper halves of a's groups of 2 `step` lanes for the lower ones of b's.
+template <int step, class P, std::size_t... i>
+inline void exchange_lanes(P& a, P& b, std::index_sequence<i...>) {
+  const P first = __builtin_shufflevector(a, b, exchanged_lane(true, step, i)...);
+  b = __builtin_shufflevector(a, b, exchanged_lane(false, step, i)...);
+  a = first;
+}
+/// Row k of `rows` becomes what was column k: blocks of 1, 2, 4 … lanes change places across the diagonal.
+template <int step = 1, class P>
+[[gnu::always_inline]] inline void transpose_lanes(P* rows) {
+  if constexpr (step < lane_count) {
+#pragma GCC unroll 8  // the rows stay in registers
+    for (int k = 0; k < lane_count; ++k)
+      if (!(k & step))
+        exchange_lanes<step>(rows[k], rows[k + step], std::make_index_sequence<lane_count>());
+    transpose_lanes<2 * step>(rows);
   }
 }
 

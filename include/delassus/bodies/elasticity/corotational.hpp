@@ -14,30 +14,30 @@ namespace delassus {
 /// u_k the principal axes where the element is, twists cut at zero.
 struct CorotationalLanes {
   LaneMatrix R, stress, turn;  ///< P and Z, Pa
-  Lanes lambda, mu;
+  Lanes lambda, two_mu;
 
   /// All by the volume they act in, m³.
   void integrate(const Lanes& volume) {
     for (LaneMatrix* A : {&stress, &turn})
       for (LaneVector& column : A->column) column = times(volume, column);
-    lambda *= volume, mu *= volume;
+    lambda *= volume, two_mu *= volume;
   }
 
-  /// Of a gradient g: g, λ R g, R g, and [R g]ₓ Z by columns.
+  /// Of a gradient g: √(2μ) g, λ R g, R g, and [R g]ₓ Z by columns.
   struct Pulled {
-    LaneVector plain, stiff, turned;
+    LaneVector scaled, stiff, turned;
     LaneMatrix lever;
   };
   Pulled pull(const LaneVector& g) const {
     Pulled p;
-    p.plain = g;
+    p.scaled = times(root_of_lanes(two_mu), g);
     for (int i = 0; i < 3; ++i) p.turned[i] = R(i, 0) * g[0] + R(i, 1) * g[1] + R(i, 2) * g[2];
     p.stiff = times(lambda, p.turned);
     for (int k = 0; k < 3; ++k) p.lever.column[k] = cross(p.turned, turn.column[k]);
     return p;
   }
   LaneMatrix block(const Pulled& a, const Pulled& b) const {
-    const Lanes along = 2 * mu * dot(a.plain, b.plain);
+    const Lanes along = dot(a.scaled, b.scaled);
     LaneMatrix K;
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3, m = (k + 2) % 3;
@@ -89,7 +89,7 @@ struct Corotational {
       Uc.column[k] = times(larger_lanes((pressure - 2 * lame.mu) / sum, all_lanes(-lame.mu)), f.U.column[k]);
     }
     return {times_transposed(f.U, f.V), times_transposed(Up, f.V), times_transposed(Uc, f.U),
-            all_lanes(lame.lambda), all_lanes(lame.mu)};
+            all_lanes(lame.lambda), all_lanes(2 * lame.mu)};
   }
 };
 static_assert(ElasticMaterial<Corotational>);

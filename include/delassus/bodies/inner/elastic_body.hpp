@@ -168,19 +168,31 @@ class ElasticBody {
 
   /// How many elements are taken lane_count at a time.
   Index batched() const { return LaneElement<E, M> ? Index(elements_.size()) / lane_count * lane_count : 0; }
+  /// The element that is taken as number k. Those that meshes name one after the other share nodes, and lanes
+  /// that add to one number wait for each other: of each lane_count² elements, a batch takes every
+  /// lane_count-th.
+  Index element_at(Index k) const {
+    constexpr Index group = lane_count * lane_count;
+    if (!LaneElement<E, M> || k >= Index(elements_.size()) / group * group) return k;
+    const Index in_group = k % group;
+    return k - in_group + in_group % lane_count * lane_count + in_group / lane_count;
+  }
   /// The corners of each element by ascending node, and what its lane is made of.
   void order_corners() {
     const std::size_t n = elements_.size();
     order_.resize(n), nodes_.resize(n);
-    if constexpr (LaneElement<E, M>) lane_numbers_.resize(n / lane_count * lane_count * E::lane_numbers);
-    for (std::size_t e = 0; e < n; ++e) {
-      const auto& t = mesh_.cells()[Index(e)];
-      for (int a = 0; a < E::nodes; ++a) order_[e][a] = a;
-      std::sort(order_[e].begin(), order_[e].end(), [&](int a, int b) { return t[a] < t[b]; });
-      for (int a = 0; a < E::nodes; ++a) nodes_[e][a] = t[order_[e][a]];
+    lane_numbers_.clear();
+    if constexpr (LaneElement<E, M>) lane_numbers_.resize(std::size_t(batched()) * E::lane_numbers);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index e = element_at(Index(k));
+      const auto& t = mesh_.cells()[e];
+      for (int a = 0; a < E::nodes; ++a) order_[k][a] = a;
+      std::sort(order_[k].begin(), order_[k].end(), [&](int a, int b) { return t[a] < t[b]; });
+      for (int a = 0; a < E::nodes; ++a) nodes_[k][a] = t[order_[k][a]];
       if constexpr (LaneElement<E, M>)
-        if (const std::size_t l = e % lane_count; (e - l + lane_count) <= n)
-          elements_[e].enter_lane(order_[e], &lane_numbers_[(e - l) * E::lane_numbers + l]);
+        if (Index(k) < batched())
+          elements_[e].enter_lane(order_[k],
+                                  &lane_numbers_[k / lane_count * lane_count * E::lane_numbers + k % lane_count]);
     }
   }
 
@@ -208,7 +220,7 @@ class ElasticBody {
     }
   }
 
-  /// The elements e … e + lane_count − 1 at once.
+  /// The elements that are taken as numbers e … e + lane_count − 1 at once.
   void add_lanes(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
     double places[E::nodes * 3 * lane_count], numbers[3 * lane_count];
     for (int l = 0; l < lane_count; ++l)
@@ -248,7 +260,7 @@ class ElasticBody {
   std::uint32_t number_ = 0;
   std::vector<Index> blocks_;
   std::vector<E> elements_;
-  std::vector<std::array<int, E::nodes>> order_;    ///< the corners of an element by ascending node
+  std::vector<std::array<int, E::nodes>> order_;    ///< `element_at(k)`'s corners by ascending node
   std::vector<std::array<Index, E::nodes>> nodes_;  ///< these nodes
   std::vector<double> lane_numbers_;                ///< of whole lanes of elements
   std::vector<Tie> ties_;

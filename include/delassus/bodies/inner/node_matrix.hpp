@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -92,19 +93,20 @@ class NodeMatrix {
     }
   }
   /// K_ii, when all elements are in. It is symmetric, so that on which side of a pair i stands makes no
-  /// difference: K_ii = −sym Σ K_p over the pairs p with i.
+  /// difference: K_ii = −sym Σ K_p over the pairs p with i. Sums are zero before and after.
   void add_diagonal() {
-    std::fill(sums_.begin(), sums_.end(), Eight{});
-    std::fill(ninth_sums_.begin(), ninth_sums_.end(), T(0));
     std::size_t p = 0;
     for (Index i = 0; i < Index(diagonal_.size()); ++i) {
-      Eight sum = sums_[i];
-      T ninth = ninth_sums_[i];
+      Eight sum{};
+      T ninth = 0;
       for (; p < pairs_.size() && pairs_[p].first == i; ++p) {
         const Index j = pairs_[p].second;
-        for (int k = 0; k < 8; ++k) sum.e[k] += eights_[p].e[k], sums_[j].e[k] += eights_[p].e[k];
+        add_to(sum, eights_[p]), add_to(sums_[j], eights_[p]);
         ninth += ninths_[p], ninth_sums_[j] += ninths_[p];
       }
+      add_to(sum, sums_[i]);
+      ninth += ninth_sums_[i];
+      sums_[i] = {}, ninth_sums_[i] = 0;
       const Block all = block(sum, ninth);
       diagonal_[i] = T(-0.5) * (all + all.transpose());
       if constexpr (has_ties)
@@ -192,6 +194,12 @@ class NodeMatrix {
   struct alignas(8 * sizeof(T)) Eight {
     T e[8];
   };
+  static void add_to(Eight& to, const Eight& x) {
+    if constexpr (std::is_same_v<T, double>)
+      for (int k = 0; k < 8; k += lane_count) add_to(to.e + k, to.e + k, load_lanes(x.e + k));
+    else
+      for (int k = 0; k < 8; ++k) to.e[k] += x.e[k];
+  }
   static Block block(const Eight& eight, T ninth) {
     Block K;
     for (int i = 0; i < 8; ++i) K.data()[i] = eight.e[i];
@@ -211,7 +219,7 @@ class NodeMatrix {
   std::vector<T> ninths_;
   std::vector<T> ties_, tie_sums_;  ///< k of each pair, and Σ k by node, with `has_ties`
   std::vector<Block> diagonal_;
-  std::vector<Eight> sums_;  ///< Σ K_p by node, and its last number
+  std::vector<Eight> sums_;  ///< Σ K_p by node, and its last number: at work
   std::vector<T> ninth_sums_;
   MultifrontalCholesky<3, T> factor_;
 };

@@ -111,13 +111,22 @@ class DenseKernel {
     const Index whole = rows / height * height, there = rows - whole, high = rounded_up(there, grain);
     for (Index j = 0; j < columns; ++j) {
       const T* source = from.at(0, j);
-      for (Index i = 0; i < whole; i += height)
-        std::copy_n(source + i, height, &to[i * columns + j * height]);
+      for (Index i = 0; i < whole; i += height) copy_strip<height>(source + i, &to[i * columns + j * height]);
       if (there == 0) continue;
       T* const last = &to[whole * columns + j * high];
       std::copy_n(source + whole, there, last);
       std::fill_n(last + there, high - there, T(0));
     }
+  }
+
+  /// std::copy_n of more than a few numbers is a call.
+  template <Index height>
+  static void copy_strip(const T* from, T* to) {
+    using namespace Eigen::internal;
+    if constexpr (height % lanes == 0)
+      for (Index i = 0; i < height; i += lanes) pstoreu(to + i, ploadu<Packet>(from + i));
+    else
+      std::copy_n(from, height, to);
   }
 
   /// −L by panels of rows, each column by column up to the panel's square, in which 1/L_ii is on the
