@@ -46,10 +46,15 @@ class NodeCompliance {
       const inner::Columns<const T> same{Y.data, Y.stride};
       kernel_.subtract(minus.from(lo, lo), same, same, hi - lo, hi - lo, w * x.width, true);
     }
-    for (Index j = 0; j < columns; ++j)
-      for (Index i = j; i < columns; ++i) {
-        const std::size_t a = w * wanted_[i / w].second + i % w, b = w * wanted_[j / w].second + j % w;
-        C[a + b * columns] = C[b + a * columns] = -*minus.at(i, j);
+    for (Index q = 0; q < Index(nodes.size()); ++q)
+      for (Index p = q; p < Index(nodes.size()); ++p) {
+        const inner::Columns<T> from = minus.from(w * p, w * q);
+        const std::size_t first_row = w * wanted_[p].second, first_column = w * wanted_[q].second;
+        for (int c = 0; c < w; ++c)
+          for (int r = p == q ? c : 0; r < w; ++r) {
+            const std::size_t a = first_row + r, b = first_column + c;
+            C[a + b * columns] = C[b + a * columns] = -*from.at(r, c);
+          }
       }
   }
 
