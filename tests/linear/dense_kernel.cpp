@@ -57,6 +57,17 @@ TEMPLATE_TEST_CASE("products and triangles of any size are those of the definiti
         REQUIRE(((Y * low.transpose() - A).array().abs() <=
                  (rounding * (Y.cwiseAbs() * low.cwiseAbs().transpose() + A.cwiseAbs())).array())
                     .all());
+
+        // The three at once: the same numbers as one after the other.
+        Dense<T> both = A, G = Dense<T>::Zero(m, n), D = Dense<T>::Constant(m, m, T(1)), E = D;
+        kernel.solve_and_multiply(all(both), all(std::as_const(L)), all(B), all(G), all(D), m, n, k);
+        const Dense<T> solved = Y;
+        kernel.negated_product(all(fresh), all(solved), all(B), m, n, k, false);
+        kernel.subtract(all(E), all(solved), all(solved), m, m, k, true);
+        REQUIRE(both == Y);
+        REQUIRE(G == fresh);
+        for (Index j = 0; j < m; ++j)
+          for (Index i = j; i < m; ++i) REQUIRE(D(i, j) == E(i, j));
       }
 }
 

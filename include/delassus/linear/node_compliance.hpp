@@ -31,7 +31,12 @@ class NodeCompliance {
     const SupernodalPattern& pattern = factor.pattern();
     const Index columns = w * Index(nodes.size());
     find_reach(pattern, nodes);
-    y_.assign(std::size_t(columns) * rows_, T(0));
+    if (y_.size() < std::size_t(columns) * rows_) y_.resize(std::size_t(columns) * rows_);
+    for (const Index s : visited_) {
+      const auto [lo, hi] = wanted_below(pattern.supernodes()[s]);
+      for (Index c = 0; c < w * pattern.supernodes()[s].width; ++c)
+        std::fill_n(line(pattern.supernodes()[s].first, c, columns, lo), hi - lo, T(0));
+    }
     result_.assign(std::size_t(columns) * columns, T(0));
     for (Index k = 0; k < Index(nodes.size()); ++k) {
       const Index place = wanted_[k].first;
@@ -40,11 +45,9 @@ class NodeCompliance {
     const inner::Columns<T> minus{result_.data(), std::size_t(columns)};
     for (const Index s : visited_) {
       const Supernode& x = pattern.supernodes()[s];
-      const Index lo = w * first_wanted(x.first_descendant), hi = w * first_wanted(x.first + x.width);
+      const auto [lo, hi] = wanted_below(x);
       const inner::Columns<T> Y{line(x.first, 0, columns, lo), std::size_t(columns)};
-      forward(x, factor.columns_of(s), Y, lo, hi - lo, columns);
-      const inner::Columns<const T> same{Y.data, Y.stride};
-      kernel_.subtract(minus.from(lo, lo), same, same, hi - lo, hi - lo, w * x.width, true);
+      forward(x, factor.columns_of(s), Y, minus.from(lo, lo), lo, hi - lo, columns);
     }
     for (Index q = 0; q < Index(nodes.size()); ++q)
       for (Index p = q; p < Index(nodes.size()); ++p) {
@@ -62,15 +65,14 @@ class NodeCompliance {
   using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
   using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
-  /// Y ← L⁻¹ Y, the share of one supernode. Y is stored transposed, one column a row of L, `used` of its
-  /// columns from `first` on.
-  void forward(const Supernode& x, inner::Columns<const T> L, inner::Columns<T> Y, Index first, Index used,
-               Index columns) {
+  /// Y ← L⁻¹ Y and −C ← −C − Yᵀ Y, the share of one supernode. Y is stored transposed, one column a row of L,
+  /// `used` of its columns from `first` on.
+  void forward(const Supernode& x, inner::Columns<const T> L, inner::Columns<T> Y, inner::Columns<T> minus,
+               Index first, Index used, Index columns) {
     const Index width = w * x.width, below = w * x.below();
-    kernel_.solve_right(Y, L, used, width);
     gather_.resize(std::size_t(used) * below);
     const inner::Columns<T> G{gather_.data(), std::size_t(used)};
-    kernel_.negated_product(G, {Y.data, Y.stride}, L.from(width, 0), used, below, width, false);
+    kernel_.solve_and_multiply(Y, L, L.from(width, 0), G, minus, used, below, width);
     for (Index i = 0; i < below; ++i)
       Line(line(x.rows[x.width + i / w], i % w, columns, first), used) += ConstLine(G.at(0, i), used);
   }
@@ -97,6 +99,10 @@ class NodeCompliance {
   Index first_wanted(Index place) const {
     return Index(std::lower_bound(wanted_.begin(), wanted_.end(), std::pair<Index, Index>(place, -1)) -
                  wanted_.begin());
+  }
+  /// The columns of Y that begin in a supernode or below it: [first, last).
+  std::pair<Index, Index> wanted_below(const Supernode& x) const {
+    return {w * first_wanted(x.first_descendant), w * first_wanted(x.first + x.width)};
   }
   T* line(Index place, int c, Index columns, Index at) {
     return &y_[std::size_t(slot_[place] + c) * columns + at];

@@ -64,6 +64,22 @@ class DenseKernel {
     solve_right(Y.from(0, half), L.from(half, half), m, k - half);
   }
 
+  /// Y ← Y L⁻ᵀ, then G = −Y Bᵀ and C −= Y Yᵀ, in C only entries i ≥ j: Y is m × k, L is k × k lower, B is n × k.
+  /// The three share one packing of Y.
+  void solve_and_multiply(Columns<T> Y, Columns<const T> L, Columns<const T> B, Columns<T> G, Columns<T> C,
+                          Index m, Index n, Index k) {
+    const Columns<const T> solved{Y.data, Y.stride};
+    if (k > depth) {
+      solve_right(Y, L, m, k);
+      negated_product(G, solved, B, m, n, k, false);
+      subtract(C, solved, solved, m, m, k, true);
+      return;
+    }
+    solve_by_strips(Y, L, m, k);
+    multiply_packed(G, B, m, n, k, false, true);
+    multiply_packed(C, solved, m, m, k, true, false);
+  }
+
  private:
   /// f with as many packets as the rows that are left take, three at most.
   static void with_packets(Index rows, auto&& f) {
@@ -83,38 +99,44 @@ class DenseKernel {
                 bool is_lower, bool is_new) {
     for (Index done = 0; done < k; done += depth) {
       const Index width = std::min(depth, k - done);
-      pack<strip, lanes>(a_, A.from(0, done), m, width);
-      pack<panel, panel>(b_, B.from(0, done), n, width);
-      for (Index i = 0; i < m; i += strip)
-        with_packets(m - i, [&]<int packets>(std::integral_constant<int, packets>) {
-          const Index rows = std::min(strip, m - i), last = is_lower ? std::min(n, i + rows) : n;
-          const T* a = &a_[std::size_t(i) * width];
-          for (Index j = 0; j < last; j += panel) {
-            // What lies above the diagonal is left out by packets of rows.
-            const Index above = is_lower && j > i ? (j - i) / lanes * lanes : 0;
-            with_packets(rows - above, [&]<int used>(std::integral_constant<int, used>) {
-              if constexpr (used <= packets)
-                tile<used, packets * lanes>(C.from(i + above, j), rows - above, std::min(panel, n - j),
-                                            a + above, &b_[std::size_t(j) * width], width,
-                                            is_new && done == 0);
-            });
-          }
-        });
+      fit(a_, rounded_up(m, lanes) * width);
+      pack<strip, lanes>(a_.data(), A.from(0, done), m, width);
+      multiply_packed(C, B.from(0, done), m, n, width, is_lower, is_new && done == 0);
     }
+  }
+
+  /// C −= A Bᵀ or C = −A Bᵀ with the k ≤ depth columns of A that are packed.
+  void multiply_packed(Columns<T> C, Columns<const T> B, Index m, Index n, Index k, bool is_lower,
+                       bool is_new) {
+    fit(b_, rounded_up(n, panel) * k);
+    pack<panel, panel>(b_.data(), B, n, k);
+    for (Index i = 0; i < m; i += strip)
+      with_packets(m - i, [&]<int packets>(std::integral_constant<int, packets>) {
+        const Index rows = std::min(strip, m - i), last = is_lower ? std::min(n, i + rows) : n;
+        const T* a = &a_[std::size_t(i) * k];
+        for (Index j = 0; j < last; j += panel) {
+          // What lies above the diagonal is left out by packets of rows.
+          const Index above = is_lower && j > i ? (j - i) / lanes * lanes : 0;
+          with_packets(rows - above, [&]<int used>(std::integral_constant<int, used>) {
+            if constexpr (used <= packets)
+              tile<used, packets * lanes>(C.from(i + above, j), rows - above, std::min(panel, n - j), a + above,
+                                          &b_[std::size_t(j) * k], k, is_new);
+          });
+        }
+      });
   }
 
   /// Strips of `height` rows, each column by column; the last one has its rows rounded up to a multiple of
   /// `grain`, and zeros for those that are missing.
   template <Index height, Index grain>
-  static void pack(std::vector<T>& to, Columns<const T> from, Index rows, Index columns) {
-    fit(to, rounded_up(rows, grain) * columns);
+  static void pack(T* to, Columns<const T> from, Index rows, Index columns) {
     const Index whole = rows / height * height, there = rows - whole, high = rounded_up(there, grain);
+    for (Index i = 0; i < whole; i += height, to += columns * height)
+      for (Index j = 0; j < columns; ++j) copy_strip<height>(from.at(i, j), to + j * height);
+    if (there == 0) return;
     for (Index j = 0; j < columns; ++j) {
-      const T* source = from.at(0, j);
-      for (Index i = 0; i < whole; i += height) copy_strip<height>(source + i, &to[i * columns + j * height]);
-      if (there == 0) continue;
-      T* const last = &to[whole * columns + j * high];
-      std::copy_n(source + whole, there, last);
+      T* const last = to + j * high;
+      std::copy_n(from.at(whole, j), there, last);
       std::fill_n(last + there, high - there, T(0));
     }
   }
@@ -191,37 +213,37 @@ class DenseKernel {
     }
   }
 
-  /// Y ← Y L⁻ᵀ. Of a strip of rows, by panels of columns from left to right:
+  /// Y ← Y L⁻ᵀ, which stays packed as well. Of a strip of rows, by panels of columns from left to right:
   ///
   ///   Y_p ← (Y_p − Σ_{l<p} Y_l L_plᵀ) L_pp⁻ᵀ.
   void solve_by_strips(Columns<T> Y, Columns<const T> L, Index m, Index k) {
     pack_triangle(L, k);
-    fit(a_, strip * k);
+    fit(a_, rounded_up(m, lanes) * k);
     for (Index i = 0; i < m; i += strip)
       with_packets(m - i, [&]<int packets>(std::integral_constant<int, packets>) {
-        solve_strip<packets>(Y.from(i, 0), std::min(strip, m - i), k);
+        solve_strip<packets>(Y.from(i, 0), &a_[std::size_t(i) * k], std::min(strip, m - i), k);
       });
   }
 
   /// The rows of one strip of Y ← Y L⁻ᵀ. Those of a strip that is not whole are solved in the packed strip
   /// alone.
   template <int packets>
-  void solve_strip(Columns<T> Y, Index rows, Index k) {
+  void solve_strip(Columns<T> Y, T* strip_of_y, Index rows, Index k) {
     using namespace Eigen::internal;
     constexpr Index high = packets * lanes;
     const bool is_whole = rows == high;
-    if (!is_whole) pack<high, high>(a_, {Y.data, Y.stride}, rows, k);
+    if (!is_whole) pack<high, high>(strip_of_y, {Y.data, Y.stride}, rows, k);
     const T* b = b_.data();
     for (Index j = 0; j < k; j += panel) {
       const Index columns = std::min(panel, k - j);
-      T* const packed = &a_[std::size_t(j) * high];
+      T* const packed = strip_of_y + std::size_t(j) * high;
       Packet s[panel][packets];
 #pragma GCC unroll 8
       for (int c = 0; c < panel; ++c)
         for (int r = 0; r < packets; ++r)
           s[c][r] = c < columns ? ploadu<Packet>((is_whole ? Y.at(0, j + c) : packed + c * high) + r * lanes)
                                 : pset1<Packet>(T(0));
-      const T* a = a_.data();
+      const T* a = strip_of_y;
       for (Index l = 0; l < j; ++l, a += high, b += panel) add_products<packets>(s, a, b);
 #pragma GCC unroll 8  // the sums stay in registers
       for (int c = 0; c < panel; ++c, b += panel) {
@@ -240,7 +262,7 @@ class DenseKernel {
         }
     }
     if (is_whole) return;
-    for (Index j = 0; j < k; ++j) std::copy_n(&a_[std::size_t(j) * high], rows, Y.at(0, j));
+    for (Index j = 0; j < k; ++j) std::copy_n(strip_of_y + std::size_t(j) * high, rows, Y.at(0, j));
   }
 
   /// L Lᵀ = C, n × n, by halves: left half, what is below it, its product off the right half, right half.
