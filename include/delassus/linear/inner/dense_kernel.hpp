@@ -64,8 +64,8 @@ class DenseKernel {
     solve_right(Y.from(0, half), L.from(half, half), m, k - half);
   }
 
-  /// Y ← Y L⁻ᵀ, then G = −Y Bᵀ and C −= Y Yᵀ, in C only entries i ≥ j: Y is m × k, L is k × k lower, B is n × k.
-  /// The three share one packing of Y.
+  /// Y ← Y L⁻ᵀ, then G = −Y Bᵀ and C −= Y Yᵀ, in C only entries i ≥ j: Y is m × k, L is k × k lower, B is n ×
+  /// k. The three share one packing of Y.
   void solve_and_multiply(Columns<T> Y, Columns<const T> L, Columns<const T> B, Columns<T> G, Columns<T> C,
                           Index m, Index n, Index k) {
     const Columns<const T> solved{Y.data, Y.stride};
@@ -119,8 +119,8 @@ class DenseKernel {
           const Index above = is_lower && j > i ? (j - i) / lanes * lanes : 0;
           with_packets(rows - above, [&]<int used>(std::integral_constant<int, used>) {
             if constexpr (used <= packets)
-              tile<used, packets * lanes>(C.from(i + above, j), rows - above, std::min(panel, n - j), a + above,
-                                          &b_[std::size_t(j) * k], k, is_new);
+              tile<used, packets * lanes>(C.from(i + above, j), rows - above, std::min(panel, n - j),
+                                          a + above, &b_[std::size_t(j) * k], k, is_new);
           });
         }
       });
