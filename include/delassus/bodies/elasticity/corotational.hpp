@@ -23,21 +23,21 @@ struct CorotationalLanes {
     lambda *= volume, two_mu *= volume;
   }
 
-  /// Of a gradient g: √(2μ) g, λ R g, R g, and [R g]ₓ Z by columns.
+  /// Of a gradient g: g, λ R g, R g, and [R g]ₓ Z by columns.
   struct Pulled {
-    LaneVector scaled, stiff, turned;
+    LaneVector gradient, stiff, turned;
     LaneMatrix lever;
   };
   Pulled pull(const LaneVector& g) const {
     Pulled p;
-    p.scaled = times(root_of_lanes(two_mu), g);
+    p.gradient = g;
     for (int i = 0; i < 3; ++i) p.turned[i] = R(i, 0) * g[0] + R(i, 1) * g[1] + R(i, 2) * g[2];
     p.stiff = times(lambda, p.turned);
     for (int k = 0; k < 3; ++k) p.lever.column[k] = cross(p.turned, turn.column[k]);
     return p;
   }
   LaneMatrix block(const Pulled& a, const Pulled& b) const {
-    const Lanes along = dot(a.scaled, b.scaled);
+    const Lanes along = two_mu * dot(a.gradient, b.gradient);
     LaneMatrix K;
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3, m = (k + 2) % 3;

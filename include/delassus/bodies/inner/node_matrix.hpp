@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -54,7 +55,7 @@ class NodeMatrix {
     };
     places_.resize(elements.size());
     for (std::size_t e = 0; e < elements.size(); ++e)
-      for (int k = 0; k < pairs_each; ++k) places_[e][k] = place_of(all[e * pairs_each + k]);
+      for (int k = 0; k < pairs_each; ++k) places_[e][k] = 1 + place_of(all[e * pairs_each + k]);
     ties_.assign(has_ties ? pairs_.size() : 0, T(0));
     tie_sums_.assign(has_ties ? nodes : 0, T(0));
     for (const Tie& tie : ties) {
@@ -62,8 +63,8 @@ class NodeMatrix {
       tie_sums_[tie.i] += T(tie.k), tie_sums_[tie.j] += T(tie.k);
     }
     mark_first(batched);
-    eights_.assign(pairs_.size(), {});
-    ninths_.assign(pairs_.size(), T(0));
+    eights_.assign(1 + pairs_.size(), {});
+    ninths_.assign(1 + pairs_.size(), T(0));
     diagonal_.assign(nodes, Block::Zero());
     sums_.assign(nodes, {});
     ninth_sums_.assign(nodes, T(0));
@@ -73,12 +74,15 @@ class NodeMatrix {
   /// Pair k of element e. All elements are added in ascending order, and what is there from the last time is
   /// written over.
   void add(Index e, int k, const Mat3& block) {
-    const Place at = place(e, k);
-    for (int i = 0; i < 8; ++i) eights_[at.index].e[i] = at.from[i] + T(block.data()[i]);
-    ninths_[at.index] = at.ninth + T(block.data()[8]);
+    const auto [to, from] = place(places_[e][k]);
+    for (int i = 0; i < 8; ++i) eights_[to].e[i] = eights_[from].e[i] + T(block.data()[i]);
+    ninths_[to] = ninths_[from] + T(block.data()[8]);
   }
   /// Pair k of the elements e, e + 1, … of all lanes.
   void add_lanes(Index e, int k, const LaneMatrix& block) {
+    Eight* const eights = eights_.data();  // known to stay, unlike what the vector says
+    T* const ninths = ninths_.data();
+    const auto* const places = &places_[e];
     double last[lane_count];
     store_lanes(last, block(2, 2));
     Lanes rows[8];
@@ -86,9 +90,9 @@ class NodeMatrix {
     for (int first = 0; first < 8; first += lane_count) {
       transpose_lanes(&rows[first]);
       for (int l = 0; l < lane_count; ++l) {
-        const Place at = place(e + l, k);
-        add_to(eights_[at.index].e + first, at.from + first, rows[first + l]);
-        if (first == 0) ninths_[at.index] = at.ninth + T(last[l]);
+        const auto [to, from] = place(places[l][k]);
+        add_to(eights[to].e + first, eights[from].e + first, rows[first + l]);
+        if (first == 0) ninths[to] = ninths[from] + T(last[l]);
       }
     }
   }
@@ -101,8 +105,8 @@ class NodeMatrix {
       T ninth = 0;
       for (; p < pairs_.size() && pairs_[p].first == i; ++p) {
         const Index j = pairs_[p].second;
-        add_to(sum, eights_[p]), add_to(sums_[j], eights_[p]);
-        ninth += ninths_[p], ninth_sums_[j] += ninths_[p];
+        add_to(sum, eights_[1 + p]), add_to(sums_[j], eights_[1 + p]);
+        ninth += ninths_[1 + p], ninth_sums_[j] += ninths_[1 + p];
       }
       add_to(sum, sums_[i]);
       ninth += ninth_sums_[i];
@@ -160,21 +164,16 @@ class NodeMatrix {
   void compliance(std::span<const Index> nodes, std::span<T> C) const { factor_.compliance(nodes, C); }
 
  private:
-  /// Places are kept as −1 − place where no element adds to it before: nothing is read there.
+  /// Pair p's block is the one with number 1 + p, which is kept with a minus where no element adds to it
+  /// before: block 0 stays zero and is added to there, without a branch.
   struct Place {
-    Index index;
-    const T* from;  ///< what the first eight numbers are added to
-    T ninth;
+    Index to, from;
   };
-  Place place(Index e, int k) const {
-    static constexpr T zeros[8] = {};
-    const Index p = places_[e][k], index = p < 0 ? -1 - p : p;
-    return {index, p < 0 ? zeros : eights_[index].e, p < 0 ? T(0) : ninths_[index]};
-  }
+  static Place place(Index p) { return {std::abs(p), std::max(p, 0)}; }
   void mark_first(Index batched) {
     std::vector<char> is_met(pairs_.size(), 0);
     const auto meet = [&](Index& place) {
-      if (!std::exchange(is_met[place], 1)) place = -1 - place;
+      if (!std::exchange(is_met[place - 1], 1)) place = -place;
     };
     for (Index e = 0; e < batched; e += lane_count)  // as add_lanes goes
       for (int k = 0; k < pairs_each; ++k)
@@ -207,7 +206,7 @@ class NodeMatrix {
     return K;
   }
   Block block(std::size_t p) const {
-    Block K = block(eights_[p], ninths_[p]);
+    Block K = block(eights_[1 + p], ninths_[1 + p]);
     if constexpr (has_ties)
       for (int i = 0; i < 3; ++i) K(i, i) -= ties_[p];
     return K;
@@ -215,7 +214,7 @@ class NodeMatrix {
 
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<std::array<Index, pairs_each>> places_;
-  std::vector<Eight> eights_;  ///< of the pairs' blocks, by columns
+  std::vector<Eight> eights_;  ///< of zeros, and of the pairs' blocks, by columns
   std::vector<T> ninths_;
   std::vector<T> ties_, tie_sums_;  ///< k of each pair, and Σ k by node, with `has_ties`
   std::vector<Block> diagonal_;
