@@ -36,6 +36,7 @@ class AnimationLoop {
   /// The integrator solves for joints and bodies together: there is no W, and no problem to hand out.
   static constexpr bool solves_whole_step = delassus::solves_whole_step<typename Parts::Integrator, has_constraints>;
   static constexpr bool divides_step = requires { requires Parts::Scheme::divides_step; };
+  static constexpr bool locates_impacts = requires { requires Parts::Scheme::locates_impacts; };
   /// A policy of the list, by type.
   template <class P>
   static constexpr bool has = (std::is_same_v<P, Policies> || ...);
@@ -250,6 +251,15 @@ class AnimationLoop {
   /// For a scheme that does a step in parts: h is h/count from here on, until a part ends after which none is left.
   void begin_substeps(int count);
   void end_substep(int left);
+  /// For a scheme that flies from impact to impact, see `LocatedImpacts`; the least gap (m) now.
+  double begin_flights(double tolerance);
+  /// From where flights began, without contacts, for h seconds; a `Landing`. The last one ends the step.
+  auto fly(double h, bool is_last);
+  /// Impulses of what is within `reach` (m) where the loop is; the flights to come begin here.
+  void meet(double reach);
+  /// From where flights began, with contacts, to the end of the step.
+  void step_with_contacts(double h);
+  void end_flights();
 
   /// No constraint, nobody who listens between Begin and Step, and parts that treat each block by itself.
   static constexpr bool moves_freely =
@@ -281,11 +291,14 @@ class AnimationLoop {
   Laws& laws() { return part<role::Constraints>(); }
   const Laws& laws() const { return part<role::Constraints>(); }
   void end_advance();
+  template <class Stepper>
+  void advance_by(const Stepper& stepper);
+  void set_part(double h, bool is_last);
   /// The rows of the last step speak of what has been taken out: there are none until the next one.
   void forget_rows() {
     if constexpr (has_constraints) {
       work_.rows.reset();
-      work_.islands = {};
+      work_.islands.clear();
       work_.reports.clear();
     }
   }
@@ -309,3 +322,4 @@ class AnimationLoop {
 
 #include <delassus/loop/inner/loop_members.hpp>  // what a host calls
 #include <delassus/loop/inner/loop_stages.hpp>   // the stages, stage by stage
+#include <delassus/loop/inner/flight_stages.hpp>  // and those of flights

@@ -88,13 +88,13 @@ struct whole_step<I, World, Laws, Rows> {
   using type = typename I::template WholeStep<World, Laws, Rows>;
 };
 
-/// A scheme that does a step in parts brings what it needs for that.
+/// A scheme that does a step in parts brings what it needs for that, `Parts`.
 template <class Scheme, class World, class Laws, class Rows>
 struct substeps_of {
   using type = Nothing<8>;
 };
 template <class Scheme, class World, class Laws, class Rows>
-  requires requires { requires Scheme::divides_step; }
+  requires requires { typename Scheme::template Parts<World, Laws, Rows>; }
 struct substeps_of<Scheme, World, Laws, Rows> {
   using type = typename Scheme::template Parts<World, Laws, Rows>;
 };

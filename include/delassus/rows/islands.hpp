@@ -55,6 +55,12 @@ class Islands {
       for (auto& array : *arrays) f(array);
   }
 
+  /// No islands; what they were kept in stays.
+  void clear() {
+    each_array(*this, [](auto& array) { array.clear(); });
+    count_ = 0;
+  }
+
   /// One island of all items: a problem without bodies, or one whose errors shall be measured over the whole.
   template <class Rows>
   void take_all(const Rows& rows) {

@@ -241,6 +241,12 @@ void AnimationLoop<Policies...>::move_freely() {
 
 template <class... Policies>
 void AnimationLoop<Policies...>::advance() {
+  advance_by(part<role::Integrator>());
+}
+
+template <class... Policies>
+template <class Stepper>
+void AnimationLoop<Policies...>::advance_by(const Stepper& stepper) {
   const auto find = [&] {
     if constexpr (has_constraints)
       if constexpr (Work::projects_position)
@@ -253,7 +259,7 @@ void AnimationLoop<Policies...>::advance() {
   }();
   if constexpr (!sees_end) find();
   world().each([&](auto& set, auto) {
-    part<role::Integrator>().advance(set, h_);
+    stepper.advance(set, h_);
     report_.quarantined += set.held();
   });
   if constexpr (sees_end) {

@@ -1,0 +1,147 @@
+/// The stages of `LocatedImpacts`: flights, impacts, and what is left of a step.
+#pragma once
+
+#include <delassus/loop/animation_loop.hpp>
+#include <delassus/loop/inner/loop_stages.hpp>
+#include <delassus/loop/stages/impact_bias.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace delassus {
+
+namespace inner {
+
+/// Advance of a step with contacts under an integrator that leaves q to its whole step.
+struct KickAndDrift {
+  void advance(auto& set, double h) const { set.advance(h); }
+};
+
+}  // namespace inner
+
+template <class... Policies>
+double AnimationLoop<Policies...>::begin_flights(double tolerance) {
+  if constexpr (locates_impacts) {
+    auto& flights = work_.substeps;
+    flights.h = h_, flights.start = start_, flights.steps = steps_;
+    flights.begin(world(), laws(), work_.contacts, report_);
+    detect();
+    report_.contacts = 0;
+    flights.note_touching(work_.contacts, tolerance);
+    return flights.landing(work_.contacts).gap;
+  }
+  return 0;
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::set_part(double h, bool is_last) {
+  work_.substeps.go_back(world(), laws(), report_);
+  last_h_ = h_ = h;
+  world().each([&](auto& set, auto) {
+    if constexpr (requires { set.targets(); }) set.targets().stay_on_the_way(!is_last);
+  });
+}
+
+template <class... Policies>
+auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
+  if constexpr (locates_impacts) {
+    set_part(h, is_last);
+    work_.contacts.points.clear();
+    work_.contacts.record();
+    route_contacts(laws(), work_.contacts, work_.materials);
+    if constexpr (solves_whole_step) {
+      solve_whole_step();
+      work_.contacts.remember();
+      advance();
+    } else {
+      inner::linearize_to_build(*this);
+      inner::solve_to_advance(*this);
+    }
+    const StepReport flown = report_;
+    detect();
+    const CollisionReport seen{.pairs = report_.pairs, .queries = report_.queries};
+    report_ = flown;  // what overlaps here is no end of a step
+    report_.pairs = seen.pairs, report_.queries = seen.queries;
+    return work_.substeps.landing(work_.contacts);
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::meet(double reach) {
+  if constexpr (locates_impacts) {
+    auto& flights = work_.substeps;
+    auto& contacts = work_.contacts;
+    h_ = flights.h;
+    flights.add_impulses(laws());
+    std::erase_if(contacts.points, [&](const ContactPoint& p) { return !(p.gap <= reach); });
+    flights.note_touching(contacts, reach);
+    contacts.record();
+    inner::place_ends(part<role::Collision>(), contacts.results);
+    if (route_contacts(laws(), contacts, work_.materials) > 0)
+      report_.status = worse(report_.status, Status::unclaimed_contact);
+    delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
+    if constexpr (Work::passes_impacts_on)
+      pass_on_impacts(world(), laws(), work_.rows, work_.impacts, contacts.results.size(), h_);
+    world().each([&](auto& set, auto s) {
+      inner::inverse_of<s>(work_.W, set, 0).factor(SystemScale{.mass = 1});
+      set.v_free = set.velocity();
+    });
+    find_islands();
+    if constexpr (Work::restitutes) work_.bounce.resize_like(work_.rows);
+    if constexpr (Work::at_midpoint) {
+      work_.fade.resize_like(work_.rows);
+      for_each_index<Laws::pool_count>([&](auto p) {
+        for (auto& x : std::get<p>(work_.fade.pools)) x.setZero();
+      });
+    }
+    make_impact_bias(std::as_const(*this).world(), laws(), work_.rows, work_.bounce);
+    build();
+    solve();
+    correct();
+    world().each([&](auto& set, auto) {
+      for (const Index b : set.active())
+        if (set.moves(b) && is_finite(set.v_next[b])) set.velocity()[b] = set.v_next[b];
+    });
+    flights.add_impulses(laws());
+    flights.add_contacts(contacts);
+    flights.go_on(world(), laws(), report_);
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::step_with_contacts(double h) {
+  if constexpr (locates_impacts) {
+    set_part(h, true);
+    work_.contacts = work_.substeps.contacts_before();
+    detect();
+    inner::linearize_to_build(*this);
+    solve();
+    correct();
+    if constexpr (solves_whole_step)
+      advance_by(inner::KickAndDrift{});
+    else
+      advance();
+    work_.substeps.add_contacts(work_.contacts);
+  }
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::end_flights() {
+  if constexpr (locates_impacts) {
+    auto& flights = work_.substeps;
+    flights.add_impulses(laws());
+    flights.give_impulses(laws(), work_.contacts);
+    report_.contacts = Index(work_.contacts.results.size());
+    forget_rows();
+    for_each_index<Laws::pool_count>([&](auto p) {
+      auto& pool = laws().template pool<p>();
+      if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) pool.items.clear();
+    });
+    h_ = flights.h;
+    start_ = flights.start;
+    steps_ = flights.steps + 1;
+    report_.time = time();
+  }
+}
+
+}  // namespace delassus

@@ -1,0 +1,127 @@
+/// What outlives the flights of a step: for `LocatedImpacts`.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/loop/stages/detect.hpp>
+#include <delassus/loop/step_report.hpp>
+#include <delassus/math/twist.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+namespace delassus {
+
+/// The bodies and constraints where the present flight began, to fly from there again; the impulses of the
+/// flights and impacts that are done; the loads, which act in every flight.
+template <class World, class Laws>
+class Flights;
+
+template <class... Sets, class... L>
+class Flights<World<Sets...>, Constraints<L...>> {
+ public:
+  using World = delassus::World<Sets...>;
+  using Laws = Constraints<L...>;
+  double h = 0, start = 0;  ///< of the whole step, s
+  long steps = 0;
+
+  void begin(World& world, Laws& laws, const ContactBook& book, const StepReport& report) {
+    world.each([&](auto& set, auto s) {
+      if constexpr (requires { set.loads(); }) std::get<s>(loads_) = set.loads();
+    });
+    met_.clear();
+    book_ = book;
+    is_first_ = is_before_impacts_ = true;
+    keep(world, laws, report);
+  }
+  /// What is now in the loop is done: the next flight begins here.
+  void go_on(World& world, Laws& laws, const StepReport& report) {
+    is_before_impacts_ = false;
+    world.each([&](auto& set, auto s) {
+      if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
+    });
+    for_each_index<Laws::pool_count>([&](auto p) {  // no start for a flight of another length
+      auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.impulse; })
+        for (auto& x : pool.impulse) x.setZero();
+    });
+    keep(world, laws, report);
+  }
+  void go_back(World& world, Laws& laws, StepReport& report) const {
+    world = *world_;
+    laws = *laws_;
+    report = report_;
+    report.quarantined = 0;  // whom the flight will hold again
+  }
+  /// The least gap (m), and whether it is of a pair that touched when the flight began, or stays in touch
+  /// from the step before.
+  struct Landing {
+    double gap = std::numeric_limits<double>::infinity();
+    bool is_old = false, stays = false;
+  };
+  Landing landing(const ContactBook& book) const {
+    const ContactPoint* least = nullptr;
+    for (const ContactPoint& p : book.points)
+      if (!least || p.gap < least->gap) least = &p;
+    if (!least) return {};
+    const bool is_old = std::find(touching_.begin(), touching_.end(), least->pair) != touching_.end();
+    return {least->gap, is_old, is_before_impacts_ && book_.pushed(least->pair)};
+  }
+  /// The pairs that touch where the next flight begins.
+  void note_touching(const ContactBook& book, double reach) {
+    touching_.clear();
+    for (const ContactPoint& p : book.points)
+      if (p.gap <= reach) touching_.push_back(p.pair);
+  }
+
+  /// The contacts of the last step, whose impulses are the start of those that stay.
+  const ContactBook& contacts_before() const { return book_; }
+
+  void add_impulses(const Laws& laws) {
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.impulse; }) {
+        auto& sum = std::get<p>(sums_);
+        sum.resize(pool.impulse.size());
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+          if (is_first_) sum[i].setZero();
+          sum[i] += pool.impulse[i];
+        }
+      }
+    });
+    is_first_ = false;
+  }
+  void add_contacts(const ContactBook& book) {
+    met_.insert(met_.end(), book.results.begin(), book.results.end());
+  }
+  void give_impulses(Laws& laws, ContactBook& book) {
+    for_each_index<Laws::pool_count>([&](auto p) {
+      auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.impulse; }) pool.impulse = std::get<p>(sums_);
+    });
+    book.results.swap(met_);
+  }
+
+ private:
+  void keep(const World& world, const Laws& laws, const StepReport& report) {
+    world_ = world;
+    laws_ = laws;
+    report_ = report;
+  }
+
+  std::optional<World> world_;
+  std::optional<Laws> laws_;
+  StepReport report_;
+  ContactBook book_;
+  std::vector<ContactResult> met_;
+  std::tuple<std::vector<Vec<L::rows>>...> sums_;
+  std::vector<std::uint64_t> touching_;
+  bool is_first_ = true, is_before_impacts_ = true;
+  std::tuple<std::vector<typename Sets::Velocity>...> loads_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,10 @@
+// expect: delassus: LocatedImpacts takes contacts that hit (no Penalty) and joints whose rows are equalities (no limits, motors, drives and Breakable), and at least one law of contacts
+#include <delassus/delassus.hpp>
+#include <delassus/loop/located_impacts.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, LocatedImpacts{}};
+  loop.step(1e-3);
+}
