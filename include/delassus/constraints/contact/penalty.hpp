@@ -9,8 +9,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 namespace delassus {
+
+/// Which velocity a penalty contact sees: the one after the step, or the mean ū of those before and after it.
+struct AtEnd {};
+struct AtMean {};
+template <class W>
+concept SpringTime = std::same_as<W, AtEnd> || std::same_as<W, AtMean>;
 
 /// `Contact{Penalty{Coulomb{.friction = 0.5}, 1e5, 50}}`: stiffness k (N/m) and damping c (N·s/m) of each contact point,
 ///
@@ -19,15 +26,22 @@ namespace delassus {
 /// As rows the spring is implicit Euler's, λ_n = max(0, h (k (δ − h u_n) − c u_n)) at the velocity after the step: stable
 /// for every k and h, and never a source of energy. Under the scheme `CollisionsFirst` with an explicit integrator it is
 /// a force of the free motion at the start of the step, with no row and no solve: stable for h √(k/m) < 2 only.
-template <class Law = inner::Absent>
+///
+/// `Penalty{Coulomb{.friction = 0.5}, 1e5, 50, AtMean{}}` has λ_n = max(0, h (k (δ − h ū/2) − c ū)) instead, the midpoint
+/// rule's, under `ImplicitMidpoint` only: of second order, where the other is of first and damps. The damper, whose force
+/// jumps at the touch, and friction whose slip turns are of first order still. A spring too stiff for the step,
+/// h √(k/m) ≫ 1, swings on without loss.
+template <class Law = inner::Absent, SpringTime When = AtEnd>
 struct Penalty {
   using wraps = Law;
+  static constexpr bool takes_mean = std::same_as<When, AtMean>;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
 
   Law law{};
   double stiffness = 0;  ///< k > 0, N/m
   double damping = 0;    ///< c ≥ 0, N·s/m
+  [[no_unique_address]] When when{};
 
   using Parameters = typename Law::Parameters;
 
@@ -65,9 +79,9 @@ struct Penalty {
 };
 
 /// Around what is no contact law, as in `Penalty{1e5, 50}`; the loop's checks say so.
-template <class Law>
+template <class Law, SpringTime When>
   requires(!inner::LawOfContact<Law>)
-struct Penalty<Law> : inner::Hollow {
+struct Penalty<Law, When> : inner::Hollow {
   using inner::Hollow::Hollow;
 };
 
@@ -77,5 +91,7 @@ template <class Law>
 Penalty(Law) -> Penalty<Law>;
 template <class Law>
 Penalty(Law, double, double) -> Penalty<Law>;
+template <class Law, SpringTime When>
+Penalty(Law, double, double, When) -> Penalty<Law, When>;
 
 }  // namespace delassus

@@ -5,6 +5,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/loop/activity.hpp>
 #include <delassus/loop/channels.hpp>
+#include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/stages/refine.hpp>
 #include <delassus/loop/workspace.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -64,6 +65,17 @@ template <class Scheme, class Activity>
 consteval bool substeps_fit() {
   constexpr bool fit = !(requires { requires Scheme::divides_step; } && has_dormant<Activity>);
   static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
+  return fit;
+}
+
+/// Springs that see the mean velocity need an integrator that goes with it.
+template <class Parts>
+consteval bool mean_springs_fit() {
+  constexpr bool fit = []<class... L>(const Constraints<L...>*) {
+    return theta<typename Parts::Integrator>() != 1 || !(has_mean_springs<L> || ...);
+  }(static_cast<const typename Parts::Laws*>(nullptr));
+  static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes; "
+                     "use ImplicitMidpoint, or leave AtMean{} out");
   return fit;
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -102,14 +103,22 @@ double restitution_of(const Law& law, const Item& item) {
   else return 0;
 }
 
-/// The soft row λ = −h (k (φ + h u) + c u):  R = 1/(h² k + h c),  bias = k φ/(h k + c).
+/// The soft row λ = −h (k (φ + θ h ū) + c ū), ū = θ u⁺ + (1−θ) u⁻, solved for u⁺ + (1−θ)/θ u⁻:
+///
+///   R = 1/(θ (θ h² k + h c)),  bias = k φ/(θ (θ h k + c)).
 template <class Pool>
-void soften(Pool& pool, Index i, int k, double h) {
+void soften(Pool& pool, Index i, int k, double h, double theta = 1) {
   using T = typename Pool::Scalar;
   const double stiffness = double(pool.stiffness[i][k]), damping = double(pool.damping[i][k]);
-  pool.compliance[i][k] = T(1 / (h * h * stiffness + h * damping));
-  pool.bias[i][k] = T(stiffness * double(pool.phi[i][k]) / (h * stiffness + damping));
+  pool.compliance[i][k] = T(1 / (theta * (theta * h * h * stiffness + h * damping)));
+  pool.bias[i][k] = T(stiffness * double(pool.phi[i][k]) / (theta * (theta * h * stiffness + damping)));
 }
+
+/// A law whose springs see the mean velocity of the step.
+template <class Law>
+inline constexpr bool has_mean_springs = requires(const Law& contact) {
+  requires std::remove_cvref_t<decltype(contact.law)>::takes_mean;
+};
 
 /// Rows that shall have a speed s: u⁺ − s in place of u⁺, in the soft row above as in a rigid one.
 template <class Pool>
@@ -123,7 +132,7 @@ void drive(Pool& pool, Index i, double speed, double h) {
 }  // namespace inner
 
 /// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
-/// all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
+/// as do springs that ask for it, all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
 /// `at_start` has the rows of the start of the step, where H is not those, and `fade` takes what fades.
 ///
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there
@@ -153,7 +162,12 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
       for (int k = 0; k < Law::rows; ++k) {
         if (kinds[k] == RowKind::friction) continue;
         if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) {
-          inner::soften(pool, i, k, h);
+          if constexpr (inner::has_mean_springs<Law>) {
+            inner::soften(pool, i, k, h, theta);
+            pool.d[i][k] += T((1 - theta) / theta) * start[k];
+          } else {
+            inner::soften(pool, i, k, h);
+          }
         } else if (kinds[k] == RowKind::equality) {
           pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
           pool.d[i][k] += T((1 - theta) / theta) * (start[k] - fades[k]);

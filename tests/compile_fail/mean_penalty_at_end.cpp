@@ -1,0 +1,9 @@
+// expect: delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes; use ImplicitMidpoint, or leave AtMean{} out
+#include <delassus/delassus.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Penalty{Coulomb{}, 1e5, 50, AtMean{}}}}, ImplicitEuler{}};
+  loop.step(1e-3);
+}
