@@ -86,7 +86,8 @@ def beside(value, base):
     if ratio >= 2:
         return f"{ratio:.2g} ×"
     more = 100 * (ratio - 1)
-    return (f"{more:+.2g} %" if abs(more) < 10 else f"{more:+.0f} %").replace("-", "−")
+    digits = ".2g" if abs(more) < 10 else ".1f" if more < -90 else ".0f"
+    return f"{more:+{digits}} %".replace("-", "−")
 
 
 def table(figures):
