@@ -11,7 +11,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <cstdlib>
 #include <string>
 #include <type_traits>
 
@@ -33,17 +32,9 @@ std::string policy_name() {
     return type_text<P>();
 }
 
-/// The fewest digits that read back as the same number.
-inline std::string shortest_text(double value) {
-  for (int digits = 1; digits < 17; ++digits)
-    if (const std::string text = number_text(value, digits); std::strtod(text.c_str(), nullptr) == value)
-      return text;
-  return number_text(value, 17);
-}
-
 /// A step as C++ writes it best: 0.005, but 1. / 30.
 inline std::string step_text(double h) {
-  const std::string text = shortest_text(h);
+  const std::string text = number_text(h, 17);
   const double rate = std::round(1 / h);
   return text.size() > 8 && rate > 1 && 1 / rate == h ? "1. / " + number_text(rate, 12) : text;
 }
@@ -59,7 +50,7 @@ void append_member(std::string& out, const char* name, const T& value, const T& 
   else if constexpr (std::is_integral_v<T>)
     out += std::to_string(value);
   else
-    out += shortest_text(double(value));
+    out += number_text(double(value), 17);
 }
 
 }  // namespace inner

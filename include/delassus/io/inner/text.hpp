@@ -12,12 +12,13 @@
 
 namespace delassus::inner {
 
-/// A number with at most `digits` significant digits, without trailing zeros; "nan" and "inf" where it is
-/// neither.
+/// A number with at most `digits` significant digits, without trailing zeros, from 17 on the fewest that read
+/// back as the same number; "nan" and "inf" where it is neither.
 inline std::string number_text(double value, int digits) {
-  char buffer[40];
-  const auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
+  char buffer[40], *end = buffer + sizeof buffer;
+  constexpr auto format = std::chars_format::general;
+  end = digits < 17 ? std::to_chars(buffer, end, value, format, digits).ptr
+                    : std::to_chars(buffer, end, value, format).ptr;
   return std::string(buffer, end);
 }
 
