@@ -1,5 +1,5 @@
-// Which effects a run used: a box rests on the ground, and its friction and restitution are paid for all the
-// same. prints: never: friction restitution body
+// Which effects a run used: a box rests on the ground, friction and restitution are paid for all the same.
+// prints: never: friction restitution body
 #include <delassus/delassus.hpp>
 #include <delassus/study/audit.hpp>
 

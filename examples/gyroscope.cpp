@@ -1,5 +1,5 @@
-// A gyroscope: a wheel of 1 kg at 50 rad/s on an arm of 0.2 m, its axis level, turns about the pivot and does
-// not fall. prints: precesses at 0\.87[0-9] rad/s, sinks by 0\.00[0-9]+ m
+// A gyroscope: a wheel of 1 kg at 50 rad/s on a level arm of 0.2 m turns about the pivot and does not fall.
+// prints: precesses at 0\.87[0-9] rad/s, sinks by 0\.00[0-9]+ m
 #include <delassus/delassus.hpp>
 #include <delassus/loop/newton_midpoint.hpp>
 

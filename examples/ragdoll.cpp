@@ -1,5 +1,5 @@
-// A ragdoll of six parts falls down a stair: joints by one factorization, contacts swept on what the joints
-// leave them. prints: joints apart by at most 0\.0[0-9]+ m, 0 of 600 steps unconverged
+// A ragdoll of six parts falls down a stair: joints by one factorization, contacts swept on what they leave.
+// prints: joints apart by at most 0\.0[0-9]+ m, 0 of 600 steps unconverged
 #include <delassus/collision/with_filter.hpp>
 #include <delassus/delassus.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>

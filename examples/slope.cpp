@@ -1,5 +1,5 @@
-// A block on a slope of 30 degrees: it sticks while the friction coefficient is above tan 30 = 0.577, and
-// slips below. prints: sticks at 0\.60: moved 0\.000 m, slips at 0\.50: moved 1\.3[0-9]* m
+// A block on a slope of 30 degrees sticks while the friction coefficient is above tan 30 = 0.577, else slips.
+// prints: sticks at 0\.60: moved 0\.000 m, slips at 0\.50: moved 1\.3[0-9]* m
 #include <delassus/delassus.hpp>
 
 #include <cstdio>
@@ -21,3 +21,4 @@ int main() {
   std::printf("sticks at 0.60: moved %.3f m, slips at 0.50: moved %.3f m\n", std::abs(slide(0.6)),
               slide(0.5));
 }
+

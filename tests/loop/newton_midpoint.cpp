@@ -4,7 +4,6 @@
 #include "convergence_order.hpp"
 #include "loop/chains.hpp"
 
-#include <cstdlib>
 #include <limits>
 #include <string>
 #include <utility>
@@ -48,7 +47,7 @@ TEST_CASE("a hundred links under a thousand times their weight hold at a sixtiet
   CAPTURE(kept.gap, kept.energy, kept.factorizations);
   CHECK(kept.converged);
   CHECK(kept.gap <= 1e-9);
-  CHECK(kept.energy <= 1e-9 * 1000 * 9.81 * 20);
+  CHECK(kept.energy <= 1e-9 * 1000 * 9.81 * 20 * (1 - std::cos(EIGEN_PI / 9)));  // of what it can lose
   CHECK(kept.factorizations <= 5);
 }
 
@@ -94,25 +93,24 @@ TEST_CASE("a chain of ten times the length and the load takes as many factorizat
   CHECK(kept.factorizations <= 6);
 }
 
-// Chaotic: only what is kept is asked for. 39 J is the depth that two points of 1 kg can fall from there.
+// Chaotic: only what is kept is asked for, of what the points can lose from there.
 TEST_CASE("a double pendulum keeps its energy for twenty seconds at a hundredth") {
   auto loop = double_pendulum(NewtonMidpoint{});
   const Kept kept = run(loop, 0.01, 2000);
   CAPTURE(kept.gap, kept.energy, kept.factorizations);
   CHECK(kept.converged);
   CHECK(kept.gap <= 1e-9);
-  CHECK(kept.energy <= 1e-6 * 39);
+  CHECK(kept.energy <= 1e-6 * 3 * 9.81);
 }
 
 // AC-10: 1e-3 J at 1 ms, and no trend in 1000 s. A step ends with gaps below 1e-10 of the speed, 8 m/s, a
 // step: 1e-12 m, through which rods of at most 70 N work, 7e-11 J, without a common sign: 7e-8 J in 10⁶
-// steps. To the end of those with DELASSUS_LONG in the environment.
+// steps.
 TEST_CASE("a double pendulum keeps its energy at a thousandth without a trend") {
-  const bool is_long = std::getenv("DELASSUS_LONG") != nullptr;
   auto loop = double_pendulum(NewtonMidpoint{});
   const double start = energy(loop);
   double worst[2] = {0, 0}, gap = 0;
-  const int steps = is_long ? 1000000 : 40000;
+  const int steps = 1000000;
   for (int n = 0; n < steps; ++n) {
     const StepReport report = loop.step(1e-3);
     REQUIRE(report.status <= Status::stalled);
@@ -190,17 +188,16 @@ TEST_CASE("a heavy chain swings with the period of its first mode") {
 }
 
 // HC-03: released 5° from the vertical. The amplitude makes the period longer by θ²/16 = 5e-4; from rest the
-// end passes below after a quarter, with DELASSUS_LONG again after half a period more, where the straight
-// start's other modes weigh less.
+// end passes below after a quarter, and again after half a period more, where the straight start's other modes
+// weigh less.
 TEST_CASE(
     "a thousand links under ten thousand times their weight swing with the period of their first mode") {
   const int links = 1000;
   const double ratio = 1e4, h = 1.0 / 60;
   auto loop = rods(links, ratio, 5 * EIGEN_PI / 180, NewtonMidpoint{});
-  const int passes = std::getenv("DELASSUS_LONG") != nullptr ? 2 : 1;
   double last = end_of(loop).x(), gap = 0;
   std::vector<double> at;
-  for (int n = 1; int(at.size()) < passes; ++n) {
+  for (int n = 1; at.size() < 2; ++n) {
     REQUIRE(n < 2000);
     const StepReport report = loop.step(h);
     REQUIRE(report.status <= Status::stalled);
@@ -213,7 +210,7 @@ TEST_CASE(
   CAPTURE(gap, 4 * at[0] / period);
   CHECK(gap <= 1e-4 * 0.2);
   CHECK(std::abs(4 * at[0] / period - 1) <= 0.005);
-  if (passes > 1) CHECK(std::abs(2 * (at[1] - at[0]) / period - 1) <= 0.005);
+  CHECK(std::abs(2 * (at[1] - at[0]) / period - 1) <= 0.005);
 }
 
 // AC-07: disc of 0.3 m on an arm of 0.2 m, 50 rad/s, its axis level: m g r = I Ω ω with no spin of the

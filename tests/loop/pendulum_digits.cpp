@@ -6,7 +6,6 @@
 #include "loop/smooth_scenes.hpp"
 
 #include <array>
-#include <cstdlib>
 #include <vector>
 
 #include "catch.hpp"
@@ -27,21 +26,18 @@ TEST_CASE("the closed form of the pendulum has the digits of AC-08") {
   CHECK((pendulum_at(2000) - Vec3(-0.814603068589032, 0, -0.580018827836935)).norm() <= 1e-10);
 }
 
-// AC-08 and IFToMM's A01: 4000 outputs of 2000 s within 1e-3 m. The error is one of phase and grows like t²:
-// with DELASSUS_LONG in the environment to the end, else to a tenth of it, for a hundredth of the error.
+// AC-08 and IFToMM's A01: 4000 outputs of 2000 s within 1e-3 m. The error is one of phase and grows like t².
 TEST_CASE("a pendulum is within a millimetre of its closed form for two thousand seconds") {
-  const bool is_long = std::getenv("DELASSUS_LONG") != nullptr;
-  const int seconds = is_long ? 2000 : 200;
   auto loop = pendulum(RungeKutta4{});
   const double h = 4e-3, start = energy(loop);
   double worst = 0, lost = 0;
-  for (int output = 1; output <= 2 * seconds; ++output) {
+  for (int output = 1; output <= 4000; ++output) {
     run(loop, 0.5, h);
     worst = std::max(worst, (end_of(loop) - pendulum_at(0.5 * output)).norm());
     lost = std::max(lost, std::abs(energy(loop) - start));
   }
   CAPTURE(worst, lost);
-  CHECK(worst <= (is_long ? 1e-3 : 1e-5));
+  CHECK(worst <= 1e-3);
   CHECK(lost <= 1e-3 * g);
 }
 

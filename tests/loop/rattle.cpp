@@ -5,8 +5,6 @@
 #include "convergence_order.hpp"
 #include "loop/smooth_scenes.hpp"
 
-#include <cstdlib>
-
 #include "catch.hpp"
 
 namespace rattle_tests {
@@ -75,11 +73,9 @@ Swing swing(double h, double seconds, Policies... policies) {
 // across, and is 1.24e-3 J at 1 ms, within 1.5 times the figure: RATTLE of two points in the plane, written
 // apart from this library, swings by 1.22e-3 J in 40 s and by 1.240e-3 J in 1000 s. A step in two parts has a
 // quarter of it, to the few per cent that chaos moves its highest place, and meets the figure, as a whole one
-// does from 0.85 ms on. A drift would make the second half twice the first; 1000 s with DELASSUS_LONG in the
-// environment.
+// does from 0.85 ms on. A drift would make the second half twice the first.
 TEST_CASE("a double pendulum keeps its energy under Rattle without a trend, to the square of the step") {
-  const bool is_long = std::getenv("DELASSUS_LONG") != nullptr;
-  const Swing whole = swing(1e-3, is_long ? 1000 : 40), half = swing(1e-3, 40, Substeps{.count = 2});
+  const Swing whole = swing(1e-3, 1000), half = swing(1e-3, 1000, Substeps{.count = 2});
   CAPTURE(whole.first, whole.second, half.first, half.second);
   CHECK(whole.gap <= 1e-12);  // of 2 m
   CHECK(whole.first <= 1.5e-3);

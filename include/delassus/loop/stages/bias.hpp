@@ -90,6 +90,25 @@ V fading(const V& u, const V& s) {
   return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
 }
 
+/// Rows of friction beside a contact's normal: rows 1 and 2.
+template <std::size_t rows>
+constexpr bool has_friction(const std::array<RowKind, rows>& kinds) {
+  if constexpr (rows >= 3)
+    return kinds[0] == RowKind::lower && kinds[1] == RowKind::friction && kinds[2] == RowKind::friction;
+  else
+    return false;
+}
+
+/// What turns the direction of u⁺ into that of its mean with u, the slip at the start: (1−θ) of u across `free`, the
+/// slip without friction. It is of order h, as the turn of the slip is. Slips that may end within the step keep the
+/// direction of u⁺, which alone can be held at rest.
+template <class T>
+Vec<2, T> turned_slip(const Vec<2, T>& u, const Vec<2, T>& free, double theta) {
+  const T size = free.squaredNorm();
+  if (!(u.squaredNorm() > (free - u).squaredNorm()) || !(size > 0)) return Vec<2, T>::Zero();
+  return T(1 - theta) * (u - u.dot(free) / size * free);
+}
+
 template <std::size_t rows>
 constexpr bool are_equalities(const std::array<RowKind, rows>& kinds) {
   for (const RowKind kind : kinds)
@@ -132,7 +151,7 @@ void drive(Pool& pool, Index i, double speed, double h) {
 }  // namespace inner
 
 /// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
-/// as do springs that ask for it, all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
+/// as do springs that ask for it and the direction of friction (`inner::turned_slip`), all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
 /// `at_start` has the rows of the start of the step, where H is not those, and `fade` takes what fades.
 ///
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there
@@ -159,6 +178,10 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
       if constexpr (requires { fade.pools; }) std::get<p>(fade.pools)[i].setZero();
       const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
       pool.d[i] = free;
+      if constexpr (inner::has_friction(kinds))
+        if (theta != 1)
+          pool.d[i].template segment<2>(1) +=
+              inner::turned_slip<T>(start.template segment<2>(1), free.template segment<2>(1), theta);
       for (int k = 0; k < Law::rows; ++k) {
         if (kinds[k] == RowKind::friction) continue;
         if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) {
