@@ -193,4 +193,14 @@ TEST_CASE("in single precision the law holds to single precision") {
   }
 }
 
+// The fourth powers of 1e-70 m/s have all their digits, those of slower ones have not.
+TEST_CASE("a contact that closes too slowly for its powers stays open, one that is faster meets the law") {
+  const Mat3 W = Vec3(1, 2, 3).asDiagonal();
+  CHECK(solve_contact(W, {-9e-71, 3e-69, -2e-69}, 0.5) == Vec3::Zero());
+  CHECK(solve_contact(W, {-1e-160, 1e-160, 0}, 0.5) == Vec3::Zero());
+  const Vec3 slow = solve_contact(W, {-1e-69, 3e-69, -2e-69}, 0.5);
+  const Vec3 fast = solve_contact(W, {-1, 3, -2}, 0.5);
+  CHECK((1e69 * slow - fast).norm() <= 1e-13);
+}
+
 }  // namespace coulomb_tests

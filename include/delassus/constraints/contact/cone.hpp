@@ -15,6 +15,11 @@ T length(T a, T b) {
   return std::sqrt(a * a + b * b);
 }
 
+/// A contact that closes more slowly, m/s, stays open: of slower ones the powers that a slip takes are no numbers with all
+/// digits, and arithmetic takes a hundred times as long. A sweep meets them where a load fades along hundreds of bodies.
+template <class T>
+inline constexpr T negligible_approach = sizeof(T) == 8 ? T(1e-70) : T(1e-12);
+
 /// |x_t| ≤ μ x_n, asked without a root: most contacts are sticking.
 template <class T>
 bool is_in_cone(const Vec<3, T>& x, T friction) {

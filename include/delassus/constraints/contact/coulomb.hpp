@@ -76,7 +76,7 @@ struct Coulomb {
   /// λ from b = u − W λ, the velocity without this contact.
   template <class T>
   Vec<3, T> meet(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
-    if (b[0] >= T(0)) return Vec<3, T>::Zero();
+    if (b[0] >= -inner::negligible_approach<T>) return Vec<3, T>::Zero();
     const T mu = T(p.friction);
     const Vec<3, T> stick = -(memory.inverse * b);
     const T limit = mu * stick[0];

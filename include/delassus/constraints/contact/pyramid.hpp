@@ -44,7 +44,7 @@ struct Pyramid {
   void project(const Parameters& p, Local<3, T>& c) const {
     const Vec<3, T> b = c.free_velocity();
     c.lambda.setZero();
-    if (b[0] >= T(0)) return;
+    if (b[0] >= -inner::negligible_approach<T>) return;
     constexpr int ways[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
     const T enough = T(64) * std::numeric_limits<T>::epsilon() * b.norm();
     T least = std::numeric_limits<T>::infinity();

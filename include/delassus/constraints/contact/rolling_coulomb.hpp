@@ -88,7 +88,7 @@ struct RollingCoulomb {
   /// λ from b = u − W λ, the velocity without this contact.
   template <class T>
   Vec<6, T> meet(const Parameters& p, const Vec<6, T>& b, Memory<T>& memory) const {
-    if (b[0] >= T(0)) return memory.last = Vec<6, T>::Zero();
+    if (b[0] >= -inner::negligible_approach<T>) return memory.last = Vec<6, T>::Zero();
     const Cones<T> cones{T(p.friction), T(p.rolling) / memory.length, T(p.torsional) / memory.length};
     const Vec<6, T> scaled = measured_in(memory.length, b);
     Vec<6, T> lambda = -scaled;
