@@ -38,10 +38,11 @@ void times(auto& p, double h) {
   for (auto& x : p) x *= typename std::remove_cvref_t<decltype(x)>::Scalar(h);
 }
 
-/// The share θ of the new velocity in the mean that moves q; bilateral rows hold for that mean.
+/// The share θ of the new velocity in the mean that moves q; bilateral rows hold for that mean. A static constant of
+/// the integrator: one that whoever makes the loop chooses is its own affair.
 template <class I>
 constexpr double theta() {
-  if constexpr (requires { I::theta; }) return I::theta;
+  if constexpr (requires { std::bool_constant<(I::theta > 0)>{}; }) return I::theta;
   else return 1;
 }
 
