@@ -138,7 +138,9 @@ TEMPLATE_TEST_CASE(
     for (Vec3& p : mesh.points)
       if (p[0] > 0.1 && p[0] < 0.9) p[0] += 0.1 * std::cos(7 * p[1] + 5 * p[2]);
     const auto bar = set.add({.mesh = mesh, .elasticity = {.young = 1, .poisson = 0.3}});
-    const auto bent = [&](const Vec3& X) { return Vec3(stretch * X[0], width * X[1], width * X[2]); };
+    const auto bent = [across = width, stretch](const Vec3& X) {
+      return Vec3(stretch * X[0], across * X[1], across * X[2]);
+    };
     set.fix(bar, [](const Vec3& x) { return x[0] < 1e-9 || x[0] > 1 - 1e-9; });
     for (Index k = 0; k < set.blocks(); ++k) {
       const Vec3 X = mesh.points[k];

@@ -68,6 +68,11 @@ TEST_CASE("as a force of the free motion a penalty contact has no row and still 
   REQUIRE(loop.contacts()[0].impulse.z() == Approx(g * 1e-3).epsilon(1e-6));
 }
 
+TEST_CASE("a ball sags on its spring beside projected positions, which are for rigid contacts") {
+  for (const double k : {1e3, 1e6})
+    CHECK(sag(loop_with(k, 2 * std::sqrt(k), PositionProjection{}), h, 1200) == Approx(g / k).epsilon(1e-6));
+}
+
 // Implicit Euler of a convex spring never adds energy; gravity acts with the velocity after the step, which adds none either:
 // the sum may rise by rounding only, 1e-15 of its 15 J a step.
 TEST_CASE("a penalty contact of 1e6 N/m is stable at 1/60 s, and the energy never grows") {

@@ -92,7 +92,7 @@ V fading(const V& u, const V& s) {
 
 /// Rows of friction beside a contact's normal: rows 1 and 2.
 template <std::size_t rows>
-constexpr bool has_friction(const std::array<RowKind, rows>& kinds) {
+constexpr bool has_slip(const std::array<RowKind, rows>& kinds) {
   if constexpr (rows >= 3)
     return kinds[0] == RowKind::lower && kinds[1] == RowKind::friction && kinds[2] == RowKind::friction;
   else
@@ -178,7 +178,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
       if constexpr (requires { fade.pools; }) std::get<p>(fade.pools)[i].setZero();
       const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
       pool.d[i] = free;
-      if constexpr (inner::has_friction(kinds))
+      if constexpr (inner::has_slip(kinds))
         if (theta != 1)
           pool.d[i].template segment<2>(1) +=
               inner::turned_slip<T>(start.template segment<2>(1), free.template segment<2>(1), theta);

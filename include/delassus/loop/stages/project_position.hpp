@@ -39,6 +39,10 @@ class PositionBook<Constraints<Laws...>, T> {
     return false;
   }
   template <int p>
+  static constexpr T friction(Index) {
+    return 0;
+  }
+  template <int p>
   static constexpr bool clamps() {
     return true;
   }
@@ -94,7 +98,7 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
           if constexpr (requires { at_end.pools; })
             asked = stabilisation.close(double(at_end.template pool<p>().phi[i][k]), h);
           pool.d[i][k] = is_soft ? T(0) : T(asked);
-        } else if (kinds[k] != RowKind::friction)
+        } else if (kinds[k] != RowKind::friction && !is_soft)  // a spring is meant to give way
           pool.d[i][k] = T(sign * (sign * phi < 0 ? stabilisation.push(sign * phi, h) : sign * phi / h) + double(u[k]));
       }
     }
