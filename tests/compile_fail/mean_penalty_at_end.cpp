@@ -1,4 +1,4 @@
-// expect: delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes; use ImplicitMidpoint, or leave AtMean{} out
+// expect: delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, and gaps of each step, which Substeps has not; use ImplicitMidpoint and no Substeps, or leave AtMean{} out
 #include <delassus/delassus.hpp>
 
 using namespace delassus;

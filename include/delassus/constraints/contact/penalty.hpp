@@ -29,8 +29,8 @@ concept SpringTime = std::same_as<W, AtEnd> || std::same_as<W, AtMean>;
 ///
 /// `Penalty{Coulomb{.friction = 0.5}, 1e5, 50, AtMean{}}` has λ_n = max(0, h (k (δ − h ū/2) − c ū)) instead, the midpoint
 /// rule's, under `ImplicitMidpoint` only: of second order, where the other is of first and damps. The damper, whose force
-/// jumps at the touch, leaves first order to the touch. A spring too stiff for the step, h √(k/m) ≫ 1, swings on without
-/// loss.
+/// jumps at the touch, leaves first order to the touch. For springs that the step resolves,
+/// h √(k/m) ≤ ½: what is first seen h v deep is given the energy of that, (h √(k/m))² of the impact's.
 template <class Law = inner::Absent, SpringTime When = AtEnd>
 struct Penalty {
   using wraps = Law;

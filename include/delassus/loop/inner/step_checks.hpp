@@ -68,14 +68,16 @@ consteval bool substeps_fit() {
   return fit;
 }
 
-/// Springs that see the mean velocity need an integrator that goes with it.
+/// Springs that see the mean velocity need an integrator that goes with it, and gaps of each step.
 template <class Parts>
 consteval bool mean_springs_fit() {
-  constexpr bool fit = []<class... L>(const Constraints<L...>*) {
-    return theta<typename Parts::Integrator>() != 1 || !(has_mean_springs<L> || ...);
+  constexpr bool has_none = []<class... L>(const Constraints<L...>*) {
+    return !(has_mean_springs<L> || ...);
   }(static_cast<const typename Parts::Laws*>(nullptr));
-  static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes; "
-                     "use ImplicitMidpoint, or leave AtMean{} out");
+  constexpr bool fit = has_none || (theta<typename Parts::Integrator>() != 1 &&
+                                    !(requires { requires Parts::Scheme::divides_step; }));
+  static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, "
+                     "and gaps of each step, which Substeps has not; use ImplicitMidpoint and no Substeps, or leave AtMean{} out");
   return fit;
 }
 
