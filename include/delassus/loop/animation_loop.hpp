@@ -98,7 +98,7 @@ class AnimationLoop {
   auto predicted_force(ConstraintHandle<Law> constraint) const {
     return (impulse(constraint) / h_).eval();
   }
-  /// The contacts of the last step with their impulses, sorted by pair and feature.
+  /// The contacts of the last step with their impulses, sorted by pair and feature (under LocatedImpacts, in turn).
   std::span<const ContactResult> contacts() const
     requires(Laws::has_contacts)
   {
@@ -253,6 +253,11 @@ class AnimationLoop {
   void end_substep(int left);
   /// For a scheme that flies from impact to impact, see `LocatedImpacts`; the least gap (m) now.
   double begin_flights(double tolerance);
+  /// Whether pairs that touch now, within `reach` (m), and did not push in the last step, close: for `meet`.
+  bool closes(double reach);
+  /// Whether flights from here may be of any length, as those of an integrator that closes gaps may not where
+  /// joints are open.
+  bool may_locate() const;
   /// From where flights began, without contacts, for h seconds; a `Landing`. The last one ends the step.
   auto fly(double h, bool is_last);
   /// Impulses of what is within `reach` (m) where the loop is; the flights to come begin here.
@@ -293,6 +298,12 @@ class AnimationLoop {
   void end_advance();
   template <class Stepper>
   void advance_by(const Stepper& stepper);
+  /// The step of which h_ is a part under LocatedImpacts, else h_, s.
+  double whole_step() const {
+    if constexpr (locates_impacts)
+      if (work_.substeps.h > 0) return work_.substeps.h;
+    return h_;
+  }
   void set_part(double h, bool is_last);
   /// The rows of the last step speak of what has been taken out: there are none until the next one.
   void forget_rows() {

@@ -38,11 +38,16 @@ struct LocatedImpacts {
 
   void run(auto& loop) const {
     double left = loop.step_size(), near = loop.begin_flights(tolerance);
+    if (loop.closes(tolerance)) {
+      loop.meet(tolerance);
+      near = 0;
+    }
     for (int impacts = 0;; ++impacts) {
       const auto end = loop.fly(left, true);
       if (!(end.gap < -tolerance)) break;
       Found found;
-      if (!end.stays && impacts < max_impacts) found = find(loop, {0, near}, {left, end.gap});
+      if (!end.stays && impacts < max_impacts && loop.may_locate())
+        found = find(loop, {0, near}, {left, end.gap});
       if (!(found.time > 0)) {
         loop.step_with_contacts(left);
         break;
@@ -91,8 +96,9 @@ struct LocatedImpacts {
         last = -1;
       }
     }
-    const double gap = loop.fly(closed.time, false).gap;  // as near as numbers come
-    return {closed.time, std::abs(gap) + tolerance};
+    const double gap = std::abs(loop.fly(closed.time, false).gap);  // as near as numbers come
+    if (!(gap <= 1e6 * tolerance)) return {};  // a jump: what was seen here is seen no more there
+    return {closed.time, gap + tolerance};
   }
 };
 

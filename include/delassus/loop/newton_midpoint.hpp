@@ -24,6 +24,7 @@ namespace delassus {
 struct NewtonMidpoint {
   using plays = role::Integrator;
   static constexpr bool solves_whole_step = true;
+  static constexpr double shortest_flight = 1e-3;  ///< of a step, see `LocatedImpacts`: gaps are closed in it
   template <class World, class Laws, class Rows>
   using WholeStep = std::conditional_t<(Rows::pool_count > 0), MidpointHold<World, Laws, Rows>, MidpointAlone<World>>;
   template <class Set>

@@ -17,6 +17,7 @@ namespace delassus {
 struct Rattle {
   using plays = role::Integrator;
   static constexpr bool solves_whole_step = true;
+  static constexpr double shortest_flight = 1e-3;  ///< of a step, see `LocatedImpacts`: gaps are closed in it
   template <class World, class Laws, class Rows>
   using WholeStep = RattleStep<World, Laws, Rows>;
   template <class Set>

@@ -12,6 +12,16 @@ namespace delassus {
 
 namespace inner {
 
+/// Shorter flights, as shares of a step, go as a step with contacts does: with gaps closed over the whole
+/// step. What they are off by is of second order in their length.
+template <class Integrator>
+constexpr double shortest_flight() {
+  if constexpr (requires { Integrator::shortest_flight; })
+    return Integrator::shortest_flight;
+  else
+    return 1e-6;
+}
+
 /// Advance of a step with contacts under an integrator that leaves q to its whole step.
 struct KickAndDrift {
   void advance(auto& set, double h) const { set.advance(h); }
@@ -28,9 +38,45 @@ double AnimationLoop<Policies...>::begin_flights(double tolerance) {
     detect();
     report_.contacts = 0;
     flights.note_touching(work_.contacts, tolerance);
+    if constexpr (requires { Parts::Integrator::shortest_flight; }) {
+      delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
+      flights.are_joints_closed = worst_equality(laws(), work_.rows) <= 1e-9;  // 10⁻⁴ m/s in the shortest
+    }
     return flights.landing(work_.contacts).gap;
   }
   return 0;
+}
+
+template <class... Policies>
+bool AnimationLoop<Policies...>::may_locate() const {
+  if constexpr (locates_impacts) return work_.substeps.are_joints_closed;
+  return false;
+}
+
+template <class... Policies>
+bool AnimationLoop<Policies...>::closes(double reach) {
+  bool closes = false;
+  if constexpr (locates_impacts) {
+    auto& flights = work_.substeps;
+    auto& contacts = work_.contacts;
+    std::erase_if(contacts.points,
+                  [&](const ContactPoint& p) { return !(p.gap <= reach) || flights.stays(p.pair); });
+    if (contacts.points.empty()) return false;
+    contacts.record();
+    inner::place_ends(part<role::Collision>(), contacts.results);
+    route_contacts(laws(), contacts, work_.materials);
+    delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = std::as_const(work_.rows).template pool<p>();
+      if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws().template pool<p>().law)>>)
+        for (Index i = 0; i < pool.items(); ++i)
+          closes = closes || inner::rate(
+                                 pool, i, std::as_const(*this).world(),
+                                 [](const auto& set) -> const auto& { return set.velocity(); })[0] < 0;
+    });
+    if (closes) flights.forget_impulses(laws());
+  }
+  return closes;
 }
 
 template <class... Policies>
@@ -50,9 +96,16 @@ auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
     work_.contacts.record();
     route_contacts(laws(), work_.contacts, work_.materials);
     if constexpr (solves_whole_step) {
-      solve_whole_step();
-      work_.contacts.remember();
-      advance();
+      if (h < inner::shortest_flight<typename Parts::Integrator>() * work_.substeps.h) {
+        inner::linearize_to_build(*this);
+        solve();
+        correct();
+        advance_by(inner::KickAndDrift{});
+      } else {
+        solve_whole_step();
+        work_.contacts.remember();
+        advance();
+      }
     } else {
       inner::linearize_to_build(*this);
       inner::solve_to_advance(*this);
@@ -94,7 +147,7 @@ void AnimationLoop<Policies...>::meet(double reach) {
         for (auto& x : std::get<p>(work_.fade.pools)) x.setZero();
       });
     }
-    make_impact_bias(std::as_const(*this).world(), laws(), work_.rows, work_.bounce);
+    make_impact_bias(std::as_const(*this).world(), laws(), work_.rows, work_.islands, work_.bounce);
     build();
     solve();
     correct();
@@ -137,7 +190,7 @@ void AnimationLoop<Policies...>::end_flights() {
       auto& pool = laws().template pool<p>();
       if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) pool.items.clear();
     });
-    h_ = flights.h;
+    h_ = std::exchange(flights.h, 0);
     start_ = flights.start;
     steps_ = flights.steps + 1;
     report_.time = time();

@@ -140,7 +140,7 @@ void AnimationLoop<Policies...>::make_bias() {
     }
     if constexpr (Work::at_midpoint) work_.fade.resize_like(work_.rows);
     delassus::make_bias(std::as_const(*this).world(), laws(), work_.rows, part<role::Stabilisation>(), h_,
-                        theta<typename Parts::Integrator>(), work_.bounce, work_.at_start, work_.fade);
+                        whole_step(), theta<typename Parts::Integrator>(), work_.bounce, work_.at_start, work_.fade);
   }
   tell<stage::Bias>();
 }

@@ -31,11 +31,12 @@ struct RowBias {
 /// Lower row u⁺ + bias ≥ 0. Open: φ/h. Closing within the step with u⁻ < 0: the stronger of e u⁻ and the push-out
 /// speed, never their sum. Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that
 /// symplectic Euler itself keeps, exactly.
+/// `whole` is the step of which h is all, or a part.
 template <class S>
-RowBias lower_bias(const S& stabilisation, const RowState& row, double h) {
+RowBias lower_bias(const S& stabilisation, const RowState& row, double h, double whole) {
   RowBias out;
   const bool is_closed = row.phi < 0;
-  out.plain = is_closed ? stabilisation.penetration(row.phi, h) : row.phi / h;
+  out.plain = is_closed ? stabilisation.penetration(row.phi, whole) : row.phi / h;
   out.bias = out.plain;
   const bool closes = row.phi + h * row.free_velocity < 0 && row.start_velocity < 0;
   if (row.restitution > 0 && closes) out.bias = std::min(is_closed ? out.plain : 0.0, row.restitution * row.start_velocity);
@@ -152,6 +153,7 @@ void drive(Pool& pool, Index i, double speed, double h) {
 
 /// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
 /// as do springs that ask for it and the direction of friction (`inner::turned_slip`), all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
+/// `whole` is the step of which h may be a part: gaps are closed by it, however short the part.
 /// `at_start` has the rows of the start of the step, where H is not those, and `fade` takes what fades.
 ///
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there
@@ -159,7 +161,7 @@ void drive(Pool& pool, Index i, double speed, double h) {
 /// for which only the rows of the start will do. Where that gives energy it is withheld, see `withhold_fade`.
 template <class World, class Laws, class Rows, class S, class Bounce, class AtStart, class Fade>
 void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h,
-               double theta, Bounce& bounce, const AtStart& at_start, Fade& fade) {
+               double whole, double theta, Bounce& bounce, const AtStart& at_start, Fade& fade) {
   using T = typename Rows::Scalar;
   for_each_index<Laws::pool_count>([&](auto p) {
     const auto& constraints = laws.template pool<p>();
@@ -192,7 +194,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
             inner::soften(pool, i, k, h);
           }
         } else if (kinds[k] == RowKind::equality) {
-          pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
+          pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * whole));
           pool.d[i][k] += T((1 - theta) / theta) * (start[k] - fades[k]);
           if constexpr (requires { fade.pools; })
             std::get<p>(fade.pools)[i][k] = T((1 - theta) / theta) * fades[k];
@@ -205,7 +207,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
                                           .start_velocity = sign * double(start[k]),
                                           .free_velocity = sign * double(free[k]),
                                           .restitution = restitution},
-                                         h);
+                                         h, whole);
           pool.bias[i][k] = T(sign * row.bias);
           if constexpr (requires { stabilisation.contact_compliance(h); })
             pool.compliance[i][k] = T(stabilisation.contact_compliance(h));

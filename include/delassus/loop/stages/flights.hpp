@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -26,8 +27,9 @@ class Flights<World<Sets...>, Constraints<L...>> {
  public:
   using World = delassus::World<Sets...>;
   using Laws = Constraints<L...>;
-  double h = 0, start = 0;  ///< of the whole step, s
+  double h = 0, start = 0;  ///< of the whole step, s; h = 0 between steps
   long steps = 0;
+  bool are_joints_closed = true;  ///< where the step began
 
   void begin(World& world, Laws& laws, const ContactBook& book, const StepReport& report) {
     world.each([&](auto& set, auto s) {
@@ -44,12 +46,15 @@ class Flights<World<Sets...>, Constraints<L...>> {
     world.each([&](auto& set, auto s) {
       if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
     });
-    for_each_index<Laws::pool_count>([&](auto p) {  // no start for a flight of another length
+    forget_impulses(laws);  // no start for a flight of another length
+    keep(world, laws, report);
+  }
+  void forget_impulses(Laws& laws) const {
+    for_each_index<Laws::pool_count>([&](auto p) {
       auto& pool = laws.template pool<p>();
       if constexpr (requires { pool.impulse; })
         for (auto& x : pool.impulse) x.setZero();
     });
-    keep(world, laws, report);
   }
   void go_back(World& world, Laws& laws, StepReport& report) const {
     world = *world_;
@@ -57,8 +62,8 @@ class Flights<World<Sets...>, Constraints<L...>> {
     report = report_;
     report.quarantined = 0;  // whom the flight will hold again
   }
-  /// The least gap (m), and whether it is of a pair that touched when the flight began, or stays in touch
-  /// from the step before.
+  /// The least gap (m), and whether it is of a contact that was there when the flight began, or of a pair
+  /// that stays in touch from the step before.
   struct Landing {
     double gap = std::numeric_limits<double>::infinity();
     bool is_old = false, stays = false;
@@ -68,14 +73,16 @@ class Flights<World<Sets...>, Constraints<L...>> {
     for (const ContactPoint& p : book.points)
       if (!least || p.gap < least->gap) least = &p;
     if (!least) return {};
-    const bool is_old = std::find(touching_.begin(), touching_.end(), least->pair) != touching_.end();
-    return {least->gap, is_old, is_before_impacts_ && book_.pushed(least->pair)};
+    const bool is_old = std::find(touching_.begin(), touching_.end(), name(*least)) != touching_.end();
+    return {least->gap, is_old, is_before_impacts_ && stays(least->pair)};
   }
-  /// The pairs that touch where the next flight begins.
+  /// Whether the pair pushed in the last step.
+  bool stays(std::uint64_t pair) const { return book_.pushed(pair); }
+  /// The contacts that touch where the next flight begins.
   void note_touching(const ContactBook& book, double reach) {
     touching_.clear();
     for (const ContactPoint& p : book.points)
-      if (p.gap <= reach) touching_.push_back(p.pair);
+      if (p.gap <= reach) touching_.push_back(name(p));
   }
 
   /// The contacts of the last step, whose impulses are the start of those that stay.
@@ -107,6 +114,8 @@ class Flights<World<Sets...>, Constraints<L...>> {
   }
 
  private:
+  using Name = std::pair<std::uint64_t, std::uint32_t>;
+  static Name name(const ContactPoint& p) { return {p.pair, p.feature}; }
   void keep(const World& world, const Laws& laws, const StepReport& report) {
     world_ = world;
     laws_ = laws;
@@ -119,7 +128,7 @@ class Flights<World<Sets...>, Constraints<L...>> {
   ContactBook book_;
   std::vector<ContactResult> met_;
   std::tuple<std::vector<Vec<L::rows>>...> sums_;
-  std::vector<std::uint64_t> touching_;
+  std::vector<Name> touching_;
   bool is_first_ = true, is_before_impacts_ = true;
   std::tuple<std::vector<typename Sets::Velocity>...> loads_;
 };

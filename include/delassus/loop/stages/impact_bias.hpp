@@ -10,9 +10,11 @@
 namespace delassus {
 
 /// d = H v + bias, and λ from zero: joints let nothing through, H v⁺ = 0; contacts that close part with
-/// u⁺ ≥ −e u⁻; soft rows give no impulse.
-template <class World, class Laws, class Rows, class Bounce>
-void make_impact_bias(const World& world, const Laws& laws, Rows& rows, Bounce& bounce) {
+/// u⁺ ≥ −e u⁻; soft rows give no impulse. Islands without a contact are not hit: d = 0, and what their joints
+/// have of H v stays.
+template <class World, class Laws, class Rows, class Islands, class Bounce>
+void make_impact_bias(const World& world, const Laws& laws, Rows& rows, const Islands& islands,
+                      Bounce& bounce) {
   using T = typename Rows::Scalar;
   for_each_index<Laws::pool_count>([&](auto p) {
     const auto& constraints = laws.template pool<p>();
@@ -38,6 +40,17 @@ void make_impact_bias(const World& world, const Laws& laws, Rows& rows, Bounce& 
       }
     }
   });
+  for (Index k = 0; k < islands.count(); ++k) {
+    bool is_hit = false;
+    for_each_index<Laws::pool_count>([&](auto p) {
+      using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
+      if constexpr (ContactLaw<Law>) is_hit = is_hit || !islands.items(p, k).empty();
+    });
+    if (is_hit) continue;
+    for_each_index<Laws::pool_count>([&](auto p) {
+      for (const Index i : islands.items(p, k)) rows.template pool<p>().d[i].setZero();
+    });
+  }
 }
 
 }  // namespace delassus
