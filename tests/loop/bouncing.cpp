@@ -223,6 +223,7 @@ TEMPLATE_TEST_CASE("sliding and sticking are met with first order", "", Symplect
     CHECK(are_of_order(orders, 1));
   }
 }
+// Where it sticks the first of the pairs from 0.01 s on has order 1.84: the asymptote is reached later.
 TEST_CASE("sliding and sticking are met with second order by the midpoint rule") {
   for (const auto& orders : {convergence_orders(off_as_it_slides<ImplicitMidpoint>, 0.01),
                              convergence_orders(off_where_it_sticks<ImplicitMidpoint>, 0.005)}) {

@@ -30,8 +30,7 @@ struct RowBias {
 
 /// Lower row u⁺ + bias ≥ 0. Open: φ/h. Closing within the step with u⁻ < 0: the stronger of e u⁻ and the push-out
 /// speed, never their sum. Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that
-/// symplectic Euler itself keeps, exactly.
-/// `whole` is the step of which h is all, or a part.
+/// symplectic Euler itself keeps, exactly. `whole` is the step of which h is all, or a part.
 template <class S>
 RowBias lower_bias(const S& stabilisation, const RowState& row, double h, double whole) {
   RowBias out;
@@ -152,9 +151,10 @@ void drive(Pool& pool, Index i, double speed, double h) {
 }  // namespace inner
 
 /// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
-/// as do springs that ask for it and the direction of friction (`inner::turned_slip`), all other rows for v_next. `bounce` takes what restitution added to the bias, where some law restitutes;
-/// `whole` is the step of which h may be a part: gaps are closed by it, however short the part.
-/// `at_start` has the rows of the start of the step, where H is not those, and `fade` takes what fades.
+/// as do springs that ask for it and the direction of friction (`inner::turned_slip`), all other rows for
+/// v_next. `whole` is the step of which h may be a part: gaps are closed by it, however short the part. `bounce`
+/// takes what restitution added to the bias, where some law restitutes; `at_start` has the rows of the start of
+/// the step, where H is not those, and `fade` takes what fades.
 ///
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there
 /// without a tenth of what it has across the joints at the start (`inner::fading`), which is of order h² and
