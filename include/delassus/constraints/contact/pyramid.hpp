@@ -1,6 +1,7 @@
 /// Contact with linearised friction: a pyramid of four sides in place of the cone.
 #pragma once
 
+#include <delassus/constraints/contact/cone.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/local.hpp>

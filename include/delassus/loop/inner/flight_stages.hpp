@@ -55,7 +55,7 @@ bool AnimationLoop<Policies...>::may_locate() const {
 
 template <class... Policies>
 bool AnimationLoop<Policies...>::closes(double reach) {
-  bool closes = false;
+  bool is_closing = false;
   if constexpr (locates_impacts) {
     auto& flights = work_.substeps;
     auto& contacts = work_.contacts;
@@ -70,22 +70,21 @@ bool AnimationLoop<Policies...>::closes(double reach) {
       const auto& pool = std::as_const(work_.rows).template pool<p>();
       if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws().template pool<p>().law)>>)
         for (Index i = 0; i < pool.items(); ++i)
-          closes = closes || inner::rate(
-                                 pool, i, std::as_const(*this).world(),
-                                 [](const auto& set) -> const auto& { return set.velocity(); })[0] < 0;
+          is_closing =
+              is_closing || inner::rate(
+                                pool, i, std::as_const(*this).world(),
+                                [](const auto& set) -> const auto& { return set.velocity(); })[0] < 0;
     });
-    if (closes) flights.forget_impulses(laws());
+    if (is_closing) flights.forget_impulses(laws());
   }
-  return closes;
+  return is_closing;
 }
 
 template <class... Policies>
 void AnimationLoop<Policies...>::set_part(double h, bool is_last) {
   work_.substeps.go_back(world(), laws(), report_);
   last_h_ = h_ = h;
-  world().each([&](auto& set, auto) {
-    if constexpr (requires { set.targets(); }) set.targets().stay_on_the_way(!is_last);
-  });
+  work_.substeps.stay_on_the_way(world(), !is_last);
 }
 
 template <class... Policies>

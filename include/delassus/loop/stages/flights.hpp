@@ -3,49 +3,44 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/loop/stages/detect.hpp>
+#include <delassus/loop/stages/part_sums.hpp>
 #include <delassus/loop/step_report.hpp>
-#include <delassus/math/twist.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace delassus {
 
-/// The bodies and constraints where the present flight began, to fly from there again; the impulses of the
-/// flights and impacts that are done; the loads, which act in every flight.
+/// The bodies and constraints where the present flight began, to fly from there again, and the contacts that
+/// the step has met. `h` is 0 between steps.
 template <class World, class Laws>
 class Flights;
 
 template <class... Sets, class... L>
-class Flights<World<Sets...>, Constraints<L...>> {
+class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...>, Constraints<L...>> {
+  using Sums = PartSums<delassus::World<Sets...>, Constraints<L...>>;
+
  public:
   using World = delassus::World<Sets...>;
   using Laws = Constraints<L...>;
-  double h = 0, start = 0;  ///< of the whole step, s; h = 0 between steps
-  long steps = 0;
   bool are_joints_closed = true;  ///< where the step began
 
   void begin(World& world, Laws& laws, const ContactBook& book, const StepReport& report) {
-    world.each([&](auto& set, auto s) {
-      if constexpr (requires { set.loads(); }) std::get<s>(loads_) = set.loads();
-    });
+    this->keep_loads(world);
     met_.clear();
     book_ = book;
-    is_first_ = is_before_impacts_ = true;
+    is_before_impacts_ = true;
     keep(world, laws, report);
   }
   /// What is now in the loop is done: the next flight begins here.
   void go_on(World& world, Laws& laws, const StepReport& report) {
     is_before_impacts_ = false;
-    world.each([&](auto& set, auto s) {
-      if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
-    });
+    this->give_loads(world);
     forget_impulses(laws);  // no start for a flight of another length
     keep(world, laws, report);
   }
@@ -88,28 +83,11 @@ class Flights<World<Sets...>, Constraints<L...>> {
   /// The contacts of the last step, whose impulses are the start of those that stay.
   const ContactBook& contacts_before() const { return book_; }
 
-  void add_impulses(const Laws& laws) {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      const auto& pool = laws.template pool<p>();
-      if constexpr (requires { pool.impulse; }) {
-        auto& sum = std::get<p>(sums_);
-        sum.resize(pool.impulse.size());
-        for (std::size_t i = 0; i < sum.size(); ++i) {
-          if (is_first_) sum[i].setZero();
-          sum[i] += pool.impulse[i];
-        }
-      }
-    });
-    is_first_ = false;
-  }
   void add_contacts(const ContactBook& book) {
     met_.insert(met_.end(), book.results.begin(), book.results.end());
   }
   void give_impulses(Laws& laws, ContactBook& book) {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      auto& pool = laws.template pool<p>();
-      if constexpr (requires { pool.impulse; }) pool.impulse = std::get<p>(sums_);
-    });
+    Sums::give_impulses(laws);
     book.results.swap(met_);
   }
 
@@ -127,10 +105,8 @@ class Flights<World<Sets...>, Constraints<L...>> {
   StepReport report_;
   ContactBook book_;
   std::vector<ContactResult> met_;
-  std::tuple<std::vector<Vec<L::rows>>...> sums_;
   std::vector<Name> touching_;
-  bool is_first_ = true, is_before_impacts_ = true;
-  std::tuple<std::vector<typename Sets::Velocity>...> loads_;
+  bool is_before_impacts_ = true;
 };
 
 }  // namespace delassus

@@ -3,11 +3,11 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/loop/stages/detect.hpp>
+#include <delassus/loop/stages/part_sums.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <cstddef>
-#include <tuple>
 #include <vector>
 
 namespace delassus {
@@ -20,45 +20,31 @@ namespace delassus {
 /// So a row that was held at u₊ + φ/h ≥ 0 stays open, and momentum is kept as within a part; a normal keeps
 /// its direction until the next detection.
 template <class World, class Laws, class Rows>
-class StepParts;
+class StepParts : public PartSums<World, Laws> {
+  using Sums = PartSums<World, Laws>;
 
-template <class... Sets, class Laws, class Rows>
-class StepParts<World<Sets...>, Laws, Rows> {
  public:
-  using World = delassus::World<Sets...>;
-  double h = 0, start = 0;  ///< of the whole step, s
-  long steps = 0;
-
   void begin(World& world, int count, double h_, double start_, long steps_) {
-    h = h_, start = start_, steps = steps_;
-    is_first_ = true;
-    world.each([&](auto& set, auto s) {
-      if constexpr (requires { set.loads(); }) std::get<s>(loads_) = set.loads();
-    });
-    stay_on_the_way(world, count > 1);
+    this->h = h_, this->start = start_, this->steps = steps_;
+    this->keep_loads(world);
+    this->stay_on_the_way(world, count > 1);
   }
   /// Before the next part; `left` of them are to come.
   void go_on(World& world, int left) {
-    is_first_ = false;
-    world.each([&](auto& set, auto s) {
-      if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
-    });
-    stay_on_the_way(world, left > 1);
+    this->give_loads(world);
+    this->stay_on_the_way(world, left > 1);
   }
 
   void add_impulses(const Laws& laws, const ContactBook& book) {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      const auto& pool = laws.template pool<p>();
-      if constexpr (requires { pool.impulse; })
-        add(std::get<p>(sums_), pool.impulse, [](const auto& x) { return x; });
-    });
-    add(pushed_, book.results, [](const ContactResult& r) { return r.impulse; });
+    pushed_.resize(book.results.size());
+    for (std::size_t i = 0; i < pushed_.size(); ++i) {
+      if (this->is_first()) pushed_[i].setZero();
+      pushed_[i] += book.results[i].impulse;
+    }
+    Sums::add_impulses(laws);
   }
   void give_impulses(Laws& laws, ContactBook& book) const {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      auto& pool = laws.template pool<p>();
-      if constexpr (requires { pool.impulse; }) pool.impulse = std::get<p>(sums_);
-    });
+    Sums::give_impulses(laws);
     for (std::size_t i = 0; i < pushed_.size(); ++i) book.results[i].impulse = pushed_[i];
     book.remember();
   }
@@ -90,14 +76,6 @@ class StepParts<World<Sets...>, Laws, Rows> {
   }
 
  private:
-  template <class To, class From, class Impulse>
-  void add(To& sum, const From& from, const Impulse& impulse) const {
-    sum.resize(from.size());
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      if (is_first_) sum[i].setZero();
-      sum[i] += impulse(from[i]);
-    }
-  }
   /// (H v_next) of the normal row, with what the stabilisation displaced.
   template <int p, class Work>
   static double closing(const World& world, const Work& work, Index i) {
@@ -113,22 +91,7 @@ class StepParts<World<Sets...>, Laws, Rows> {
     });
     return u;
   }
-  static void stay_on_the_way(World& world, bool is_on_the_way) {
-    world.each([&](auto& set, auto) {
-      if constexpr (requires { set.targets(); }) set.targets().stay_on_the_way(is_on_the_way);
-    });
-  }
-
-  template <class L>
-  struct sums_of;
-  template <class... L>
-  struct sums_of<Constraints<L...>> {
-    using type = std::tuple<std::vector<Vec<L::rows>>...>;
-  };
-  typename sums_of<Laws>::type sums_;
-  bool is_first_ = true;
   std::vector<Vec3> pushed_;  ///< impulses of the contacts, N·s
-  std::tuple<std::vector<typename Sets::Velocity>...> loads_;
 };
 
 }  // namespace delassus
