@@ -14,7 +14,7 @@ inline SheetMesh square(Index n, double thickness, double jitter = 0, unsigned s
   std::uniform_real_distribution<double> draw(-jitter / double(n), jitter / double(n));
   for (Vec3& p : mesh.points)
     if (std::min(p[0], p[1]) > 1e-9 && std::max(p[0], p[1]) < 1 - 1e-9)
-      p += Vec3(draw(random), draw(random), 0);
+      p += Vec3{draw(random), draw(random), 0};
   return mesh;
 }
 

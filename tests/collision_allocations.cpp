@@ -18,9 +18,10 @@ TEST_CASE("a warm detect() allocates nothing") {
                                   Ellipsoid{0.5, 0.3, 0.4}};
   Scene scene;
   scene.add(HalfSpace{}, {0, 0, -1}, Mat3::Identity(), false);
-  for (std::size_t i = 0; i < 60; ++i)
-    scene.add(shapes[i % shapes.size()], 1.5 * Vec3(uniform(random), uniform(random), uniform(random)),
-              samples::any_rotation(random));
+  for (std::size_t i = 0; i < 60; ++i) {
+    const Vec3 at{uniform(random), uniform(random), uniform(random)};
+    scene.add(shapes[i % shapes.size()], 1.5 * at, samples::any_rotation(random));
+  }
   const auto move = [&](int step) {
     for (std::size_t i = 1; i < scene.colliders.size(); ++i)
       scene.colliders[i].pose.position[0] += (i % 2 ? 1e-3 : -1e-3) * (step % 2 ? 1 : -1);

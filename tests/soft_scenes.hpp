@@ -94,7 +94,7 @@ inline TetrahedralMesh cube(Index n, double jitter = 0, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> draw(-jitter / double(n), jitter / double(n));
   for (Vec3& p : mesh.points)
-    if (p.minCoeff() > 1e-9 && p.maxCoeff() < 1 - 1e-9) p += Vec3(draw(random), draw(random), draw(random));
+    if (p.minCoeff() > 1e-9 && p.maxCoeff() < 1 - 1e-9) p += Vec3{draw(random), draw(random), draw(random)};
   return mesh;
 }
 

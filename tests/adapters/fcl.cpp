@@ -92,8 +92,8 @@ TEST_CASE("FCL's tree finds the pairs that brute force finds, while boxes move a
   FclTree tree;
   for (int step = 0; step < 40; ++step) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const Vec3 centre = 3 * Vec3(uniform(random), uniform(random), uniform(random));
-      const Vec3 half = Vec3::Constant(0.6) + 0.5 * Vec3(uniform(random), uniform(random), uniform(random));
+      const Vec3 centre = 3 * Vec3{uniform(random), uniform(random), uniform(random)};
+      const Vec3 half = Vec3::Constant(0.6) + 0.5 * Vec3{uniform(random), uniform(random), uniform(random)};
       boxes[i] = step > 20 && i % 11 == std::size_t(step % 11) ? Aabb() : Aabb(centre - half, centre + half);
     }
     if (step == 30) boxes.resize(70);

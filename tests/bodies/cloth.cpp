@@ -60,8 +60,9 @@ TEMPLATE_TEST_CASE("forces of a sheet are the derivative of its energy, their su
     const Quat turn = exponential(Vec3(2 * Vec3(1, 2, -2) / 3));
     for (Index b = 0; b < set.blocks(); ++b) set.place(set.handle(b), turn * set.position(set.handle(b)));
     scatter(set, 0.08, seed);  // a quarter of a cell: stretched, pressed and folded
-    // Step² = 1e-10 times E t / h² ~ 1 N/m³ and its some ten triangles; ε Ψ / step = 1e-16 · 1e-2 / 1e-5.
-    check_derivative(set, 1e-9);
+    // Step⁴ = 1e-16 times E t / l⁴ ~ 1e5 N/m⁵ where a cell is pressed to l = 3 cm, and its some ten triangles;
+    // ε Ψ / step = 1e-16 · 1e-2 / 1e-4.
+    check_derivative(set, 1e-10);
     check_balance(set, 1e-2);
   }
 }

@@ -28,7 +28,7 @@ TEST_CASE("forces of hexahedra are the derivative of their energy, their sum and
     const Quat turn = exponential(Vec3(2 * Vec3(1, 2, -2) / 3));
     for (Index b = 0; b < set.blocks(); ++b) set.place(set.handle(b), turn * set.position(set.handle(b)));
     scatter(set, 0.2, seed);  // bends and twists as much as it strains
-    check_derivative(set, 1e-9);
+    check_derivative(set, 1e-10);
     check_balance(set, 0.1);
   }
 }

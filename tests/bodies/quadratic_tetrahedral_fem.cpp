@@ -44,7 +44,7 @@ TEMPLATE_TEST_CASE("forces of ten-node tetrahedra are the derivative of their en
   QuadraticTetrahedralFem<TestType> set;
   set.add({.mesh = bent_cube(1, 0), .elasticity = {.young = 1, .poisson = 0.4}});
   scatter(set, 0.06, 3);
-  check_derivative(set, 1e-8);
+  check_derivative(set, 1e-10);
   check_balance(set, 0.1);
 }
 

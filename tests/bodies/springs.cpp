@@ -31,7 +31,7 @@ struct Net {
   explicit Net(unsigned seed, double damping) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> draw(-1, 1);
-    const auto vector = [&] { return Vec3(draw(random), draw(random), draw(random)); };
+    const auto vector = [&] { return Vec3{draw(random), draw(random), draw(random)}; };
     for (int i = 0; i < 6; ++i) {
       x.push_back(3 * vector());
       v.push_back(i == 4 ? Vec3(Vec3::Zero()) : vector());

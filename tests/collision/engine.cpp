@@ -25,7 +25,7 @@ void fill(Scene& scene, const ConvexHull& hull, int count, unsigned seed) {
                                   Cylinder{0.35, 0.8}, hull,             Cone{0.4, 0.9},
                                   Ellipsoid{0.5, 0.3, 0.4}};
   for (int i = 0; i < count; ++i) {
-    const Vec3 position = 1.5 * Vec3(uniform(random), uniform(random), uniform(random));
+    const Vec3 position = 1.5 * Vec3{uniform(random), uniform(random), uniform(random)};
     scene.add(shapes[std::size_t(i) % shapes.size()], position, samples::any_rotation(random), i % 7 != 0);
   }
 }

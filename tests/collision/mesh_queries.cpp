@@ -23,8 +23,8 @@ struct Worlds {
     std::uniform_real_distribution<double> uniform(-1, 1);
     const Shape mesh = meshes.add(box_mesh(1, 0.6, 0.8));
     for (int i = 0; i < 3; ++i) {
-      const Vec3 at(1.5 * i, uniform(random), uniform(random));
-      const Quat turn = Quat(uniform(random), uniform(random), uniform(random), uniform(random)).normalized();
+      const Vec3 at{1.5 * i, uniform(random), uniform(random)};
+      const Quat turn = Quat{uniform(random), uniform(random), uniform(random), uniform(random)}.normalized();
       bodies<RigidBodies>(solid).add_fixed(Box{1, 0.6, 0.8}, at, turn);
       bodies<RigidBodies>(meshed).add_fixed(mesh, at, turn);
     }
@@ -39,8 +39,8 @@ TEST_CASE("rays and nearest points of meshed boxes are those of the boxes, from 
   std::uniform_real_distribution<double> uniform(-1, 1);
   int hits = 0;
   for (int i = 0; i < 300; ++i) {
-    const Vec3 from(1.5 + 4 * uniform(random), 4 * uniform(random), 4 * uniform(random));
-    const Vec3 to(1.5 + 2 * uniform(random), uniform(random), uniform(random));
+    const Vec3 from{1.5 + 4 * uniform(random), 4 * uniform(random), 4 * uniform(random)};
+    const Vec3 to{1.5 + 2 * uniform(random), uniform(random), uniform(random)};
     const SurfacePoint outside = closest_point(w.solid, from);
     if (outside.distance < 0.01) continue;
     const SurfacePoint near = closest_point(w.meshed, w.meshes, from);
@@ -67,7 +67,7 @@ TEST_CASE("a ball overlaps the meshed boxes that it overlaps as boxes, by as muc
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::size_t all = 0;
   for (int i = 0; i < 200; ++i) {
-    const Vec3 at(1.5 + 2.5 * uniform(random), 1.5 * uniform(random), 1.5 * uniform(random));
+    const Vec3 at{1.5 + 2.5 * uniform(random), 1.5 * uniform(random), 1.5 * uniform(random)};
     if (closest_point(w.solid, at).distance < 1e-3) continue;  // its middle must be outside
     overlaps(w.solid, Sphere{0.5}, {.position = at}, solid);
     overlaps(w.meshed, w.meshes, Sphere{0.5}, {.position = at}, meshed);

@@ -20,7 +20,7 @@ inline ConvexHull ball_hull(int count, unsigned seed, double radius) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i)
-    points.push_back(radius * Vec3(normal(random), normal(random), normal(random)).normalized());
+    points.push_back(radius * Vec3{normal(random), normal(random), normal(random)}.normalized());
   return ConvexHull(points).centred();
 }
 

@@ -17,8 +17,8 @@ TEST_CASE(
   std::uniform_real_distribution<double> draw(-1, 1);
   double worst = 0;
   for (int k = 0; k < 200; ++k) {
-    const Quat turn = Quat(draw(random), draw(random), draw(random), draw(random)).normalized();
-    const Pose pose{Vec3(draw(random), draw(random), draw(random)),
+    const Quat turn = Quat{draw(random), draw(random), draw(random), draw(random)}.normalized();
+    const Pose pose{Vec3{draw(random), draw(random), draw(random)},
                     turn.cast<float>().toRotationMatrix().cast<double>()};
     worst = std::max(worst, (pose.rotation.transpose() * pose.rotation - Mat3::Identity()).norm());
     for (const Shape& shape :

@@ -31,13 +31,13 @@ TEST_CASE("sweep and prune finds every pair once, while boxes move, come, go and
     if (step % 10 == 0) {
       boxes.resize(std::size_t(50 + 30 * (step % 40)));
       for (Aabb& box : boxes) {
-        const Vec3 centre = 10 * Vec3(uniform(random), uniform(random), 0.2 * uniform(random));
-        const Vec3 half = Vec3(1.1 + uniform(random), 1.1 + uniform(random), 1.1 + uniform(random)) * 0.5;
+        const Vec3 centre = 10 * Vec3{uniform(random), uniform(random), 0.2 * uniform(random)};
+        const Vec3 half = Vec3{1.1 + uniform(random), 1.1 + uniform(random), 1.1 + uniform(random)} * 0.5;
         box = Aabb(centre - half, centre + half);
       }
     }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const Vec3 move = 0.05 * Vec3(uniform(random), uniform(random), uniform(random));
+      const Vec3 move = 0.05 * Vec3{uniform(random), uniform(random), uniform(random)};
       boxes[i] =
           i % 17 == std::size_t(step % 17) ? Aabb() : Aabb(boxes[i].min() + move, boxes[i].max() + move);
       if (boxes[i].min()[0] > 1e100) boxes[i] = Aabb(Vec3::Zero(), Vec3::Ones());

@@ -44,7 +44,7 @@ TEST_CASE("the matrix-free residual is the assembled one at any impulse") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> draw(-1, 1);
   for (Index i = 0; i < p.rows.pool<0>().items(); ++i)
-    p.rows.pool<0>().lambda[i] = q.rows.pool<0>().lambda[i] = Vec3(draw(random), draw(random), draw(random));
+    p.rows.pool<0>().lambda[i] = q.rows.pool<0>().lambda[i] = Vec3{draw(random), draw(random), draw(random)};
   p.W.reset(p.rows);
   q.W.reset(q.rows);
   for (Index i = 0; i < p.rows.pool<0>().items(); ++i) {

@@ -23,7 +23,7 @@ TEST_CASE("the projection on the cone is its closest point") {
   std::uniform_real_distribution<double> draw(-2, 2);
   for (int n = 0; n < 3000; ++n) {
     const double friction = n % 7 == 0 ? 0 : std::abs(draw(random));
-    const Vec3 x(draw(random), draw(random), draw(random));
+    const Vec3 x{draw(random), draw(random), draw(random)};
     const Vec3 p = project_on_cone(x, friction);
     REQUIRE(is_inside(p, friction));
     for (int k = 0; k < 64; ++k)
@@ -41,7 +41,7 @@ TEST_CASE("projecting twice is projecting once") {
   std::uniform_real_distribution<double> draw(-2, 2);
   for (int n = 0; n < 1000; ++n) {
     const double friction = std::abs(draw(random));
-    const Vec3 p = project_on_cone(Vec3(draw(random), draw(random), draw(random)), friction);
+    const Vec3 p = project_on_cone(Vec3{draw(random), draw(random), draw(random)}, friction);
     REQUIRE((project_on_cone(p, friction) - p).norm() <= 1e-15 * p.norm());
   }
 }

@@ -33,7 +33,7 @@ TEST_CASE("a turn is the twist about the axis, whatever the swing") {
   Scene scene(5);
   for (int n = 0; n < 100; ++n) {
     const double twist = 3.1 * scene.draw();
-    const Vec3 across = Vec3(scene.draw(), scene.draw(), 0);
+    const Vec3 across = Vec3{scene.draw(), scene.draw(), 0};
     const Quat turn = exponential<double>(across) * exponential<double>(Vec3(0, 0, twist));
     const JointFrames frames(world_anchor(Vec3::Zero()), world_anchor(Vec3::Zero(), turn), scene.world);
     CHECK(std::abs(Turn::value(frames) - twist) <= 1e-13);  // a dozen roundings, over cos²(|across|/2) > 0.5

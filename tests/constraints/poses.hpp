@@ -36,7 +36,7 @@ struct Scene {
   }
   double draw() { return std::uniform_real_distribution<double>(-1, 1)(random); }
   Vec3 vector() { return {draw(), draw(), draw()}; }
-  Quat turn() { return Quat(draw(), draw(), draw(), draw()).normalized(); }
+  Quat turn() { return Quat{draw(), draw(), draw(), draw()}.normalized(); }
 
   /// 0, 1: the rigid bodies · 2, 3: the particles · 4: the world.
   Anchor end(int kind, const Quat& frame = Quat::Identity()) {

@@ -48,7 +48,8 @@ int agreeing(const Tangent& tangent) {
       tangent(less);
       difference.col(k) = -(more.lambda - less.lambda) / (2 * step);
     }
-    // Central differences err by the third derivative times step² and by rounding over the step: 1e-9 of slopes of order 10.
+    // Central differences err by the third derivative times step² and by rounding over the step: 1e-9 of
+    // slopes of order 10.
     count += (slope - difference).norm() < 1e-6;
   }
   return count;
@@ -56,7 +57,8 @@ int agreeing(const Tangent& tangent) {
 
 }  // namespace
 
-// A difference across a border between two cases agrees with neither side; at 200 random points one or two may.
+// A difference across a border between two cases agrees with neither side; at 200 random points one or two
+// may.
 TEST_CASE("the tangent of Coulomb's law is the slope of its impulse") {
   const Coulomb law;
   CHECK(agreeing([&](Local<3>& c) { return law.tangent({0.6}, c); }) >= 198);
@@ -84,18 +86,22 @@ TEST_CASE("the tangent of rolling friction is the slope of its impulse, which is
   CHECK(closed >= 50);
   CHECK(sliding >= 20);
 }
-TEST_CASE("the convex tangent of Coulomb's law is the slope of its impulse, symmetric, and at the true slip the law itself") {
+TEST_CASE(
+    "the convex tangent of Coulomb's law is the slope of its impulse, symmetric, and at the true slip the "
+    "law itself") {
   const Coulomb law;
   CHECK(agreeing([&](Local<3>& c) { return law.convex_tangent({0.6}, c, 0.3); }) >= 198);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int n = 0; n < 100; ++n) {
-    auto c = problem<3>(Vec3(any(random), any(random), any(random)), Vec3(any(random) + 1, any(random), any(random)));
+    const Vec3 start{any(random), any(random), any(random)};
+    auto c = problem<3>(start, Vec3{any(random) + 1, any(random), any(random)});
     const Mat3 slope = law.convex_tangent({0.6}, c, 0.3);
     REQUIRE((slope - slope.transpose()).norm() <= 1e-14 * (1 + slope.norm()));
     REQUIRE(c.lambda.tail<2>().norm() <= 0.6 * c.lambda[0] * (1 + 1e-14));
     // A pair (λ, u) that meets the law is a fixed point of its projection, whatever W is.
-    const Vec3 slip(0, any(random), any(random)), force(1, -0.6 * slip[1] / slip.norm(), -0.6 * slip[2] / slip.norm());
+    const Vec3 slip{0, any(random), any(random)},
+        force(1, -0.6 * slip[1] / slip.norm(), -0.6 * slip[2] / slip.norm());
     auto fixed = problem<3>(slip, force);
     law.convex_tangent({0.6}, fixed, slip.norm());
     REQUIRE((fixed.lambda - force).norm() <= 1e-13);

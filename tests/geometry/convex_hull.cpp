@@ -55,12 +55,12 @@ TEST_CASE("faces survive noise of rounding size, any orientation and any scale")
   std::normal_distribution<double> normal;
   for (const double scale : {1e-6, 1.0, 1e6})
     for (int trial = 0; trial < 20; ++trial) {
-      const Mat3 R = Quat(normal(random), normal(random), normal(random), normal(random))
+      const Mat3 R = Quat{normal(random), normal(random), normal(random), normal(random)}
                          .normalized()
                          .toRotationMatrix();
       std::vector<Vec3> points = grid(3, {1, 1, 0.01});
       for (Vec3& p : points)
-        p = scale * (R * p + Vec3(5, 6, 7) + 1e-15 * Vec3(normal(random), normal(random), normal(random)));
+        p = scale * (R * p + Vec3(5, 6, 7) + 1e-15 * Vec3{normal(random), normal(random), normal(random)});
       const ConvexHull hull(points);
       CHECK(hull.vertices().size() == 8);
       CHECK(hull.face_count() == 6);

@@ -25,7 +25,7 @@ struct Cloud {
   Cloud(int count, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform;
-    const auto any = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+    const auto any = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
     for (int t = 0; t < count; ++t) {
       const Vec3 at = any();
       for (int k = 0; k < 3; ++k) vertices.push_back(at + 0.2 * any());
@@ -89,8 +89,8 @@ TEST_CASE("the tree finds the triangles whose boxes meet a box, also after all v
     std::uniform_real_distribution<double> uniform;
     for (int q = 0; q < 50; ++q) {
       inner::Bounds box;
-      box.add(Vec3(uniform(random), uniform(random), uniform(random)));
-      box.add(Vec3(box.low + 0.3 * Vec3(uniform(random), uniform(random), uniform(random))));
+      box.add(Vec3{uniform(random), uniform(random), uniform(random)});
+      box.add(Vec3(box.low + 0.3 * Vec3{uniform(random), uniform(random), uniform(random)}));
       std::vector<Index> found;
       m.visit([&](const inner::Bounds& b) { return b.meets(box); },
               [&](Index t) {

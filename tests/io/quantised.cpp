@@ -37,7 +37,7 @@ TEST_CASE("three words miss a rotation by at most 1.5e-4 rad") {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 20000; ++i) {
-    Quat q(normal(random), normal(random), normal(random), normal(random));
+    Quat q{normal(random), normal(random), normal(random), normal(random)};
     q.normalize();
     const Quat back = inner::turn_value(inner::turn_code(q));
     REQUIRE(back.norm() == Approx(1).epsilon(1e-15));

@@ -29,10 +29,10 @@ TEST_CASE("at 1000 m/s a ball of 1 cm and a box of 2 cm never pass a plate of 1 
     auto& rigid = bodies<RigidBodies>(loop.world());
     rigid.add_fixed(Box{4, 4, 1e-3});
     const double side = shot % 2 ? 1 : -1;
-    const Vec3 at(0.3 * uniform(random), 0.3 * uniform(random), side * (1.2 + uniform(random)));
-    const Vec3 v(300 * uniform(random), 300 * uniform(random), -1000 * side);
-    const Quat turn = Quat(uniform(random), uniform(random), uniform(random), uniform(random)).normalized();
-    const Vec3 spin(500 * uniform(random), 500 * uniform(random), 500 * uniform(random));
+    const Vec3 at{0.3 * uniform(random), 0.3 * uniform(random), side * (1.2 + uniform(random))};
+    const Vec3 v{300 * uniform(random), 300 * uniform(random), -1000 * side};
+    const Quat turn = Quat{uniform(random), uniform(random), uniform(random), uniform(random)}.normalized();
+    const Vec3 spin{500 * uniform(random), 500 * uniform(random), 500 * uniform(random)};
     const bool is_ball = shot % 4 < 2;
     const auto body = rigid.add({.position = at,
                                  .orientation = turn,

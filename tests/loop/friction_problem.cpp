@@ -87,7 +87,7 @@ TEST_CASE("the errors of a given problem are those of the formulas, at any impul
     FrictionProblem p = random_problem(seed, 40, 60, 0.6);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> draw(-1, 1);
-    for (auto& x : p.rows.pool<0>().lambda) x = Vec3(draw(random), draw(random), draw(random));
+    for (auto& x : p.rows.pool<0>().lambda) x = Vec3{draw(random), draw(random), draw(random)};
     const Errors expected = errors(p);
     const Measure m = solve(p, only_measure).measure;
     REQUIRE(m.residual == Approx(expected.err_s).epsilon(1e-12));

@@ -66,7 +66,7 @@ TEST_CASE("a cluster of bodies that collide with real geometry keeps momentum ov
   double size = 0;
   for (int i = 0; i < 12; ++i) {
     const Vec3 x(1.2 * (i % 3), 1.2 * (i / 3 % 2), 1.2 * (i / 6));
-    const Vec3 v = -(x - Vec3(1.2, 0.6, 0.6)) + 0.1 * Vec3(draw(random), draw(random), draw(random));
+    const Vec3 v = -(x - Vec3(1.2, 0.6, 0.6)) + 0.1 * Vec3{draw(random), draw(random), draw(random)};
     set.add({.position = x, .velocity = v, .mass = 1.0 + i, .shape = Box{1, 1, 1}});
     size += (1.0 + i) * v.norm();
   }

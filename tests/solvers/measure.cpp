@@ -76,7 +76,7 @@ TEST_CASE("residual and siconos are the two errors of the formulas, at any impul
     auto problem = loop.problem();
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> draw(-1, 1);
-    for (auto& x : problem.rows.pool<0>().lambda) x = Vec3(draw(random), draw(random), draw(random));
+    for (auto& x : problem.rows.pool<0>().lambda) x = Vec3{draw(random), draw(random), draw(random)};
     const Measure m = solve(problem, only_measure).measure;
     dense(problem, W, q, r);
     const Errors expected = errors(W, q, r, mu);
@@ -116,7 +116,7 @@ TEST_CASE("the residual does not change when all masses or all velocities are sc
   auto problem = loop.problem();
   std::mt19937 random(3);
   std::uniform_real_distribution<double> draw(-1, 1);
-  for (auto& x : problem.rows.pool<0>().lambda) x = Vec3(draw(random), draw(random), draw(random));
+  for (auto& x : problem.rows.pool<0>().lambda) x = Vec3{draw(random), draw(random), draw(random)};
   const Measure before = solve(problem, only_measure).measure;
   const double size = 1024;  // velocities and impulses by a power of two: no rounding
   for (auto& x : problem.rows.pool<0>().lambda) x *= size;
