@@ -111,6 +111,39 @@ TEST_CASE("a box on a meshed box has the contacts it has on a box") {
   }
 }
 
+TEST_CASE("a shape deep in a plain of triangles is as deep as in a half-space, however it lies") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const std::vector<Shape> shapes{Box{0.3, 0.2, 0.2}, Capsule{0.1, 0.2}, Cylinder{0.1, 0.25}, Cone{0.12, 0.3},
+                                  Sphere{0.15}};
+  for (const int cells : {2, 5, 16})
+    for (int n = 0; n < 200; ++n) {
+      const Shape& shape = shapes[std::size_t(n) % shapes.size()];
+      const Quat turn{uniform(random), uniform(random), uniform(random), uniform(random)};
+      const Mat3 R = turn.normalized().toRotationMatrix();
+      const double half =
+          -support(shape, Vec3(-R.transpose() * Vec3(0, 0, 1))).dot(R.transpose() * Vec3(0, 0, 1));
+      // The middle of the shape stays above, its lowest point goes down to nine tenths of the way there.
+      const double depth = 0.45 * half * (1 + uniform(random));
+      const Vec3 at{0.6 * uniform(random), 0.6 * uniform(random), half - depth};
+      MeshScene scene;
+      scene.add(scene.collision.add(flat_grid(1, cells, 0.2, unsigned(n))), {0, 0, 0}, Mat3::Identity(),
+                false);
+      scene.add(shape, at, R);
+      scene.detect();
+      INFO("cells " << cells << ", scene " << n);
+      double deepest = 1;
+      for (const ContactPoint& p : scene.contacts) {
+        deepest = std::min(deepest, p.gap);
+        CHECK((p.normal - Vec3(0, 0, 1)).norm() < 1e-9);
+      }
+      CHECK(deepest > -depth - 1e-9);
+      // Of points nearer than 1e-3 L one stays: 5e-5 L at the most. A cone's tip may be below a triangle that
+      // the cone does not cross, and has the depth of those it does.
+      CHECK(deepest < -depth + (shape.kind == ShapeKind::cone ? 0.1 * depth : 2e-5));
+    }
+}
+
 TEST_CASE("a box pushed against the rim of a meshed box is pushed back sideways, not up") {
   MeshScene scene;
   scene.add(scene.collision.add(box_mesh(1, 1, 1)), {0, 0, 0}, Mat3::Identity(), false);

@@ -1,7 +1,7 @@
 /// Of many contact points with nearly one normal, those that carry: the outermost and the deepest.
 #pragma once
 
-#include <delassus/collision/triangle_patch.hpp>
+#include <delassus/collision/manifold.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace delassus::inner {
 struct SurfaceContact {
   PatchPoint point;
   Vec3 normal;
-  PatchTrust trust = PatchTrust::sure;
+  Index triangle = -1;
 };
 
 /// Chooses among contacts of one group, seen along its normal n. Its arrays keep their capacity.

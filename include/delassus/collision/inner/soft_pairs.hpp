@@ -3,13 +3,13 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/patch_doubts.hpp>
 #include <delassus/collision/inner/soft_surface.hpp>
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace delassus::inner {
@@ -27,8 +27,8 @@ class SoftPairs {
     const Aabb tight = tight_box(shape, pose);
     const Bounds near{tight.min() - Vec3::Constant(reach), tight.max() + Vec3::Constant(reach)};
     if (!is_finite(near.low) || !is_finite(near.high)) return 0;
-    double sure = std::numeric_limits<double>::infinity(), doubtful = -sure;
-    doubt_.clear();
+    found_on_.clear();
+    doubts_.begin();
     soft.visit([&](const Bounds& box) { return box.meets(near); },
                [&](Index t) {
                  if (is_zero(soft.normal(t))) return;
@@ -37,19 +37,11 @@ class SoftPairs {
                  const PatchTrust trust =
                      triangle_patch(soft.triangle(t), shape, pose, reach, scale, patch_, n);
                  if (trust == PatchTrust::none) return;
-                 for (int i = 0; i < patch_.count; ++i) {
-                   const double gap = patch_.point[i].gap;
-                   if (trust == PatchTrust::sure)
-                     sure = std::min(sure, gap);
-                   else
-                     doubtful = std::max(doubtful, gap);
-                   add(soft, t, patch_.point[i], n, trust == PatchTrust::doubtful);
-                 }
+                 for (int i = 0; i < patch_.count; ++i) add(soft, t, patch_.point[i], n);
+                 doubts_.add(t, patch_, n, trust);
                });
-    // A normal that an inner edge forbids stays where it says no more than those that are sure.
-    const double limit = (std::isfinite(sure) ? sure : doubtful) - 5e-3 * scale;
-    for (std::size_t i = 0; i < found.size(); ++i)
-      found[i].is_dropped = doubt_[i] && !(found[i].point.gap >= limit);
+    doubts_.judge([&](Index t) { return soft.triangle(t); }, shape, pose, scale);
+    for (std::size_t i = 0; i < found.size(); ++i) found[i].is_dropped = doubts_.is_false(found_on_[i]);
     drop();
     drop_twins_of_edges(scale);
     return queries;
@@ -85,7 +77,7 @@ class SoftPairs {
   }
 
   /// A point on an edge gets the triangle that owns the edge, whichever of its two triangles found it.
-  void add(const SoftSurface& soft, Index t, const PatchPoint& p, const Vec3& n, bool is_doubtful) {
+  void add(const SoftSurface& soft, Index t, const PatchPoint& p, const Vec3& n) {
     const Vec3 w = soft.shares(t, p.a);
     const int zeros = (w[0] == 0) + (w[1] == 0) + (w[2] == 0);
     if (zeros == 2) return;
@@ -104,7 +96,7 @@ class SoftPairs {
     }
     c.point.name = 3u << 30 | (name & 0x3fffffffu);
     found.push_back(c);
-    doubt_.push_back(is_doubtful);
+    found_on_.push_back(t);
   }
 
   void drop() {
@@ -126,7 +118,8 @@ class SoftPairs {
   }
 
   Patch patch_;
-  std::vector<char> doubt_;
+  PatchDoubts doubts_;
+  std::vector<Index> found_on_;  ///< the triangle of each in `found`
 };
 
 }  // namespace delassus::inner

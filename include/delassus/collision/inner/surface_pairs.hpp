@@ -6,6 +6,7 @@
 #include <delassus/collision/inner/deep_surfaces.hpp>
 #include <delassus/collision/inner/hull_of_patch.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/patch_doubts.hpp>
 #include <delassus/collision/inner/reduce.hpp>
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -67,7 +67,7 @@ class SurfacePairs {
       collect_deep(posed_a, posed_b, scale, cuts_, features_);
     points_.clear();
     for (const FeatureContact& f : features_)
-      add_within_margin(a, b, f.point, f.normal, PatchTrust::sure, scale, h, settings);
+      add_within_margin(a, b, f.point, f.normal, -1, scale, h, settings);
     emit({a, b, b_in_a, pair_key(a.key, b.key), place_a, place_b, scale}, settings, out);
     return queries;
   }
@@ -85,6 +85,7 @@ class SurfacePairs {
   Index collect(const Surface& surface, const Collider& a, const Collider& b, const Pose& b_in_a,
                 double reach, double scale, double h, const CollisionSettings& settings) {
     points_.clear();
+    doubts_.begin();
     const Aabb tight = tight_box(b.shape, b_in_a);
     const Bounds near{tight.min() - Vec3::Constant(reach), tight.max() + Vec3::Constant(reach)};
     if (!is_finite(near.low) || !is_finite(near.high)) return 0;
@@ -96,16 +97,18 @@ class SurfacePairs {
       const PatchTrust trust = triangle_patch(surface.triangle(t), b.shape, b_in_a, reach, scale, patch_, n);
       if (trust == PatchTrust::none) return;
       for (int i = 0; i < patch_.count; ++i)
-        add_within_margin(a, b, patch_.point[i], n, trust, scale, h, settings);
+        add_within_margin(a, b, patch_.point[i], n, t, scale, h, settings);
+      doubts_.add(t, patch_, n, trust);
     });
-    drop_doubtful(scale);
+    doubts_.judge([&](Index t) { return surface.triangle(t); }, b.shape, b_in_a, scale);
+    std::erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
     return queries;
   }
 
   void add_within_margin(const Collider& a, const Collider& b, const PatchPoint& p, const Vec3& n,
-                         PatchTrust trust, double scale, double h, const CollisionSettings& settings) {
+                         Index triangle, double scale, double h, const CollisionSettings& settings) {
     const double margin = margin_along(a, b, a.pose.rotation * n, a.pose.to_world(p.a), scale, h, settings);
-    if (p.gap <= settings.contact_distance + margin) points_.push_back({p, n, trust});
+    if (p.gap <= settings.contact_distance + margin) points_.push_back({p, n, triangle});
   }
 
   /// Corners of the surface with a gap up to `reach` over a plane.
@@ -131,21 +134,6 @@ class SurfacePairs {
       }
     });
     return queries;
-  }
-
-  /// Doubtful contacts stay where they are no deeper, to 5e-3 of the scale, than the sure ones, or without
-  /// any than the shallowest of their own kind.
-  void drop_doubtful(double scale) {
-    double deepest = std::numeric_limits<double>::infinity(), shallowest = -deepest;
-    for (const SurfaceContact& p : points_)
-      if (p.trust == PatchTrust::sure)
-        deepest = std::min(deepest, p.point.gap);
-      else
-        shallowest = std::max(shallowest, p.point.gap);
-    const double limit = (std::isfinite(deepest) ? deepest : shallowest) - 5e-3 * scale;
-    std::erase_if(points_, [&](const SurfaceContact& p) {
-      return p.trust == PatchTrust::doubtful && !(p.point.gap >= limit);
-    });
   }
 
   void find_last(std::uint64_t key) {
@@ -246,6 +234,7 @@ class SurfacePairs {
   std::vector<FeatureContact> features_;
   std::vector<Cut> cuts_;
   Patch patch_;
+  PatchDoubts doubts_;
   std::array<Index, Patch::capacity> source_{};
   HullOfPatch hull_;
   std::vector<PairMemory> memory_, next_;

@@ -1,0 +1,89 @@
+/// Which of the triangles whose answer is doubtful are believed: those off which nothing shallower takes the
+/// shape.
+#pragma once
+
+#include <delassus/collision/triangle_patch.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace delassus::inner {
+
+/// The answers of the triangles of one surface about one shape. At the rim of a cliff the top, too, says how
+/// deep the shape is below it, and is wrong: a push off the side, which is shallower, takes the shape off
+/// both. On a plain, however many its triangles, no push off one takes it off those where it is deeper.
+class PatchDoubts {
+ public:
+  void begin() {
+    answers_.clear();
+    false_.clear();
+  }
+  /// The contacts of a triangle, one at least.
+  void add(Index triangle, const Patch& patch, const Vec3& normal, PatchTrust trust) {
+    double gap = patch.point[0].gap;
+    for (int i = 1; i < patch.count; ++i) gap = std::min(gap, patch.point[i].gap);
+    answers_.push_back({triangle, normal, gap, trust});
+  }
+  /// Judges what has been added; `triangle(t)` is the t-th triangle, the shape is posed in its frame. What
+  /// doubtful answers say is false where it is deeper, by 5e-3 L, than all that is sure, or without any than
+  /// the shallowest, and a push off one that is believed and as much shallower takes the shape off the
+  /// triangle.
+  void judge(const auto& triangle, const Shape& shape, const Pose& pose, double scale) {
+    const auto is_doubtful = [](const Answer& a) { return a.trust == PatchTrust::doubtful; };
+    if (std::none_of(answers_.begin(), answers_.end(), is_doubtful)) return;
+    std::sort(answers_.begin(), answers_.end(), [](const Answer& a, const Answer& b) {
+      return a.gap != b.gap ? a.gap > b.gap : a.triangle < b.triangle;
+    });
+    const double slack = 5e-3 * scale;
+    double limit = answers_[0].gap;
+    for (const Answer& a : answers_)
+      if (!is_doubtful(a)) limit = a.gap;
+    pushes_.clear();
+    for (const Answer& a : answers_) {
+      const auto frees = [&](const Answer& push) {
+        if (!(push.gap > a.gap + slack)) return false;
+        const Vec3 by = (std::max(-push.gap, 0.0) + slack) * push.normal;
+        return is_off(triangle(a.triangle), shape, {pose.position + by, pose.rotation});
+      };
+      if (is_doubtful(a) && a.gap < limit - slack && std::any_of(pushes_.begin(), pushes_.end(), frees))
+        false_.push_back(a.triangle);
+      else
+        keep_push(a);
+    }
+    std::sort(false_.begin(), false_.end());
+  }
+  bool is_false(Index triangle) const { return std::binary_search(false_.begin(), false_.end(), triangle); }
+
+ private:
+  struct Answer {
+    Index triangle;
+    Vec3 normal;
+    double gap;
+    PatchTrust trust;
+  };
+
+  /// Whether the shape is off the triangle, and has not got below it by another one's way.
+  static bool is_off(const Triangle& t, const Shape& s, const Pose& pose) {
+    const SignedPair r = s.kind == ShapeKind::sphere
+                             ? triangle_and_sphere(t, s.size[0], pose.to_world(middle(s)))
+                             : GjkEpa::convex(t, s, pose, 0, t.normal);
+    if (r.status == PairStatus::near && !(r.distance >= 0)) return false;
+    const Vec3 lowest = pose.to_world(support(s, Vec3(-(pose.rotation.transpose() * t.normal))));
+    return !(t.height(lowest) < 0 && is_over(t, lowest, 0));
+  }
+
+  /// Of pushes within 5° the deepest stays, which is the last.
+  void keep_push(const Answer& a) {
+    for (Answer& push : pushes_)
+      if (push.normal.dot(a.normal) > 0.9962) {
+        push = a;
+        return;
+      }
+    pushes_.push_back(a);
+  }
+
+  std::vector<Answer> answers_, pushes_;
+  std::vector<Index> false_;
+};
+
+}  // namespace delassus::inner
