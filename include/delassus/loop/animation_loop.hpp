@@ -255,6 +255,9 @@ class AnimationLoop {
   double begin_flights(double tolerance);
   /// Whether pairs that touch now, within `reach` (m), and did not push in the last step, close: for `meet`.
   bool closes(double reach);
+  /// When the first pair touches that was seen apart by more than `reach` (m) where the present flight began,
+  /// if its velocity stays, s; infinite without one.
+  double soonest_touch(double reach);
   /// Whether flights from here may be of any length, as those of an integrator that closes gaps may not where
   /// joints are open.
   bool may_locate() const;

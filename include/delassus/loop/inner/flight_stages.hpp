@@ -5,6 +5,8 @@
 #include <delassus/loop/inner/loop_stages.hpp>
 #include <delassus/loop/stages/impact_bias.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -27,6 +29,25 @@ struct KickAndDrift {
   void advance(auto& set, double h) const { set.advance(h); }
 };
 
+/// f(gap, rate), m and m/s, of each contact in the book, at the poses and velocities of now.
+template <class Laws, class F>
+void each_rate_of_contact(const auto& world, Laws& laws, auto& collision, auto& work, const F& f) {
+  if (work.contacts.points.empty()) return;
+  work.contacts.record();
+  place_ends(collision, work.contacts.results);
+  route_contacts(laws, work.contacts, work.materials);
+  delassus::linearize(world, laws, work.rows);
+  for_each_index<Laws::pool_count>([&](auto p) {
+    const auto& pool = std::as_const(work.rows).template pool<p>();
+    if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>)
+      for (Index i = 0; i < pool.items(); ++i) {
+        const auto u = rate(
+            pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
+        f(double(pool.phi[i][0]), double(u[0]));
+      }
+  });
+}
+
 }  // namespace inner
 
 template <class... Policies>
@@ -37,6 +58,7 @@ double AnimationLoop<Policies...>::begin_flights(double tolerance) {
     flights.begin(world(), laws(), work_.contacts, report_);
     detect();
     report_.contacts = 0;
+    flights.ahead = work_.contacts.points;
     flights.note_touching(work_.contacts, tolerance);
     if constexpr (requires { Parts::Integrator::shortest_flight; }) {
       delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
@@ -58,26 +80,29 @@ bool AnimationLoop<Policies...>::closes(double reach) {
   bool is_closing = false;
   if constexpr (locates_impacts) {
     auto& flights = work_.substeps;
-    auto& contacts = work_.contacts;
-    std::erase_if(contacts.points,
+    std::erase_if(work_.contacts.points,
                   [&](const ContactPoint& p) { return !(p.gap <= reach) || flights.stays(p.pair); });
-    if (contacts.points.empty()) return false;
-    contacts.record();
-    inner::place_ends(part<role::Collision>(), contacts.results);
-    route_contacts(laws(), contacts, work_.materials);
-    delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
-    for_each_index<Laws::pool_count>([&](auto p) {
-      const auto& pool = std::as_const(work_.rows).template pool<p>();
-      if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws().template pool<p>().law)>>)
-        for (Index i = 0; i < pool.items(); ++i)
-          is_closing =
-              is_closing || inner::rate(
-                                pool, i, std::as_const(*this).world(),
-                                [](const auto& set) -> const auto& { return set.velocity(); })[0] < 0;
-    });
+    inner::each_rate_of_contact(std::as_const(*this).world(), laws(), part<role::Collision>(), work_,
+                                [&](double, double rate) { is_closing = is_closing || rate < 0; });
     if (is_closing) flights.forget_impulses(laws());
   }
   return is_closing;
+}
+
+template <class... Policies>
+double AnimationLoop<Policies...>::soonest_touch(double reach) {
+  double soonest = std::numeric_limits<double>::infinity();
+  if constexpr (locates_impacts) {
+    auto& flights = work_.substeps;
+    work_.contacts.points = flights.ahead;
+    std::erase_if(work_.contacts.points,
+                  [&](const ContactPoint& p) { return p.gap <= reach || flights.stays_ahead(p.pair); });
+    inner::each_rate_of_contact(std::as_const(*this).world(), laws(), part<role::Collision>(), work_,
+                                [&](double gap, double rate) {
+                                  if (rate < 0) soonest = std::min(soonest, -gap / rate);
+                                });
+  }
+  return soonest;
 }
 
 template <class... Policies>
@@ -125,6 +150,7 @@ void AnimationLoop<Policies...>::meet(double reach) {
     auto& contacts = work_.contacts;
     h_ = flights.h;
     flights.add_impulses(laws());
+    flights.ahead = contacts.points;
     std::erase_if(contacts.points, [&](const ContactPoint& p) { return !(p.gap <= reach); });
     flights.note_touching(contacts, reach);
     contacts.record();

@@ -28,7 +28,8 @@ class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...
  public:
   using World = delassus::World<Sets...>;
   using Laws = Constraints<L...>;
-  bool are_joints_closed = true;  ///< where the step began
+  bool are_joints_closed = true;    ///< where the step began
+  std::vector<ContactPoint> ahead;  ///< what was seen where the present flight began
 
   void begin(World& world, Laws& laws, const ContactBook& book, const StepReport& report) {
     this->keep_loads(world);
@@ -69,10 +70,11 @@ class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...
       if (!least || p.gap < least->gap) least = &p;
     if (!least) return {};
     const bool is_old = std::find(touching_.begin(), touching_.end(), name(*least)) != touching_.end();
-    return {least->gap, is_old, is_before_impacts_ && stays(least->pair)};
+    return {least->gap, is_old, stays_ahead(least->pair)};
   }
   /// Whether the pair pushed in the last step.
   bool stays(std::uint64_t pair) const { return book_.pushed(pair); }
+  bool stays_ahead(std::uint64_t pair) const { return is_before_impacts_ && stays(pair); }
   /// The contacts that touch where the next flight begins.
   void note_touching(const ContactBook& book, double reach) {
     touching_.clear();
