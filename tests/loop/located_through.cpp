@@ -54,4 +54,20 @@ TEST_CASE("a ball that is through a thin plate by the end of a step meets it on 
   }
 }
 
+// The hit at the start of the step begins another flight, whose way is looked along as well.
+TEST_CASE("a ball meets a thin plate on the way of a flight that began with another ball's hit") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 0.5}}},
+                     ImplicitMidpoint{}, LocatedImpacts{}, NativeCollision{}};
+  auto& set = rigid_bodies(loop);
+  set.gravity.setZero();
+  set.add({.shape = Box{4, 4, 0.001}, .motion = Motion::fixed});
+  const auto hits =
+      set.add({.position = {1, 0, 0.0505}, .velocity = {0, 0, -2}, .mass = 1.0, .shape = Sphere{0.05}});
+  const auto ball =
+      set.add({.position = {-1, 0, 0.0605}, .velocity = {0, 0, -20}, .mass = 1.0, .shape = Sphere{0.05}});
+  loop.step(0.01);
+  CHECK(std::abs(set.velocity(hits)[2] - 1) < 1e-12);
+  CHECK(std::abs(set.velocity(ball)[2] - 10) < 1e-12);
+}
+
 }  // namespace located_through_tests

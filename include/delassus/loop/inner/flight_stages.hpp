@@ -58,7 +58,8 @@ double AnimationLoop<Policies...>::begin_flights(double tolerance) {
     flights.begin(world(), laws(), work_.contacts, report_);
     detect();
     report_.contacts = 0;
-    flights.ahead = work_.contacts.points;
+    flights.see(work_.contacts);
+    flights.look_ahead();
     flights.note_touching(work_.contacts, tolerance);
     if constexpr (requires { Parts::Integrator::shortest_flight; }) {
       delassus::linearize(std::as_const(*this).world(), laws(), work_.rows);
@@ -94,7 +95,7 @@ double AnimationLoop<Policies...>::soonest_touch(double reach) {
   double soonest = std::numeric_limits<double>::infinity();
   if constexpr (locates_impacts) {
     auto& flights = work_.substeps;
-    work_.contacts.points = flights.ahead;
+    work_.contacts.points = flights.ahead();
     std::erase_if(work_.contacts.points,
                   [&](const ContactPoint& p) { return p.gap <= reach || flights.stays_ahead(p.pair); });
     inner::each_rate_of_contact(std::as_const(*this).world(), laws(), part<role::Collision>(), work_,
@@ -139,6 +140,7 @@ auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
     const CollisionReport seen{.pairs = report_.pairs, .queries = report_.queries};
     report_ = flown;  // what overlaps here is no end of a step
     report_.pairs = seen.pairs, report_.queries = seen.queries;
+    work_.substeps.see(work_.contacts);
     return work_.substeps.landing(work_.contacts);
   }
 }
@@ -150,7 +152,6 @@ void AnimationLoop<Policies...>::meet(double reach) {
     auto& contacts = work_.contacts;
     h_ = flights.h;
     flights.add_impulses(laws());
-    flights.ahead = contacts.points;
     std::erase_if(contacts.points, [&](const ContactPoint& p) { return !(p.gap <= reach); });
     flights.note_touching(contacts, reach);
     contacts.record();

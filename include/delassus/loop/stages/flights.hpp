@@ -28,8 +28,7 @@ class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...
  public:
   using World = delassus::World<Sets...>;
   using Laws = Constraints<L...>;
-  bool are_joints_closed = true;    ///< where the step began
-  std::vector<ContactPoint> ahead;  ///< what was seen where the present flight began
+  bool are_joints_closed = true;  ///< where the step began
 
   void begin(World& world, Laws& laws, const ContactBook& book, const StepReport& report) {
     this->keep_loads(world);
@@ -41,6 +40,7 @@ class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...
   /// What is now in the loop is done: the next flight begins here.
   void go_on(World& world, Laws& laws, const StepReport& report) {
     is_before_impacts_ = false;
+    look_ahead();
     this->give_loads(world);
     forget_impulses(laws);  // no start for a flight of another length
     keep(world, laws, report);
@@ -82,6 +82,11 @@ class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...
       if (p.gap <= reach) touching_.push_back(name(p));
   }
 
+  /// What is in sight where a flight ends, and ahead of one that begins there.
+  void see(const ContactBook& book) { seen_ = book.points; }
+  void look_ahead() { ahead_ = seen_; }
+  const std::vector<ContactPoint>& ahead() const { return ahead_; }
+
   /// The contacts of the last step, whose impulses are the start of those that stay.
   const ContactBook& contacts_before() const { return book_; }
 
@@ -107,6 +112,7 @@ class Flights<World<Sets...>, Constraints<L...>> : public PartSums<World<Sets...
   StepReport report_;
   ContactBook book_;
   std::vector<ContactResult> met_;
+  std::vector<ContactPoint> seen_, ahead_;
   std::vector<Name> touching_;
   bool is_before_impacts_ = true;
 };
