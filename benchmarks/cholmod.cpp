@@ -3,8 +3,8 @@
 //
 // Factorization of a soft box and the compliance of nodes of its top, against CHOLMOD's supernodal
 // factorization with METIS' order and its solve with many right-hand sides, turn by turn in one run; CPU time
-// of one thread (set OPENBLAS_NUM_THREADS=1). The BLAS is whichever the system has. Arguments: nodes (of
-// tetrahedral_box.hpp), touched nodes.
+// of one thread, which OpenBLAS is told to keep to. The BLAS is whichever the system has; another one is to
+// be told by its own variable. Arguments: nodes (of tetrahedral_box.hpp), touched nodes.
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
 #include <cholmod.h>
@@ -14,6 +14,8 @@
 
 using namespace delassus;
 using namespace tetrahedral_box;
+
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));  // null where the BLAS is another one
 
 namespace {
 
@@ -26,6 +28,7 @@ struct Cholmod {
   cholmod_dense *B = nullptr, *Y = nullptr, *work = nullptr, *more = nullptr;
 
   explicit Cholmod(const Box& box) : A(box.sparse().triangularView<Eigen::Lower>()) {
+    if (openblas_set_num_threads) openblas_set_num_threads(1);
     cholmod_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.nmethods = 1;
