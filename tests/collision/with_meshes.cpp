@@ -156,6 +156,27 @@ TEST_CASE("a box pushed against the rim of a meshed box is pushed back sideways,
   }
 }
 
+TEST_CASE(
+    "a box in the side of a cliff of many triangles is told the way out of the side, and no depth below the "
+    "top") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const TriangleMesh cliff = fine_box(1, 1, 1, 20);
+  for (int n = 0; n < 200; ++n) {
+    const Mat3 turn = Eigen::AngleAxisd(M_PI * uniform(random), Vec3(0, 0, 1)).toRotationMatrix();
+    const double reach = 0.15 * std::abs(turn(0, 0)) + 0.1 * std::abs(turn(0, 1));
+    // Its middle is above the top, so it has 1 dm less 5 cm and more below it.
+    const double depth = 0.0015 + 0.03 * uniform(random), over = 0.005 + 0.045 * uniform(random);
+    MeshScene scene;
+    scene.add(scene.collision.add(cliff), {0, 0, 0}, Mat3::Identity(), false);
+    scene.add(Box{0.3, 0.2, 0.2}, {0.5 + reach - depth, 0.2 * uniform(random), 0.5 + over}, turn);
+    scene.detect();
+    CAPTURE(n, depth);
+    REQUIRE(!scene.contacts.empty());
+    for (const ContactPoint& p : scene.contacts) CHECK(p.gap > -depth - 1e-9);
+  }
+}
+
 TEST_CASE("what slides over coplanar triangles never leaves their plane, and keeps its contacts' names",
           "[table]") {
   // 100 m over 20 000 triangles where DELASSUS_SLIDE is set; a tenth of both else.

@@ -26,8 +26,8 @@ class PatchDoubts {
   }
   /// Judges what has been added; `triangle(t)` is the t-th triangle, the shape is posed in its frame. What
   /// doubtful answers say is false where it is deeper, by 5e-3 L, than all that is sure, or without any than
-  /// the shallowest, and a push off one that is believed and as much shallower takes the shape off the
-  /// triangle.
+  /// the shallowest, and a push off one that is as much shallower takes the shape off the triangle. Where the
+  /// two face more than 45° apart, that is a push out of the whole plane of the other.
   void judge(const auto& triangle, const Shape& shape, const Pose& pose, double scale) {
     const auto is_doubtful = [](const Answer& a) { return a.trust == PatchTrust::doubtful; };
     if (std::none_of(answers_.begin(), answers_.end(), is_doubtful)) return;
@@ -38,17 +38,23 @@ class PatchDoubts {
     double limit = answers_[0].gap;
     for (const Answer& a : answers_)
       if (!is_doubtful(a)) limit = a.gap;
+    const auto depth_along = [&](const Answer& a) {
+      const Vec3 lowest = pose.to_world(support(shape, Vec3(-(pose.rotation.transpose() * a.normal))));
+      return a.normal.dot(core_support(triangle(a.triangle), a.normal) - lowest);
+    };
     pushes_.clear();
     for (const Answer& a : answers_) {
+      const bool is_deep = is_doubtful(a) && a.gap < limit - slack;
+      const double depth = is_deep ? depth_along(a) : 0;
       const auto frees = [&](const Answer& push) {
-        if (!(push.gap > a.gap + slack)) return false;
-        const Vec3 by = (std::max(-push.gap, 0.0) + slack) * push.normal;
+        const bool is_steep = push.normal.dot(a.normal) < 0.7;
+        const double way = is_steep ? depth_along(push) : -push.gap;
+        if (!(way < (is_steep ? depth : -a.gap) - slack)) return false;
+        const Vec3 by = (std::max(way, 0.0) + slack) * push.normal;
         return is_off(triangle(a.triangle), shape, {pose.position + by, pose.rotation});
       };
-      if (is_doubtful(a) && a.gap < limit - slack && std::any_of(pushes_.begin(), pushes_.end(), frees))
-        false_.push_back(a.triangle);
-      else
-        keep_push(a);
+      if (is_deep && std::any_of(pushes_.begin(), pushes_.end(), frees)) false_.push_back(a.triangle);
+      keep_push(a);
     }
     std::sort(false_.begin(), false_.end());
   }
