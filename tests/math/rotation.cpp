@@ -17,6 +17,14 @@ Vec3 free_rate(const Mat3& inertia, const Vec3& rate, double h) {
   return midpoint_rate<double>(inertia, rate, momentum, momentum, h).rate;
 }
 
+TEST_CASE("a turn by so many radians that their squares overflow is half a turn") {
+  for (const double angle : {1e100, 1e155, 1e300, 1.7e308}) {
+    const Quat q = cayley(Vec3(Vec3(0, 0.6, -0.8) * angle));
+    CHECK(std::abs(q.coeffs().norm() - 1) <= 8 * std::numeric_limits<double>::epsilon());
+    CHECK((q.vec() - Vec3(0, 0.6, -0.8)).norm() <= 8 * std::numeric_limits<double>::epsilon());
+  }
+}
+
 }  // namespace
 
 TEST_CASE("the exponential of a vector along z is a turn by its length") {
@@ -113,9 +121,9 @@ TEST_CASE("an impulse enters the spatial angular momentum of the midpoint rule e
   }
 }
 
-// Ω₊ = I⁻¹ Qᵀ I Ω: the spatial momentum stays by construction, the energy only at a root of the rule's equation, of which a step
-// may lack 128 eps of the momentum. 6000 steps of one sign make 6000 · 128 eps = 1.7e-10 of the energy. No root: 0.1 and more.
-// Squares of the last speed overflow.
+// Ω₊ = I⁻¹ Qᵀ I Ω: the spatial momentum stays by construction, the energy only at a root of the rule's
+// equation, of which a step may lack 128 eps of the momentum. 6000 steps of one sign make 6000 · 128 eps
+// = 1.7e-10 of the energy. No root: 0.1 and more. Squares of the last speed overflow.
 TEST_CASE("a body that turns by many radians in a step keeps its energy") {
   const double h = 1.0 / 60;
   for (const Vec3& moments : {Vec3(1, 2, 3), Vec3(1, 1, 1e-6), Vec3(1, 1, 2), Vec3(1, 1.001, 1.9)})
@@ -155,18 +163,22 @@ TEST_CASE("a quaternion that is nearly a unit one gives a rotation, and becomes 
     const Quat q(size * unit_size.w(), size * unit_size.x(), size * unit_size.y(), size * unit_size.z());
     const Mat3 R = rotation_matrix(q);
     CAPTURE(size);
-    // Sums of three products, each factor within 4 roundings; the squares of 2e-9 are no more than a twentieth of one.
+    // Sums of three products, each factor within 4 roundings; the squares of 2e-9 are no more than a
+    // twentieth of one.
     REQUIRE(std::abs(unit_again(q).norm() - 1) < 4 * 0x1p-53);
     REQUIRE((R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 3e-15);
     REQUIRE((R - unit_size.toRotationMatrix()).cwiseAbs().maxCoeff() < 3e-15);
   }
 }
 
-// Ω̄ = Ω/2 whatever the axes: a rounding of the momentum before is the least that the equation can lack, that after being none.
+// Ω̄ = Ω/2 whatever the axes: a rounding of the momentum before is the least that the equation can lack, that
+// after being none.
 TEST_CASE("a body that is braked to rest within a step turns by half of what it would have") {
-  const Mat3 inertia = exponential(Vec3(0.4, 0.2, 1)).toRotationMatrix() * tumbler() * exponential(Vec3(0.4, 0.2, 1)).toRotationMatrix().transpose();
+  const Mat3 inertia = exponential(Vec3(0.4, 0.2, 1)).toRotationMatrix() * tumbler() *
+                       exponential(Vec3(0.4, 0.2, 1)).toRotationMatrix().transpose();
   for (const double left : {0.0, 1e-9, 1e-3}) {
-    const Vec3 axis = Vec3(1, -2, 0.5).normalized(), rate = 2 * axis, before = inertia * rate, after = left * before;
+    const Vec3 axis = Vec3(1, -2, 0.5).normalized(), rate = 2 * axis, before = inertia * rate,
+               after = left * before;
     const Quat turn = midpoint_turn<double>(inertia, rate, before, after, 0.01);
     CAPTURE(left);
     // The momentum after has turned with the body by 0.01 rad: c is met to the second order of the turn.

@@ -7,10 +7,17 @@
 
 namespace delassus {
 
-/// q / |q|.
+/// q / |q|, also where the squares of q overflow.
 template <class T>
 inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
   const T size = q.norm();
+  if (!(size <= std::numeric_limits<T>::max())) {
+    const T largest = q.coeffs().cwiseAbs().maxCoeff();
+    if (largest <= std::numeric_limits<T>::max()) {
+      const T s = T(1) / largest;
+      return unit(Eigen::Quaternion<T>(s * q.w(), s * q.x(), s * q.y(), s * q.z()));
+    }
+  }
   return {q.w() / size, q.x() / size, q.y() / size, q.z() / size};
 }
 
