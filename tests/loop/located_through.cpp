@@ -70,4 +70,22 @@ TEST_CASE("a ball meets a thin plate on the way of a flight that began with anot
   CHECK(std::abs(set.velocity(ball)[2] - 10) < 1e-12);
 }
 
+TEST_CASE("two balls that are through a thin plate one after the other both meet it, and a slow one") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 0.5}}},
+                     ImplicitMidpoint{}, LocatedImpacts{}, NativeCollision{}};
+  auto& set = rigid_bodies(loop);
+  set.gravity.setZero();
+  set.add({.shape = Box{4, 4, 0.001}, .motion = Motion::fixed});
+  const auto drop = [&](double x, double gap, double speed) {
+    return set.add(
+        {.position = {x, 0, 0.0505 + gap}, .velocity = {0, 0, -speed}, .mass = 1.0, .shape = Sphere{0.05}});
+  };
+  const auto first = drop(-1, 0.01, 20), second = drop(0, 0.0295, 20), slow = drop(1, 0.018, 2);
+  loop.step(0.01);
+  CHECK(std::abs(set.velocity(first)[2] - 10) < 1e-12);
+  CHECK(std::abs(set.velocity(second)[2] - 10) < 1e-12);
+  CHECK(std::abs(set.velocity(slow)[2] - 1) <
+        1e-12);  // overlaps at the end of the step, when they are through
+}
+
 }  // namespace located_through_tests

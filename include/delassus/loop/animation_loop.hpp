@@ -308,6 +308,8 @@ class AnimationLoop {
     return h_;
   }
   void set_part(double h, bool is_last);
+  /// Detects for the flights; the report keeps what the flight said but for the counts.
+  void see();
   /// The rows of the last step speak of what has been taken out: there are none until the next one.
   void forget_rows() {
     if constexpr (has_constraints) {

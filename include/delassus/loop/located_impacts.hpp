@@ -45,16 +45,14 @@ struct LocatedImpacts {
     }
     for (int impacts = 0;; ++impacts) {
       const double soonest = loop.soonest_touch(tolerance);
-      auto end = loop.fly(left, true);
+      decltype(loop.fly(left, true)) end;
       double until = left;
-      for (double share = 0.5; !(end.gap < -tolerance) && soonest < left && share > 0.01; share *= 0.5) {
-        until = soonest + share * (left - soonest);  // through something thin?
+      for (double share = 1. / 64; soonest < left && share < 1 && !(end.gap < -tolerance); share *= 2) {
+        until = soonest + share * (left - soonest);  // who will be through something thin?
         end = loop.fly(until, false);
       }
-      if (!(end.gap < -tolerance)) {
-        if (until < left) loop.fly(left, true);
-        break;
-      }
+      if (!(end.gap < -tolerance)) end = loop.fly(until = left, true);
+      if (!(end.gap < -tolerance)) break;
       Found found;
       if (!end.stays && impacts < max_impacts && loop.may_locate())
         found = find(loop, {0, near}, {until, end.gap});

@@ -114,6 +114,18 @@ void AnimationLoop<Policies...>::set_part(double h, bool is_last) {
 }
 
 template <class... Policies>
+void AnimationLoop<Policies...>::see() {
+  if constexpr (locates_impacts) {
+    const StepReport flown = report_;
+    detect();
+    const CollisionReport seen{.pairs = report_.pairs, .queries = report_.queries};
+    report_ = flown;  // what overlaps here is no end of a step
+    report_.pairs = seen.pairs, report_.queries = seen.queries;
+    work_.substeps.see(work_.contacts);
+  }
+}
+
+template <class... Policies>
 auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
   if constexpr (locates_impacts) {
     set_part(h, is_last);
@@ -135,12 +147,7 @@ auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
       inner::linearize_to_build(*this);
       inner::solve_to_advance(*this);
     }
-    const StepReport flown = report_;
-    detect();
-    const CollisionReport seen{.pairs = report_.pairs, .queries = report_.queries};
-    report_ = flown;  // what overlaps here is no end of a step
-    report_.pairs = seen.pairs, report_.queries = seen.queries;
-    work_.substeps.see(work_.contacts);
+    see();
     return work_.substeps.landing(work_.contacts);
   }
 }
@@ -183,6 +190,7 @@ void AnimationLoop<Policies...>::meet(double reach) {
     });
     flights.add_impulses(laws());
     flights.add_contacts(contacts);
+    see();  // with what is ahead of the new velocities in the whole of a step
     flights.go_on(world(), laws(), report_);
   }
 }
