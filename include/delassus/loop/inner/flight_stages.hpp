@@ -3,7 +3,10 @@
 
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/inner/loop_stages.hpp>
+#include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/stages/impact_bias.hpp>
+#include <delassus/loop/stages/linearize.hpp>
+#include <delassus/loop/stages/pass_on_impacts.hpp>
 
 #include <algorithm>
 #include <limits>
