@@ -5,6 +5,7 @@
 #include "scenes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "catch.hpp"
@@ -37,55 +38,54 @@ TEST_CASE("a box dropped on a height field bounces, flat or leaning, however hig
       }
 }
 
-// Without a look at what was ahead the ball is 8 cm below the plate when the step ends, and apart from it.
+namespace {
+
+/// A plate of 1 mm about z = 0, without weight, and balls of 5 cm that come down on it.
+auto plate(double e) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, e}}},
+                     ImplicitMidpoint{}, LocatedImpacts{}, NativeCollision{}};
+  auto& set = rigid_bodies(loop);
+  set.gravity.setZero();
+  set.add({.shape = Box{4, 4, 0.001}, .motion = Motion::fixed});
+  return loop;
+}
+auto drop(auto& loop, double x, double gap, double speed) {
+  return rigid_bodies(loop).add(
+      {.position = {x, 0.2, 0.0505 + gap}, .velocity = {0, 0, -speed}, .mass = 1.0, .shape = Sphere{0.05}});
+}
+
+}  // namespace
+
+// Without a look at what was ahead the ball is 20 cm lower when the step ends, and apart from the plate.
 TEST_CASE("a ball that is through a thin plate by the end of a step meets it on the way") {
   for (const double e : {0.0, 0.5, 1.0}) {
-    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, e}}},
-                       ImplicitMidpoint{}, LocatedImpacts{}, NativeCollision{}};
-    auto& set = rigid_bodies(loop);
-    set.gravity.setZero();
-    set.add({.shape = Box{2, 2, 0.001}, .motion = Motion::fixed});
-    const auto ball = set.add(
-        {.position = {0.1, 0.2, 0.0605}, .velocity = {0, 0, -20}, .mass = 1.0, .shape = Sphere{0.05}});
+    auto loop = plate(e);
+    const auto ball = drop(loop, 0.1, 0.01, 20);
     loop.step(0.01);
     // It is at the plate after 0.5 ms and leaves it with e times its speed.
-    CHECK(std::abs(set.velocity(ball)[2] - 20 * e) < 1e-12);
-    CHECK(std::abs(set.position(ball)[2] - (0.0505 + 20 * e * 0.0095)) < 1e-11);
+    CHECK(std::abs(rigid_bodies(loop).velocity(ball)[2] - 20 * e) < 1e-12);
+    CHECK(std::abs(rigid_bodies(loop).position(ball)[2] - (0.0505 + 20 * e * 0.0095)) < 1e-11);
   }
 }
 
 // The hit at the start of the step begins another flight, whose way is looked along as well.
 TEST_CASE("a ball meets a thin plate on the way of a flight that began with another ball's hit") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 0.5}}},
-                     ImplicitMidpoint{}, LocatedImpacts{}, NativeCollision{}};
-  auto& set = rigid_bodies(loop);
-  set.gravity.setZero();
-  set.add({.shape = Box{4, 4, 0.001}, .motion = Motion::fixed});
-  const auto hits =
-      set.add({.position = {1, 0, 0.0505}, .velocity = {0, 0, -2}, .mass = 1.0, .shape = Sphere{0.05}});
-  const auto ball =
-      set.add({.position = {-1, 0, 0.0605}, .velocity = {0, 0, -20}, .mass = 1.0, .shape = Sphere{0.05}});
+  auto loop = plate(0.5);
+  const auto hits = drop(loop, 1, 0, 2), ball = drop(loop, -1, 0.01, 20);
   loop.step(0.01);
-  CHECK(std::abs(set.velocity(hits)[2] - 1) < 1e-12);
-  CHECK(std::abs(set.velocity(ball)[2] - 10) < 1e-12);
+  CHECK(std::abs(rigid_bodies(loop).velocity(hits)[2] - 1) < 1e-12);
+  CHECK(std::abs(rigid_bodies(loop).velocity(ball)[2] - 10) < 1e-12);
 }
 
-TEST_CASE("two balls that are through a thin plate one after the other both meet it, and a slow one") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 0.5}}},
-                     ImplicitMidpoint{}, LocatedImpacts{}, NativeCollision{}};
-  auto& set = rigid_bodies(loop);
-  set.gravity.setZero();
-  set.add({.shape = Box{4, 4, 0.001}, .motion = Motion::fixed});
-  const auto drop = [&](double x, double gap, double speed) {
-    return set.add(
-        {.position = {x, 0, 0.0505 + gap}, .velocity = {0, 0, -speed}, .mass = 1.0, .shape = Sphere{0.05}});
-  };
-  const auto first = drop(-1, 0.01, 20), second = drop(0, 0.0295, 20), slow = drop(1, 0.018, 2);
+// The slow one overlaps at the end of the step, when the others would be through.
+TEST_CASE("balls that would be through a thin plate one after the other meet it, and a slow one does") {
+  auto loop = plate(0.5);
+  const auto first = drop(loop, -1, 0.01, 20), second = drop(loop, 0, 0.0295, 20),
+             slow = drop(loop, 1, 0.018, 2);
   loop.step(0.01);
-  CHECK(std::abs(set.velocity(first)[2] - 10) < 1e-12);
-  CHECK(std::abs(set.velocity(second)[2] - 10) < 1e-12);
-  CHECK(std::abs(set.velocity(slow)[2] - 1) <
-        1e-12);  // overlaps at the end of the step, when they are through
+  CHECK(std::abs(rigid_bodies(loop).velocity(first)[2] - 10) < 1e-12);
+  CHECK(std::abs(rigid_bodies(loop).velocity(second)[2] - 10) < 1e-12);
+  CHECK(std::abs(rigid_bodies(loop).velocity(slow)[2] - 1) < 1e-12);
 }
 
 }  // namespace located_through_tests
