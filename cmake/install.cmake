@@ -7,7 +7,7 @@ install(TARGETS delassus EXPORT delassus-core FILE_SET HEADERS)
 install(EXPORT delassus-core NAMESPACE delassus:: DESTINATION ${package_dir})
 
 # What the config must know of each component, as lines of CMake.
-set(component_table "set(delassus_known_components ${DELASSUS_COMPONENTS})\n")
+set(component_table "set(delassus_known_components ${DELASSUS_COMPONENTS} compiled)\n")
 foreach(name IN LISTS DELASSUS_COMPONENTS)
   foreach(fact PACKAGE VERSION DEBIAN FIND)
     string(APPEND component_table "set(delassus_${name}_${fact} ${DELASSUS_${name}_${fact}})\n")
@@ -25,7 +25,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/delassus-config-version.c
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/delassus-config.cmake ${PROJECT_BINARY_DIR}/delassus-config-version.cmake
   DESTINATION ${package_dir})
-install(FILES ${CMAKE_CURRENT_LIST_DIR}/FindCHOLMOD.cmake DESTINATION ${package_dir})
+foreach(file FindCHOLMOD.cmake delassus-compiled.cmake delassus-compiled.cpp)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/${file} DESTINATION ${package_dir})
+endforeach()
 
 # Relative to the .pc file itself, so that a moved prefix still works.
 file(RELATIVE_PATH include_from_pc ${CMAKE_INSTALL_FULL_DATADIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})

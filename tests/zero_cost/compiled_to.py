@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""What programs are compiled to: no code of rooms they do not use, and no call inside a sweep.
+"""What programs are compiled to: no code of rooms they do not use, no call inside a sweep, and not twice what is compiled once.
 
   compiled_to.py <root> --compiler g++ [--system <include dir>...]
 
 Every instruction of a program has a line in its debug information (-g1), inlined ones too: the rooms those lines come from
 are the rooms whose code is in the program. A list of names would rot; this needs none.
 """
+import pathlib
 import re
 import sys
 import tempfile
@@ -13,6 +14,10 @@ import tempfile
 from programs import arguments, build, run, verdict
 
 ABSENT = ("collision", "constraints", "compliance", "solvers", "stabilisation")
+# Of what `delassus/compiled.hpp` leaves out, a header of each part that no other part needs.
+LEFT_OUT = {"a pair's distance": "collision/gjk.hpp", "the broad phase": "collision/inner/dynamic_tree.hpp",
+            "contact points": "collision/manifold.hpp", "a solve": "solvers/inner/momentum.hpp",
+            "Newton's method": "solvers/inner/proximal_point.hpp", "a body's input": "bodies/body_input.hpp"}
 
 
 def rooms_in(program):
@@ -75,6 +80,17 @@ def main():
         if calls:
             wrong.append(f"a sweep of Coulomb contacts calls {', '.join(sorted(calls))}")
         run(program)
+
+        once = pathlib.Path(folder) / "stack.o"
+        include = [word for directory in given.system for word in ("-isystem", directory)]
+        for header, is_left_out in ("delassus/delassus.hpp", False), ("delassus/compiled.hpp", True):
+            run(given.compiler, "-std=c++20", "-O2", "-g1", "-I", given.root / "include", *include, "-include", header,
+                "-c", given.root / "examples" / "stack.cpp", "-o", once)
+            found = rooms_in(once)
+            for what, place in LEFT_OUT.items():
+                room, name = place.split("/", 1)
+                if (name in found.get(room, ())) == is_left_out:
+                    wrong.append(f"a stack with <{header}> holds {'' if is_left_out else 'no '}code of {what}, {place}")
     return verdict(wrong)
 
 

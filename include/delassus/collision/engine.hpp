@@ -104,41 +104,12 @@ class CollisionEngine {
 
   /// Gives every pair of this step its place in the memory. Mostly the pairs are those of the last one, and
   /// stay.
-  void recall_pairs() {
-    const auto is_of = [](const RestingPair& m, const Job& job) { return m.pair == job.pair; };
-    if (std::equal(memory_.begin(), memory_.end(), jobs_.begin(), jobs_.end(), is_of)) return;
-    next_memory_.clear();
-    std::size_t last = 0;
-    for (const Job& job : jobs_) {
-      while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
-      if (last < memory_.size() && is_of(memory_[last], job))
-        next_memory_.push_back(memory_[last]);
-      else
-        next_memory_.emplace_back().pair = job.pair;
-    }
-    memory_.swap(next_memory_);
-    next_memory_.reserve(memory_.capacity());  // now, and not when the pairs change next in a warm step
-  }
+  void recall_pairs();
 
   /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in
   /// full.
   void collide(std::span<const Collider> colliders, const Job& job, double h,
-               const CollisionSettings& settings, RestingPair& pair, std::vector<ContactPoint>& out) {
-    const Collider &a = colliders[job.a], &b = colliders[job.b];
-    const inner::Summary &of_a = summary_[job.a], &of_b = summary_[job.b];
-    const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
-                      .rotation = a.pose.rotation.transpose() * b.pose.rotation};
-    const double scale = std::min(of_a.scale, of_b.scale);
-    const double reach =
-        settings.contact_distance + inner::widest_margin(of_a.speed + of_b.speed, scale, h, settings);
-    const std::uint64_t shapes = (of_a.shape * 3 + of_b.shape) * 11 + std::uint64_t(settings.max_points);
-    Vec3 n;
-    if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n))
-      return collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, out);
-    pair.normal = a.pose.rotation * n;
-    for (int k = 0; k < pair.count; ++k)
-      add(a, job, settings, pair.normal, repeated_[k], repeated_[k].name, out);
-  }
+               const CollisionSettings& settings, RestingPair& pair, std::vector<ContactPoint>& out);
 
   /// Distance, patch, choice of points, names.
   void collide_in_full(const Collider& a, const Collider& b, const Job& job, const Pose& b_in_a, double scale,
@@ -239,5 +210,42 @@ class CollisionEngine {
   std::vector<RestingPair> memory_, next_memory_;
   std::array<PatchPoint, PairMemory::capacity> repeated_;
 };
+
+template <NarrowKernel Kernel, BroadPhase Broad>
+void CollisionEngine<Kernel, Broad>::recall_pairs() {
+  const auto is_of = [](const RestingPair& m, const Job& job) { return m.pair == job.pair; };
+  if (std::equal(memory_.begin(), memory_.end(), jobs_.begin(), jobs_.end(), is_of)) return;
+  next_memory_.clear();
+  std::size_t last = 0;
+  for (const Job& job : jobs_) {
+    while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
+    if (last < memory_.size() && is_of(memory_[last], job))
+      next_memory_.push_back(memory_[last]);
+    else
+      next_memory_.emplace_back().pair = job.pair;
+  }
+  memory_.swap(next_memory_);
+  next_memory_.reserve(memory_.capacity());  // now, and not when the pairs change next in a warm step
+}
+
+template <NarrowKernel Kernel, BroadPhase Broad>
+void CollisionEngine<Kernel, Broad>::collide(std::span<const Collider> colliders, const Job& job, double h,
+                                             const CollisionSettings& settings, RestingPair& pair,
+                                             std::vector<ContactPoint>& out) {
+  const Collider &a = colliders[job.a], &b = colliders[job.b];
+  const inner::Summary &of_a = summary_[job.a], &of_b = summary_[job.b];
+  const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
+                    .rotation = a.pose.rotation.transpose() * b.pose.rotation};
+  const double scale = std::min(of_a.scale, of_b.scale);
+  const double reach =
+      settings.contact_distance + inner::widest_margin(of_a.speed + of_b.speed, scale, h, settings);
+  const std::uint64_t shapes = (of_a.shape * 3 + of_b.shape) * 11 + std::uint64_t(settings.max_points);
+  Vec3 n;
+  if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n))
+    return collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, out);
+  pair.normal = a.pose.rotation * n;
+  for (int k = 0; k < pair.count; ++k)
+    add(a, job, settings, pair.normal, repeated_[k], repeated_[k].name, out);
+}
 
 }  // namespace delassus

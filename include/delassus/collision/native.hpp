@@ -20,10 +20,15 @@ struct NativeDetection {
   void check() const { CollisionSettings{margin, contact_distance, max_points}.check("NativeCollision"); }
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
-                         const Filter& filter = {}) {
-    return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts, filter);
-  }
+                         const Filter& filter = {});
 };
+
+template <NarrowKernel Kernel, BroadPhase Broad>
+template <class Filter>
+CollisionReport NativeDetection<Kernel, Broad>::detect(std::span<const Collider> colliders, double h,
+                                                       std::vector<ContactPoint>& contacts, const Filter& filter) {
+  return engine.detect(colliders, h, {margin, contact_distance, max_points}, contacts, filter);
+}
 
 /// Trees of boxes, then formulas, GJK and EPA.
 using NativeCollision = NativeDetection<GjkEpa, BoxTree>;

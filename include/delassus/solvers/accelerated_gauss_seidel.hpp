@@ -78,54 +78,8 @@ struct BasicAcceleratedGaussSeidel {
   /// where it does not go round in circles it has three times as many once more, after the mixing.
   static int first_patience(int rows) { return std::clamp(3 * rows, 100, 400); }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
-    inner::Pursuit<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> pursuit(
-        *this, problem, work.best);
-    if (!pursuit.begin()) return pursuit.finish();
-    const auto exact = [&](auto&... curvature) {
-      return problem.template sweep<!Criterion::needs_measure>(relaxation, curvature...);
-    };
-    const auto one_projection = [&](auto& x, double& curvature) {
-      return problem.project_once(x, curvature);
-    };
-    auto newton = Newton::template stage<Criterion>(*this, problem, pursuit, work.newton);
-    const int shortest = first_patience(problem.row_count());
-    for (int patience = shortest;; patience *= 2) {
-      const auto open = [&](const char* name, int factor) {
-        if (pursuit.is_over()) return false;
-        if (name[0] != 'm' || patience > shortest) pursuit.back_to_best();
-        pursuit.open(name, factor * patience);
-        return true;
-      };
-      const auto momentum = [&](const char* name, int factor, auto& sweep) {
-        if (!open(name, factor)) return false;
-        for (;;) {
-          const bool circles =
-              inner::momentum(problem, pursuit, work.x, sweep, [&] { return newton.opens(); });
-          if (pursuit.is_over() || !newton.opens()) return circles;
-          newton.run();
-          if (pursuit.is_over()) return false;
-          pursuit.name(name);
-        }
-      };
-      bool is_in_circles = false;
-      for (int leaps = 0;; ++leaps) {
-        is_in_circles = momentum("momentum", 1, exact);
-        if (pursuit.is_over()) return pursuit.finish();
-        const inner::Drift way = inner::drift(problem, work.x);
-        if (leaps == 3 || !inner::leap(problem, pursuit, work.x, way, patience)) break;
-      }
-      if (inner::contradicts(problem, pursuit, work.x))
-        return compromise(problem, pursuit.finish(), work);
-      if (open("anderson", 1) && settle(pursuit, exact))
-        inner::anderson(problem, pursuit, work.history, exact);
-      if (!is_in_circles) momentum("momentum", 3, exact);
-      momentum("projection", 4, one_projection);
-      momentum("patient", 10, exact);
-      if (pursuit.is_over()) return pursuit.finish();
-    }
-  }
+  template <class Problem, class Space>
+  SolveReport solve(Problem& problem, Space& work) const;
 
  private:
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell: of
@@ -160,6 +114,56 @@ struct BasicAcceleratedGaussSeidel {
     return report;
   }
 };
+
+template <class Criterion, class Newton>
+template <class Problem, class Space>
+SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& problem, Space& work) const {
+  inner::Pursuit<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> pursuit(
+      *this, problem, work.best);
+  if (!pursuit.begin()) return pursuit.finish();
+  const auto exact = [&](auto&... curvature) {
+    return problem.template sweep<!Criterion::needs_measure>(relaxation, curvature...);
+  };
+  const auto one_projection = [&](auto& x, double& curvature) {
+    return problem.project_once(x, curvature);
+  };
+  auto newton = Newton::template stage<Criterion>(*this, problem, pursuit, work.newton);
+  const int shortest = first_patience(problem.row_count());
+  for (int patience = shortest;; patience *= 2) {
+    const auto open = [&](const char* name, int factor) {
+      if (pursuit.is_over()) return false;
+      if (name[0] != 'm' || patience > shortest) pursuit.back_to_best();
+      pursuit.open(name, factor * patience);
+      return true;
+    };
+    const auto momentum = [&](const char* name, int factor, auto& sweep) {
+      if (!open(name, factor)) return false;
+      for (;;) {
+        const bool circles =
+            inner::momentum(problem, pursuit, work.x, sweep, [&] { return newton.opens(); });
+        if (pursuit.is_over() || !newton.opens()) return circles;
+        newton.run();
+        if (pursuit.is_over()) return false;
+        pursuit.name(name);
+      }
+    };
+    bool is_in_circles = false;
+    for (int leaps = 0;; ++leaps) {
+      is_in_circles = momentum("momentum", 1, exact);
+      if (pursuit.is_over()) return pursuit.finish();
+      const inner::Drift way = inner::drift(problem, work.x);
+      if (leaps == 3 || !inner::leap(problem, pursuit, work.x, way, patience)) break;
+    }
+    if (inner::contradicts(problem, pursuit, work.x))
+      return compromise(problem, pursuit.finish(), work);
+    if (open("anderson", 1) && settle(pursuit, exact))
+      inner::anderson(problem, pursuit, work.history, exact);
+    if (!is_in_circles) momentum("momentum", 3, exact);
+    momentum("projection", 4, one_projection);
+    momentum("patient", 10, exact);
+    if (pursuit.is_over()) return pursuit.finish();
+  }
+}
 
 /// Sweeps alone: a tenth less compiler memory than with Newton's method, and the same for what soon ends.
 using AcceleratedSweeps = BasicAcceleratedGaussSeidel<>;

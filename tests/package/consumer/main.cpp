@@ -1,5 +1,9 @@
 // A user's program: everything the package installs must be there for it to compile.
+#ifdef CONSUMER_USES_COMPILED
+#include <delassus/compiled.hpp>
+#else
 #include <delassus/delassus.hpp>
+#endif
 
 #ifdef CONSUMER_USES_FCL
 #include <delassus/adapters/fcl.hpp>

@@ -112,31 +112,7 @@ struct RigidState {
   /// q and v of one dynamic body after a step from its velocity before and after the impulses; v is the one it ends
   /// with. `old_share` of the old velocity in the mean that moves it: 0 for kick and drift, ½ for the midpoint rule.
   /// False when q or v is not finite: then both stay.
-  bool drift(Index b, Velocity& v, const Velocity& next, T h, T old_share) {
-    const Vec3 old_x = x[b];
-    const Eigen::Quaternion<T> old_q = q[b];
-    x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
-    // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
-    const Vector kicked = R[b].transpose() * angular_part(next);
-    const Vector start = old_share > T(0) ? R[b].transpose() * angular_part(v) : kicked;
-    const Vector impulse = inertia[b] * kicked;
-    const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
-    const Vector spatial = R[b] * impulse;
-    q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], start, old_impulse, impulse, h));
-    turn(b);
-    // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
-    // ones.
-    const Vector rate = R[b] * own_rate(b, R[b].transpose() * spatial);
-    // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
-    if (!is_finite(x[b]) || !is_finite(rate)) [[unlikely]] {
-      x[b] = old_x;
-      q[b] = old_q;
-      turn(b);
-      return false;
-    }
-    v = twist<T>(linear_part(next), rate);
-    return true;
-  }
+  bool drift(Index b, Velocity& v, const Velocity& next, T h, T old_share);
 
   /// Kick and drift: the same after the impulses, the free rotation by turns.
   bool drift(Index b, Velocity& v, const Velocity& next, T h, ByTurns) {
@@ -153,5 +129,32 @@ struct RigidState {
 
   void memory(auto& archive) { archive(x, q, R, inertia, inverse_inertia, inverse_inertia_world, mass, inverse_mass); }
 };
+
+template <class T>
+bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old_share) {
+  const Vec3 old_x = x[b];
+  const Eigen::Quaternion<T> old_q = q[b];
+  x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
+  // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
+  const Vector kicked = R[b].transpose() * angular_part(next);
+  const Vector start = old_share > T(0) ? R[b].transpose() * angular_part(v) : kicked;
+  const Vector impulse = inertia[b] * kicked;
+  const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
+  const Vector spatial = R[b] * impulse;
+  q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], start, old_impulse, impulse, h));
+  turn(b);
+  // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
+  // ones.
+  const Vector rate = R[b] * own_rate(b, R[b].transpose() * spatial);
+  // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
+  if (!is_finite(x[b]) || !is_finite(rate)) [[unlikely]] {
+    x[b] = old_x;
+    q[b] = old_q;
+    turn(b);
+    return false;
+  }
+  v = twist<T>(linear_part(next), rate);
+  return true;
+}
 
 }  // namespace delassus::inner
