@@ -9,10 +9,11 @@ namespace reference_impacts_tests {
 
 using namespace reference_tests;
 
-TEST_CASE("a wall of a hundred boxes agrees with the reference") {
-  auto loop = contact_loop(0.5, 0.03, 1e-4);
+TEST_CASE("a wall of a hundred boxes agrees with the reference, while it is stepped to the same tolerance") {
+  auto loop = contact_loop(0.5, 0.034, 1e-10);
   demonstration::add_wall_of_boxes(bodies<RigidBodies>(loop.world()));
-  compare(loop, 1.0 / 240, 1);
+  // The blow is at step 62. Stepped to 1e-4 the wall is wedged from step 3 on, and neither gets there.
+  compare_at(loop, 1.0 / 240, {1, 3, 10, 40, 61});
 }
 
 TEST_CASE("the reference gets there in a pile of two hundred, while it lands and after") {
