@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -20,8 +21,11 @@ namespace delassus {
 ///   v₊ = w₊ + M₊⁻¹ (h/2 f(q₊) + H₊ᵀ λ₂),   H₊ v₊ = 0.
 ///
 /// w₊ is the velocity that the drift ends with. λ₁ by Newton's method with H₊ ∂q₊/∂λ₁ (the drift's own
-/// response), λ₂ by one solve. Forces that depend on v see v and, at the end, w₊ + (w − v). Source:
-/// docs/references.md, [Andersen1983], [LeimkuhlerReich2004] chapters 7 and 8.
+/// response), λ₂ by one solve. Forces that depend on v see v and, at the end, w₊ + (w − v). A drift in n
+/// parts closes φ = 0 after each h/n, by a λ₁ of its own along H where it begins; λ is the sum of all. That
+/// is n steps of the method without forces between two kicks: what they would take out of the velocity where
+/// two meet, λ₁ takes along the same H. Source: docs/references.md, [Andersen1983], [LeimkuhlerReich2004]
+/// chapters 7 and 8, and for the parts [LeimkuhlerMatthews2016].
 template <class World, class Laws, class Rows>
 class RattleStep;
 
@@ -37,14 +41,22 @@ class RattleStep<World<Sets...>, Laws, Rows> {
     SolveReport report{
         .status = Status::max_iterations, .factorizations = Rows::pool_count > 0, .ended_by = "Newton"};
     begin(world, rows, integrator, h);
-    find_places(world, laws, rows, integrator, h, report);
+    const int drifts = integrator.drifts;
+    if (drifts > 1) before_ = paths_;
+    for (int part = 0; part < drifts; ++part) {
+      if (part > 0) begin_part(world, rows, integrator, h, report);
+      report.status = Status::max_iterations;
+      find_places(world, laws, rows, integrator, h, report);
+      if (part == 0) std::swap(sent_, kicked_);
+      add(first_);
+      if (report.status == Status::max_iterations) break;
+    }
     find_velocities(world, rows, integrator, h);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = rows.template pool<p>().lambda;
-      for (std::size_t i = 0; i < lambda.size(); ++i)
-        lambda[i] = std::get<p>(first_.pools)[i] + std::get<p>(second_.pools)[i];
-    });
-    inner::keep_or_leave(world, laws, rows, integrator, equalities_, paths_, h * speed_, report);
+    add(second_);
+    for_each_index<Rows::pool_count>(
+        [&](auto p) { rows.template pool<p>().lambda = std::get<p>(sum_.pools); });
+    inner::keep_or_leave(world, laws, rows, integrator, equalities_, drifts > 1 ? before_ : paths_,
+                         h * speed_, report);
     return report;
   }
 
@@ -69,6 +81,22 @@ class RattleStep<World<Sets...>, Laws, Rows> {
       }
     });
     if (!(speed_ > 0)) speed_ = 1;
+    clear(rows, sum_);
+    guess(world, rows);
+    start_ = rows;
+  }
+  /// The next part of the drift begins where the last has ended, with the velocity it ended with: λ₁ along
+  /// the same H takes out of it what H w would be.
+  template <class I>
+  void begin_part(World& world, Rows& rows, const I& integrator, double h, SolveReport& report) {
+    world.each([&](auto& set, auto s) {
+      set.factor(integrator.scale(h));
+      inner::apply_inverse(set, rows, s);
+      std::get<s>(free_) = set.v_next;
+      for (const Index b : set.active()) std::get<s>(paths_).begin(set.state(), b, set.velocity()[b]);
+    });
+    clear(rows, first_);
+    report.factorizations += Rows::pool_count > 0;
     guess(world, rows);
     start_ = rows;
   }
@@ -97,8 +125,9 @@ class RattleStep<World<Sets...>, Laws, Rows> {
   template <class I>
   void find_places(World& world, const Laws& laws, Rows& rows, const I& integrator, double h,
                    SolveReport& report) {
+    const int most = report.factorizations - 1 + integrator.max_iterations;
     for (double last = std::numeric_limits<double>::infinity();;) {
-      drift(world, h);
+      drift(world, h / integrator.drifts);
       linearize(world, laws, rows);
       const double size = Equalities<Rows>::worst(rows) / (h * speed_);
       report.measure.residual = size;
@@ -106,11 +135,10 @@ class RattleStep<World<Sets...>, Laws, Rows> {
         report.status = Status::converged;
       else if (size > 0.5 * last && size <= 1e-7)
         report.status = Status::stalled;
-      if (report.status != Status::max_iterations || report.factorizations == integrator.max_iterations)
-        return;
+      if (report.status != Status::max_iterations || report.factorizations == most) return;
       last = size;
       ++report.factorizations;
-      if (!improve(world, rows, h)) return;
+      if (!improve(world, rows, h / integrator.drifts)) return;
     }
   }
   void drift(World& world, double h) {
@@ -118,7 +146,7 @@ class RattleStep<World<Sets...>, Laws, Rows> {
     Equalities<Rows>::push_all(start_, first_, next_of(world));
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active()) {
-        auto& w = std::get<s>(kicked_);
+        auto& w = std::get<s>(sent_);
         w.resize(set.blocks());
         w[b] = set.v_next[b];
         set.v_next[b] = std::get<s>(paths_).drift(set.state(), b, w[b], T(h), set.moves(b));
@@ -177,14 +205,28 @@ class RattleStep<World<Sets...>, Laws, Rows> {
           });
   }
 
+  static void clear(const Rows& rows, Impulses<Rows>& impulses) {
+    for_each_index<Rows::pool_count>([&](auto p) {
+      std::get<p>(impulses.pools)
+          .assign(std::size_t(rows.template pool<p>().items()), Vec<Rows::template rows_of<p>, T>::Zero());
+    });
+  }
+  void add(const Impulses<Rows>& impulses) {
+    for_each_index<Rows::pool_count>([&](auto p) {
+      auto& sum = std::get<p>(sum_.pools);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += std::get<p>(impulses.pools)[i];
+    });
+  }
+
   static auto next_of(World& world) {
     return [&world](auto s) -> auto& { return world.template set<s>().v_next; };
   }
 
-  std::tuple<typename Sets::Path...> paths_;
-  std::tuple<std::vector<typename Sets::Velocity>...> force_, free_, kicked_;
+  std::tuple<typename Sets::Path...> paths_, before_;  ///< from the start of a part, of the step
+  std::tuple<std::vector<typename Sets::Velocity>...> force_, free_, sent_,
+      kicked_;  ///< w of a part, of the first
   Rows start_;
-  Impulses<Rows> first_, second_;  ///< λ₁ and λ₂
+  Impulses<Rows> first_, second_, sum_;  ///< λ₁ and λ₂ of a part, and of all parts
   Equalities<Rows> equalities_;
   double speed_ = 1;
 };
