@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+namespace audit_tests {
+
 using namespace planted;
 
 TEST_CASE("an audit finds friction, restitution, a joint and bodies that a scene pays for and never uses") {
@@ -75,3 +77,5 @@ TEST_CASE("contacts that are never made are found") {
   CHECK(report.work == 0);
   CHECK_THROWS_WITH(Audit{0.0}.check(), "delassus: Audit: least 0 must lie in (0, 1)");
 }
+
+}  // namespace audit_tests

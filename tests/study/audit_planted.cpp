@@ -8,9 +8,9 @@
 
 #include <cmath>
 
-using namespace planted;
-
 namespace audit_planted_tests {
+
+using namespace planted;
 
 struct Idle {
   bool rod = true, limit = true;

@@ -5,12 +5,12 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
+#include <delassus/solvers/inner/compromise.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
 #include <delassus/solvers/inner/leap.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/newton_stage.hpp>
 #include <delassus/solvers/inner/pursuit.hpp>
-#include <delassus/solvers/inner/softened.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -91,28 +91,6 @@ struct BasicAcceleratedGaussSeidel {
       if (!pursuit.goes_on(sweep())) return false;
     return true;
   }
-
-  /// The rows contradict each other: λ of rows that yield, from zero, and the errors of the rows as they are.
-  template <class Problem, class Workspace>
-  SolveReport compromise(Problem& problem, SolveReport report, Workspace& work) const {
-    problem.must_complete();
-    inner::Softened<Problem> soft(problem);
-    const BasicAcceleratedGaussSeidel<Residual> solver{.tolerance = 1e-6, .max_iterations = 1000};
-    inner::Pursuit<Residual, BasicAcceleratedGaussSeidel<Residual>, inner::Softened<Problem>,
-                   decltype(work.best)>
-        pursuit(solver, soft, work.best);
-    if (pursuit.begin()) {
-      pursuit.open("compromise", solver.max_iterations);
-      inner::momentum(soft, pursuit, work.x,
-                      [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });
-    }
-    report.sweeps += pursuit.finish().sweeps;
-    soft.restore();
-    report.measure = problem.measure();
-    report.status = Status::infeasible;
-    report.ended_by = "compromise";
-    return report;
-  }
 };
 
 template <class Criterion, class Newton>
@@ -155,7 +133,7 @@ SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& probl
       if (leaps == 3 || !inner::leap(problem, pursuit, work.x, way, patience)) break;
     }
     if (inner::contradicts(problem, pursuit, work.x))
-      return compromise(problem, pursuit.finish(), work);
+      return inner::compromise(problem, pursuit.finish(), work.best, work.x);
     if (open("anderson", 1) && settle(pursuit, exact))
       inner::anderson(problem, pursuit, work.history, exact);
     if (!is_in_circles) momentum("momentum", 3, exact);

@@ -6,6 +6,8 @@
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/compromise.hpp>
+#include <delassus/solvers/inner/contradiction.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
 #include <delassus/solvers/inner/schur_complement.hpp>
 #include <delassus/solvers/inner/sweeps_then_newton.hpp>
@@ -26,9 +28,11 @@ namespace delassus {
 /// by `AcceleratedGaussSeidel`; S is dense, and an island with more than `max_swept_rows` rows of them is
 /// swept whole, as is one whose A couples bodies by springs. Where contacts jam and sweeps do not end it,
 /// Newton's method acts on S, `inner::SweepsThenNewton`. Impulses of joints start from zero: where rows
-/// depend on each other they come out the smallest that do. Rows that contradict each other get a compromise,
-/// as springs of 1e-4 of their compliance would give, and the status says so. Cannot mend what an explicit
-/// constraint force does to a heavy chain: see docs/decisions/0009.
+/// depend on each other they come out the smallest that do. Joints that contradict each other get a compromise,
+/// as springs of 1e-4 of their compliance would give: what the others ask for is hardly touched where a
+/// mechanism only stands at a dead centre. The status is `infeasible` where `inner::Contradiction` proves it.
+/// Contacts and limits that joints leave no way get the compromise of `AcceleratedGaussSeidel`. Cannot
+/// mend what an explicit constraint force does to a heavy chain: see docs/decisions/0009.
 template <class Criterion = Residual>
 struct BasicDirectGaussSeidel {
   static_assert(
@@ -46,11 +50,11 @@ struct BasicDirectGaussSeidel {
   struct Workspace {
     inner::DirectSystem<Rows> joints;
     inner::SchurComplement<Rows> others;
-    Impulses<Rows> before;
+    Impulses<Rows> before, after;
     typename inner::SweepsThenNewton<Criterion>::template Workspace<Rows> contacts;
     void reset(const Rows& rows) {
       contacts.reset(rows);
-      before.resize_like(rows);
+      for (auto* set : {&before, &after}) set->resize_like(rows);
     }
   };
 
@@ -72,23 +76,37 @@ struct BasicDirectGaussSeidel {
     if (!gather(problem, joints)) return sweeper(max_iterations).solve(problem, work.contacts.newton.sweeps);
     problem.tell(0, report.measure);
     report.ended_by = "factorization";
+    bool is_contradiction = false;
     for (const double epsilon : {fine, coarse}) {
       release(problem, joints);
       ++report.factorizations;
-      if (joints.factor(epsilon) && (settle(problem, joints) || epsilon == coarse)) break;
+      if (!joints.factor(epsilon)) continue;
+      if (settle(problem, joints)) break;
+      is_contradiction = is_contradiction || contradicts(problem, work);
     }
     report.measure = problem.measure();
     // What is met by the others' own scale can miss by the whole island's: each round asks for half as much.
     double share = 1;
     for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
-      sweep_others(problem, work, report, share);
+      const Status swept = sweep_others(problem, work, report, share);
       settle(problem, joints);
+      if (round == 0 && (swept == Status::infeasible || swept == Status::max_iterations)) {
+        problem.save(work.after);
+        if (inner::Contradiction<Problem>(problem).is_proved(work.before)) {
+          auto& space = work.contacts.newton.sweeps;
+          return inner::compromise(problem, report, space.best, space.x);
+        }
+        problem.load(work.after);
+      }
       report.measure = problem.measure();
-      if (report.status == Status::infeasible) return report;
+      report.status = swept;
+      if (swept == Status::infeasible) return report;
       if (is_done(report.measure, problem.row_count()) || problem.is_out_of_time()) break;
     }
     problem.tell(report.sweeps + report.factorizations, report.measure);
-    report.status = inner::verdict<Criterion>(*this, report.measure, problem.row_count());
+    report.status = is_contradiction
+                        ? Status::infeasible
+                        : inner::verdict<Criterion>(*this, report.measure, problem.row_count());
     return report;
   }
 
@@ -162,6 +180,18 @@ struct BasicDirectGaussSeidel {
     }
     return size <= 1e-3 * first;
   }
+  /// Whether that is proved, by the way in which λ_b runs away.
+  template <class Problem, class Workspace>
+  static bool contradicts(Problem& problem, Workspace& work) {
+    work.joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
+    work.joints.solve();
+    work.joints.keep();
+    problem.save(work.before);
+    push(problem, work.joints, 1);
+    if (inner::Contradiction<Problem>(problem).is_proved(work.before)) return true;
+    problem.load(work.before);
+    return false;
+  }
   /// λ_b ← λ_b + sign δ.
   template <class Problem, class System>
   static void push(Problem& problem, const System& joints, double sign) {
@@ -174,9 +204,10 @@ struct BasicDirectGaussSeidel {
     });
   }
 
-  /// The others with S in place of W, from the λ they have, to that share of the tolerance; W is told in the end.
+  /// The others with S in place of W, from the λ they have, to that share of the tolerance; W is told in the
+  /// end.
   template <class Problem, class Workspace>
-  void sweep_others(Problem& problem, Workspace& work, SolveReport& report, double share) const {
+  Status sweep_others(Problem& problem, Workspace& work, SolveReport& report, double share) const {
     work.others.build(work.joints, problem);
     problem.save(work.before);
     Rest<Problem, decltype(work.others)> rest(problem, work.others);
@@ -186,7 +217,6 @@ struct BasicDirectGaussSeidel {
     report.sweeps += swept.sweeps;
     report.factorizations += swept.factorizations;
     if (swept.factorizations > 0) report.ended_by = swept.ended_by;
-    if (swept.status == Status::infeasible) report.status = swept.status;
     rest.each([&](auto p, Index i) {
       auto& lambda = problem.impulse(p, i);
       const auto found = lambda;
@@ -194,6 +224,7 @@ struct BasicDirectGaussSeidel {
       problem.template assign<p>(i, found);
       problem.template prepare<p>(i, problem.template local<p>(i).W);
     });
+    return swept.status;
   }
 
   /// The island without its joints, which asks the whole one for the time.

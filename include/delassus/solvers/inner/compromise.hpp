@@ -1,0 +1,39 @@
+/// Impulses for rows that contradict each other.
+#pragma once
+
+#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/momentum.hpp>
+#include <delassus/solvers/inner/pursuit.hpp>
+#include <delassus/solvers/inner/softened.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+namespace delassus::inner {
+
+/// How far `compromise` goes, for `Pursuit`.
+struct CompromiseLimits {
+  double tolerance = 1e-6;
+  int max_iterations = 1000, min_iterations = 1;
+  bool scale_tolerance = false, all_verified = false;
+};
+
+/// λ of the rows as `Softened` lets them yield, from zero, and the errors of the rows as they are. The report
+/// is that of what found the contradiction.
+template <class Problem, class Impulses>
+SolveReport compromise(Problem& problem, SolveReport report, Impulses& best, Impulses& last) {
+  problem.must_complete();
+  Softened<Problem> soft(problem);
+  const CompromiseLimits limits;
+  Pursuit<Residual, CompromiseLimits, Softened<Problem>, Impulses> pursuit(limits, soft, best);
+  if (pursuit.begin()) {
+    pursuit.open("compromise", limits.max_iterations);
+    momentum(soft, pursuit, last, [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });
+  }
+  report.sweeps += pursuit.finish().sweeps;
+  soft.restore();
+  report.measure = problem.measure();
+  report.status = Status::infeasible;
+  report.ended_by = "compromise";
+  return report;
+}
+
+}  // namespace delassus::inner
