@@ -64,10 +64,11 @@ void compare(Loop& loop, double h, int steps) {
   compare(loop);
 }
 
-/// At `steps`, ascending: the reference gets to its 1e-10 at each. Gauss-Seidel's velocities are off by its own
-/// residual, to the same factor, if the motion is unique: with friction in a heap it need not be.
+/// At `steps`, ascending: the reference gets to its 1e-10 at each. Gauss-Seidel's velocities are off by its
+/// own residual, to the same factor; not where friction wedges bodies, which then move by what no law asks
+/// about.
 template <class Loop>
-void compare_at(Loop& loop, double h, std::initializer_list<int> steps, bool is_unique = true) {
+void compare_at(Loop& loop, double h, std::initializer_list<int> steps, bool is_wedged = false) {
   int done = 0;
   for (const int step : steps) {
     run(loop, h, step - done);
@@ -78,7 +79,7 @@ void compare_at(Loop& loop, double h, std::initializer_list<int> steps, bool is_
     CAPTURE(step, check.text());
     CHECK(check.reached);
     CHECK(check.reference.measure.residual <= 1e-10);
-    if (is_unique) CHECK(check.velocity <= 1e4 * std::max(check.residual, 1e-10));
+    if (!is_wedged) CHECK(check.velocity <= 1e4 * std::max(check.residual, 1e-10));
   }
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -90,7 +91,10 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable
 }  // namespace inner
 
 /// Solves a problem anew from λ = 0 by `inner::ConvexNewton`, islands that resist by `PathNewton` without its
-/// sweeps; neither shares a local solve with the sweeping solvers. Compares constraint by constraint.
+/// sweeps; neither shares a local solve with the sweeping solvers. Compares constraint by constraint. With
+/// friction even the velocities can have more than one solution: the slips |u_t| of λ are where the first
+/// attempt begins, so that what it finds, if λ is one, is that one. The given slips make the law a convex
+/// problem with one u; that it is a solution of the law is then measured.
 ///
 /// What is compared are the velocities u = d + W λ: impulses need not be unique, since on four contacts under
 /// one box, or in a closed loop of joints, many λ give the same motion. A wrong impulse moves the neighbours
@@ -98,9 +102,9 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable
 /// impulses of this constraint alone can make: of one wrong impulse it is all, and less of any other, unless
 /// that can push the bodies in the same way (contacts of one face, along the line between them).
 ///
-/// With friction even the velocities can have more than one solution; two small residuals beside a large
-/// difference say so. A step whose energy guard acted has no solution of its laws for λ. Islands of a set
-/// whose A couples blocks (springs under an implicit integrator) are not treated: `reached` is false.
+/// Two small residuals beside a large difference say that the reference found another solution. A step whose
+/// energy guard acted has no solution of its laws for λ. Islands of a set whose A couples blocks (springs
+/// under an implicit integrator) are not treated: `reached` is false.
 template <class Laws, class Rows, class Operator>
 ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& problem,
                                        double tolerance = 1e-10) {
@@ -115,12 +119,18 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
       for (auto& lambda : other.rows.template pool<p>().lambda) lambda.setZero();
     });
     check.residual = solve(mine, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure.residual;
-    check.reference = solve(other, inner::ConvexNewton{.tolerance = tolerance});
-    if (check.reference.status != Status::converged) {
-      const int before = check.reference.factorizations;
-      check.reference = solve(other, inner::path_alone(tolerance));
-      check.reference.factorizations += before;
-    }
+    int factorizations = 0;
+    const auto try_with = [&](auto& which, const auto& solver) {
+      check.reference = solve(which, solver);
+      check.reference.factorizations = factorizations += check.reference.factorizations;
+      return check.reference.status == Status::converged;
+    };
+    auto of_slips = problem;
+    if (try_with(of_slips,
+                 inner::ConvexNewton{.tolerance = tolerance, .max_iterations = 200, .from_slips = true}))
+      other = std::move(of_slips);
+    else if (!try_with(other, inner::ConvexNewton{.tolerance = tolerance}))
+      try_with(other, inner::path_alone(tolerance));
     check.reached = check.reference.status == Status::converged;
 
     inner::each_local(mine, [&](auto p, Index i, const auto&, double residual) {

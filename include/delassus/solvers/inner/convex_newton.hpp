@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 namespace delassus::inner {
 
@@ -21,6 +23,7 @@ struct ConvexNewton {
   double tolerance = 1e-10;
   int max_iterations = 2000;  ///< convex problems
   double least = 1e-6;        ///< ε where the residual is small: less would magnify the rounding of u
+  bool from_slips = false;    ///< of the given λ, and nothing else of it; else from all of λ
 
   template <class Rows>
   using Workspace = ConvexSpace<Rows>;
@@ -33,6 +36,7 @@ struct ConvexNewton {
     if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
     if (!work.gather(problem)) return now.report;
     work.keep(problem);
+    if (from_slips && solve_of_slips(now)) return now.report;
     double epsilon = coarse, far = 1, last = 1, polished = 1;
     for (int k = 0, since = 0; k < max_iterations; ++k) {
       now.report.factorizations += work.descend(problem, epsilon);
@@ -68,6 +72,26 @@ struct ConvexNewton {
     SolveReport report{};
     Measure best{};
   };
+
+  /// The convex problem of the slips that the given λ has, from λ = 0; true when its solution is one of the
+  /// law. As far as proximal points lead: they get nowhere where impulses are redundant and gaps do not fit.
+  template <class S>
+  bool solve_of_slips(S& now) const {
+    now.work.forget(now.problem);
+    now.work.keep(now.problem);
+    now.best.residual = std::numeric_limits<double>::infinity();
+    double epsilon = coarse, marked = epsilon;
+    for (int k = 1; k <= max_iterations; ++k) {
+      now.report.factorizations += now.work.descend(now.problem, epsilon);
+      if (is_done(now)) return true;
+      const double left = now.work.distance(epsilon);
+      now.work.template recentre<std::remove_cvref_t<decltype(now.problem)>>(true);
+      if (left < 1e-2 * tolerance || (k % 20 == 0 && left > 0.8 * marked)) break;
+      if (k % 20 == 0) marked = left;
+      epsilon = std::clamp(std::min(left, now.report.measure.residual), least, coarse);
+    }
+    return false;
+  }
 
   /// Hands λ over, measures it by W itself, and keeps the best; true when that is within the tolerance.
   template <class S>

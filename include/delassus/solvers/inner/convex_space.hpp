@@ -117,16 +117,36 @@ class ConvexSpace {
     return std::numeric_limits<double>::epsilon() * (std::sqrt(velocity) / epsilon + std::sqrt(impulse));
   }
 
-  /// λ̂ ← λ(u), s ← |u_t|.
+  /// λ̂ ← λ(u), s ← |u_t| unless the slips stay.
   template <class Problem>
-  void recentre() {
+  void recentre(bool keeps_slips = false) {
     each([&](auto p, auto& c, auto&) {
       c.velocity += -c.error + c.move + c.compliance.cwiseProduct(c.lambda - c.centre);
       c.centre = c.lambda;
       c.total.setZero();
-      c.slip = slip_of<Problem, p>(c.velocity);
+      if (!keeps_slips) c.slip = slip_of<Problem, p>(c.velocity);
     });
     for (auto& y : y_) y.setZero();
+  }
+  /// λ ← 0; the slips stay.
+  template <class Problem>
+  void forget(Problem& problem) {
+    each([&](auto p, auto& c, auto&) {
+      problem.template assign<p>(c.item, 0 * problem.rows().template pool<p>().lambda[c.item]);
+    });
+    each([&](auto p, auto& c, auto&) {
+      c.centre.setZero();
+      c.velocity = problem.template local<p>(c.item).d.template cast<double>();
+    });
+  }
+  /// What the proximal point leaves of the convex problem, √Σ |ε w (λ − λ̂)|²/w against √Σ |u|²/w.
+  double distance(double epsilon) {
+    double left = 0, whole = 0;
+    each([&](auto, auto& c, auto&) {
+      left += c.weight * (c.lambda - c.centre).squaredNorm();
+      whole += c.velocity.squaredNorm() / c.weight;
+    });
+    return epsilon * std::sqrt(left / whole);
   }
 
   template <class Problem>
