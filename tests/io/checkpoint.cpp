@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <delassus/io/checkpoint.hpp>
+#include <delassus/loop/joint_by_joint.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -49,6 +50,22 @@ TEST_CASE("restored, a chain on ball joints goes on bit for bit") {
       loop.add(BallJoint::Item{end, anchor(set, link, {-0.1, 0, 0})});
       end = anchor(set, link, {0.1, 0, 0});
     }
+  });
+}
+
+TEST_CASE("restored, joints in turn go on bit for bit, with the impulses they begin with") {
+  require_same_bits(2e-3, [] {
+    return AnimationLoop{World{RigidBodies{}}, Constraints{BallJoint{}, Hinge{}}, JointByJoint{.sweeps = 2}};
+  }, [](auto& loop) {
+    auto& set = rigid_bodies(loop);
+    Anchor end = world_anchor({0, 0, 3});
+    for (int k = 0; k < 4; ++k) {
+      const auto link = set.add({.position = {0.2 * k + 0.1, 0, 3}, .mass = 0.1, .shape = Box{0.2, 0.02, 0.02}});
+      loop.add(BallJoint::Item{end, anchor(set, link, {-0.1, 0, 0})});
+      end = anchor(set, link, {0.1, 0, 0});
+    }
+    const auto door = set.add({.position = {0.5, 5, 0}, .angular_velocity = {0, 0, 1}, .mass = 3.0, .shape = Box{1, 0.1, 2}});
+    loop.add(Hinge::Item{anchor(set, door, {-0.5, 0, 0}), world_anchor({0, 5, 0})});
   });
 }
 

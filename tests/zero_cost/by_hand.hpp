@@ -109,17 +109,15 @@ struct Pendulum {
     const Vec3 linear = body.v[0] + body.inverse_mass[0] * (h * (body.force[0] + body.mass[0] * gravity));
     const Vec3 angular = body.omega[0] + body.inverse_inertia_world[0] * (h * body.torque[0]);
 
-    // u = v + ω × r; H = (1, −r^), W = H A⁻¹ Hᵀ, d = H v_free + rate φ/h.
+    // u = v + ω × r; H = (1, −r^), W = H A⁻¹ Hᵀ, d = H v_free + rate φ/h; one joint is solved exactly, λ = −W⁻¹ d.
     const Mat3 across = skew(r);
     const Mat3 turned = body.inverse_inertia_world[0] * across;  // A⁻¹ Hᵀ below
     Mat3 W = -across * turned;
     W.diagonal().array() += body.inverse_mass[0];
     const Vec3 d = linear + angular.cross(r) + (rate / h) * phi;
-    const Mat3 inverse = inverse_of_positive<3, double>(W);
 
-    Vec3 u = d + W * lambda;
-    lambda -= inverse * u;
-    u = d + W * lambda;
+    lambda = -solve_positive<3, double>(W, d);
+    const Vec3 u = d + W * lambda;
     const double velocity = std::max(d.norm(), u.norm());
     residual = velocity > 0 ? u.norm() / velocity : 0;
     return body.drift(0, linear + body.inverse_mass[0] * lambda, angular + turned * lambda, h) ? 0 : 1;

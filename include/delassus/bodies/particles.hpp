@@ -105,6 +105,9 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   /// Springs tie particles together outside of every island: while there are any, none sleeps.
   bool may_sleep() const { return springs_.is_empty(); }
 
+  /// 1/m, mass scale and springs aside.
+  T inverse_mass(Index b) const { return inverse_mass_[b]; }
+
   void factor(SystemScale scale) { springs_.factor(scale, x_, mass_, inverse_mass_, slots_.active()); }
 
   void add_forces(std::vector<Velocity>& p) const {

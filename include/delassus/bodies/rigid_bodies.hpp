@@ -144,6 +144,11 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     return state_.solve(b, x, inverse_scale_);
   }
 
+  /// What A⁻¹ is made of, mass scale aside: 1/m, and R I⁻¹ Rᵀ about `centre`.
+  T inverse_mass(Index b) const { return state_.inverse_mass[b]; }
+  const Mat<3, 3, T>& inverse_inertia(Index b) const { return state_.inverse_inertia_world[b]; }
+  const Vec3& centre(Index b) const { return state_.x[b]; }
+
   /// A fixed body answers to nothing and does not move: it has no block in any row.
   int anchor_blocks(const Anchor& a) const { return motion_[a.block] == Motion::fixed ? 0 : 1; }
   Index anchor_block(const Anchor& a, int) const { return a.block; }

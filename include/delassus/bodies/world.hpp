@@ -46,6 +46,10 @@ class World {
  public:
   using plays = role::World;
   static constexpr int set_count = int(sizeof...(Sets));
+  /// Velocities of a block of set s; 0 for the world, s < 0.
+  template <int s>
+  static constexpr int width_of =
+      s < 0 ? 0 : std::array<int, std::size_t(set_count) + 1>{Sets::width..., 0}[s < 0 ? 0 : s];
   using Tuple = std::tuple<Sets...>;
   using Scalar = typename inner::scalar_of<Sets...>::type;
 

@@ -28,6 +28,7 @@ class Slots {
 
   void give_back(Index place) {
     alive_[place] = 0;
+    ++removals_;
     ++generation_[place];
     free_.push_back(place);
     list();
@@ -44,6 +45,8 @@ class Slots {
   bool is_current(Index place, std::uint32_t generation) const {
     return is_alive(place) && generation_[place] == generation;
   }
+  /// Has grown when places that were alive may not be any more.
+  std::uint32_t removals() const { return removals_; }
   std::uint32_t generation(Index place) const { return generation_[place]; }
   const std::vector<Index>& active() const {
     if (stale_) [[unlikely]] gather();
@@ -57,6 +60,7 @@ class Slots {
   /// What outlives a step.
   void memory(auto& archive) {
     archive(generation_, alive_, free_);
+    ++removals_;
     list();
   }
 
@@ -70,6 +74,7 @@ class Slots {
     stale_ = false;
   }
 
+  std::uint32_t removals_ = 0;
   std::vector<std::uint32_t> generation_;
   std::vector<char> alive_;  ///< 0 free, 1 awake, 2 asleep
   std::vector<Index> free_;

@@ -12,6 +12,7 @@ namespace delassus {
 struct LiePoisson {
   using plays = role::Integrator;
   using each_block_alone = LiePoisson;
+  static constexpr bool takes_masses_alone = true;  ///< A = M
 
   SystemScale scale(double) const { return {.mass = 1}; }
   void impulse(const auto& set, auto& p, double h) const {

@@ -9,6 +9,7 @@ namespace delassus {
 struct SymplecticEuler {
   using plays = role::Integrator;
   using each_block_alone = SymplecticEuler;
+  static constexpr bool takes_masses_alone = true;  ///< A = M
 
   SystemScale scale(double) const { return {.mass = 1}; }
   void impulse(const auto& set, auto& p, double h) const {

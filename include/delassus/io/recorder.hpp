@@ -44,9 +44,13 @@ class Recorder {
 
  private:
   void begin(const auto& loop) {
-    if constexpr (requires { loop.island_reports(); })  // else there is no solver to ask
+    using Loop = std::remove_cvref_t<decltype(loop)>;
+    if constexpr (Loop::visits_joints) {
+      recording_.steps.tolerance = loop.template part<role::Scheme>().tolerance;
+    } else if constexpr (requires { loop.island_reports(); }) {  // else there is no solver to ask
       if constexpr (requires { loop.template part<role::Solver>().tolerance; })
         recording_.steps.tolerance = loop.template part<role::Solver>().tolerance;
+    }
     loop.world().each([&](const auto& set, auto s) {
       for (const Index b : alive(set)) {
         if (set.has_collider(b))

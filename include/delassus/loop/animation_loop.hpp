@@ -35,6 +35,10 @@ class AnimationLoop {
   static constexpr bool may_rest = has_constraints && has_dormant<typename Parts::Activity>;
   /// The integrator solves for joints and bodies together: there is no W, and no problem to hand out.
   static constexpr bool solves_whole_step = delassus::solves_whole_step<typename Parts::Integrator, has_constraints>;
+  /// The scheme solves joint by joint, without W.
+  static constexpr bool visits_joints = has_constraints && inner::visits_joints<typename Parts::Scheme>;
+  /// Rows and W of the last step are there to be asked for.
+  static constexpr bool has_problem = has_constraints && !solves_whole_step && !visits_joints;
   static constexpr bool divides_step = requires { requires Parts::Scheme::divides_step; };
   static constexpr bool locates_impacts = requires { requires Parts::Scheme::locates_impacts; };
   /// A policy of the list, by type.
@@ -146,7 +150,7 @@ class AnimationLoop {
 
   /// The constraint problem of the last step, whole and apart from the loop: laws, rows, W, islands.
   auto problem() const
-    requires(has_constraints && !solves_whole_step)
+    requires(has_problem)
   {
     return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
   }
@@ -204,7 +208,7 @@ class AnimationLoop {
   /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
   template <class F>
   void each_constraint(F&& f) const {
-    if constexpr (has_constraints && !solves_whole_step) inner::each_constraint(work_, laws(), h_, f);
+    if constexpr (has_problem) inner::each_constraint(work_, laws(), h_, f);
   }
   /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
@@ -248,6 +252,8 @@ class AnimationLoop {
   void solve_whole_step();
   /// All of them at once, for a loop without constraints: the same bits, fewer passes.
   void move_freely();
+  /// FreeMotion to Correct at once, joint by joint: for `JointByJoint`.
+  void visit_joints();
   /// For a scheme that does a step in parts: h is h/count from here on, until a part ends after which none is left.
   void begin_substeps(int count);
   void end_substep(int left);

@@ -43,13 +43,14 @@ struct DefaultsFor {
   template <class Role, class Default, bool is_needed = true>
   using one = std::conditional_t<is_needed && count_of<Role, Policies...> == 0, std::tuple<Default>, std::tuple<>>;
   static constexpr bool constrained = P::Laws::pool_count > 0;
+  static constexpr bool has_W = constrained && !visits_joints<typename P::Scheme>;
 
   using type = decltype(std::tuple_cat(
       std::declval<one<role::World, typename P::World>>(), std::declval<one<role::Constraints, typename P::Laws>>(),
       std::declval<one<role::Integrator, typename P::Integrator>>(),
       std::declval<one<role::Collision, typename P::Collision, P::Laws::has_contacts>>(),
-      std::declval<one<role::Compliance, typename P::Compliance, constrained>>(),
-      std::declval<one<role::Solver, typename P::Solver, constrained>>(),
+      std::declval<one<role::Compliance, typename P::Compliance, has_W>>(),
+      std::declval<one<role::Solver, typename P::Solver, has_W>>(),
       std::declval<one<role::Stabilisation, typename P::Stabilisation, constrained>>(),
       std::declval<one<role::Scheme, typename P::Scheme>>(), std::declval<one<role::Activity, typename P::Activity>>()));
 };

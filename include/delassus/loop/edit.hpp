@@ -4,8 +4,11 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
+#include <delassus/rows/body_set.hpp>
 #include <delassus/rows/row_system.hpp>
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -61,6 +64,23 @@ void drop_stale(const World& world, Laws& laws) {
         if (is_stale) pool.slots.give_back(pool.slots.active()[i--]);
       }
   });
+}
+
+/// The same, where bodies may have gone since the last call: `seen` is what the sets were then.
+template <class World, class Laws>
+void drop_stale(const World& world, Laws& laws, std::array<Census, std::size_t(World::set_count)>& seen) {
+  bool may_be_stale = false;
+  world.each([&](const auto& set, auto s) {
+    if constexpr (requires { set.census(); }) {
+      const Census now = set.census();
+      may_be_stale = may_be_stale || now != seen[s];
+      seen[s] = now;
+    } else {
+      may_be_stale = true;
+    }
+  });
+  if (may_be_stale) [[unlikely]]
+    drop_stale(world, laws);
 }
 
 /// After the solve: who broke. Its handle, its impulse and its rows stay until the next step begins.

@@ -156,10 +156,10 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
 /// The same of the loop's last step, which stays as it is; nothing to compare in a loop without constraints.
 template <class Loop>
 ReferenceCheck check_against_reference(const Loop& loop, double tolerance = 1e-10) {
-  static_assert(!Loop::solves_whole_step,
-                "delassus: NewtonMidpoint makes no problem that a reference could solve again; take "
-                "check_against_reference out, or use ImplicitMidpoint");
-  if constexpr (Loop::has_constraints && !Loop::solves_whole_step)
+  static_assert(!Loop::solves_whole_step && !Loop::visits_joints,
+                "delassus: NewtonMidpoint makes no problem that a reference could solve again, nor does JointByJoint; take "
+                "check_against_reference out, or use ImplicitMidpoint or PlainOrder");
+  if constexpr (Loop::has_problem)
     return check_against_reference(loop.problem(), tolerance);
   else
     return {};

@@ -25,6 +25,10 @@ void solve_to_advance(auto& loop) {
   loop.advance();
 }
 
+/// A scheme that solves joint by joint says so: the solver and the compliance are not asked.
+template <class Scheme>
+inline constexpr bool visits_joints = requires { requires Scheme::visits_joints; };
+
 }  // namespace inner
 
 /// Detect, linearise, move freely, and solve: the plain order. A scheme calls the stages of a loop in its own order.

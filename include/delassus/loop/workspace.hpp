@@ -13,6 +13,7 @@
 #include <delassus/solvers/solve_report.hpp>
 
 #include <array>
+#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <vector>
@@ -121,6 +122,7 @@ struct Workspace {
   typename Solver::template Workspace<Rows> solver;
   std::vector<SolveReport> reports;  ///< of the islands, in their order
   std::vector<char> is_sick;
+  std::array<Census, std::size_t(World::set_count)> census;
   ContactBook contacts;
   Materials materials;
   [[no_unique_address]] std::conditional_t<at_midpoint, Rows, Nothing<1>> at_start;

@@ -1,9 +1,11 @@
 /// The inverse of a small positive definite matrix.
 #pragma once
 
+#include <delassus/core/unrolled.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace delassus {
 
@@ -33,6 +35,34 @@ Mat<R, R, T> inverse_of_positive(const Mat<R, R, T>& S) {
     K(i, i) = over;
   }
   return K.transpose() * K;
+}
+
+/// x = S⁻¹ b by S = L D Lᵀ, where one right-hand side is all there is: half of what the inverse takes. Only
+/// S_ij, i ≥ j, is read. A pivot that cancellation has left nothing of but rounding, 64 ε S_ii, is of a row
+/// that the ones before it make redundant: its x is zero.
+template <int R, class T>
+Vec<R, T> solve_positive(const Mat<R, R, T>& S, const Vec<R, T>& b) {
+  Mat<R, R, T> L;
+  Vec<R, T> over, x = b;  // D⁻¹
+  unrolled<R>([&]<int i>() {
+    T pivot = S(i, i);
+    Vec<R, T> row;  // of L D
+    unrolled<i>([&]<int j>() {
+      T sum = S(i, j);
+      unrolled<j>([&]<int k>() { sum -= row[k] * L(j, k); });
+      row[j] = sum;
+      L(i, j) = sum * over[j];
+      pivot -= sum * L(i, j);
+      x[i] -= L(i, j) * x[j];
+    });
+    over[i] = pivot > T(64) * std::numeric_limits<T>::epsilon() * S(i, i) ? T(1) / pivot : T(0);
+  });
+  unrolled<R>([&]<int n>() {
+    constexpr int i = R - 1 - n;
+    x[i] *= over[i];
+    unrolled<n>([&]<int m>() { x[i] -= L(R - 1 - m, i) * x[R - 1 - m]; });
+  });
+  return x;
 }
 
 }  // namespace delassus

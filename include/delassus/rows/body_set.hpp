@@ -4,6 +4,7 @@
 #include <delassus/rows/anchor.hpp>
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,23 @@ concept BodySet = requires(S set, const S fixed, const Anchor anchor, Index b, S
 template <class S>
 concept BlockDiagonalSet = BodySet<S> && requires(const S set, Index b, Mat<S::width, 1, typename S::Scalar> x) {
   { set.solve_block(b, x) } -> std::same_as<Mat<S::width, 1, typename S::Scalar>>;
+};
+
+/// A set whose M⁻¹ is known by its parts: 1/m, and R I⁻¹ Rᵀ about `centre(b)` (m) of what turns.
+template <class S>
+concept AnswersByParts = BodySet<S> && requires(const S set) {
+  { set.inverse_mass(0) } -> std::same_as<typename S::Scalar>;
+  requires S::width == 3 || requires {
+    set.inverse_inertia(0);
+    set.centre(0);
+  };
+};
+
+/// While this stays as it is, so does who is there of a set: anchors that were current are.
+struct Census {
+  std::uint32_t owner = 0, removals = 0;
+  Index blocks = -1;
+  bool operator==(const Census&) const = default;
 };
 
 /// A set whose blocks have orientation: joints may ask for their frames and rates of turn.

@@ -47,10 +47,10 @@ class Audit {
   void after(stage::Step, const auto& loop) {
     ++seen_.steps;
     using Loop = std::remove_cvref_t<decltype(loop)>;
-    constexpr bool has_W = !(Loop::has_constraints && Loop::solves_whole_step);
+    constexpr bool has_W = !Loop::has_constraints || Loop::has_problem;
     static_assert(has_W,
-                  "delassus: Audit weighs impulses by W, which NewtonMidpoint, Rattle and RungeKutta4 do without; take another "
-                  "integrator, such as ImplicitMidpoint, or take Audit out");
+                  "delassus: Audit weighs impulses by W, which NewtonMidpoint, Rattle and RungeKutta4 do without, and "
+                  "JointByJoint too; take another integrator, such as ImplicitMidpoint, or PlainOrder, or take Audit out");
     if constexpr (Loop::has_constraints && has_W) see_constraints(loop);
     see_motion(loop.world());
   }

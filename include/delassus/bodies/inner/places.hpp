@@ -6,6 +6,7 @@
 #include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -37,6 +38,7 @@ class Places {
   std::string who(Index b) const { return std::string(Set::kind) + " #" + std::to_string(b); }
 
   Index blocks() const { return slots_.size(); }
+  Census census() const { return {owner_, slots_.removals(), slots_.size()}; }
   const std::vector<Index>& active() const { return slots_.active(); }
   bool is_alive(Index b) const { return slots_.is_alive(b); }
   bool is_awake(Index b) const { return slots_.is_awake(b); }

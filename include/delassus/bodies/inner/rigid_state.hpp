@@ -134,14 +134,17 @@ template <class T>
 bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old_share) {
   const Vec3 old_x = x[b];
   const Eigen::Quaternion<T> old_q = q[b];
-  x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
   // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
-  const Vector kicked = R[b].transpose() * angular_part(next);
-  const Vector start = old_share > T(0) ? R[b].transpose() * angular_part(v) : kicked;
-  const Vector impulse = inertia[b] * kicked;
-  const Vector old_impulse = old_share > T(0) ? inertia[b] * start : impulse;
+  const Vector kicked = R[b].transpose() * angular_part(next), impulse = inertia[b] * kicked;
   const Vector spatial = R[b] * impulse;
-  q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], start, old_impulse, impulse, h));
+  if (old_share > T(0)) {
+    const Vector start = R[b].transpose() * angular_part(v);
+    x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
+    q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h));
+  } else {
+    x[b] += Vector(h * linear_part(next)).template cast<double>();
+    q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], kicked, impulse, impulse, h));
+  }
   turn(b);
   // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
   // ones.

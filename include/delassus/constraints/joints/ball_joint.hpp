@@ -18,12 +18,20 @@ struct BallJoint : Bilateral<3> {
     Anchor a, b;  ///< one that is not given is the world's origin
   };
 
-  void linearize(const Item& item, const auto& world, auto row) const {
+  /// The point at which both impulses act, and x_a − x_b, m: all there is to know of the joint in a step.
+  struct Place {
+    Vec3 point, gap;
+  };
+  static Place place(const Item& item, const auto& world) {
     const Vec3 xa = world.point(item.a), xb = world.point(item.b);
-    const Vec3 point = !item.a.has_frame ? xa : !item.b.has_frame ? xb : Vec3(0.5 * (xa + xb));
+    return {!item.a.has_frame ? xa : !item.b.has_frame ? xb : Vec3(0.5 * (xa + xb)), xa - xb};
+  }
+
+  void linearize(const Item& item, const auto& world, auto row) const {
+    const auto [point, gap] = place(item, world);
     row.end(item.a, point).along(Mat3::Identity().eval(), 1);
     row.end(item.b, point).along(Mat3::Identity().eval(), -1);
-    for (int k = 0; k < 3; ++k) row.phi(k, xa[k] - xb[k]);
+    for (int k = 0; k < 3; ++k) row.phi(k, gap[k]);
   }
 };
 

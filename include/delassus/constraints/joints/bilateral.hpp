@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/math/positive.hpp>
+#include <delassus/rows/anchor.hpp>
 #include <delassus/rows/local.hpp>
 
 #include <limits>
@@ -41,5 +42,12 @@ struct Bilateral {
     return u;
   }
 };
+
+/// A law of joints with two ends, whose solve is Bilateral's.
+template <class Law>
+concept JointOfTwoEnds = requires(const typename Law::Item& item) {
+  requires Law::bilateral;
+  requires HasEnds<typename Law::Item>;
+} && !requires(const typename Law::Item& item) { item.c.owner; };
 
 }  // namespace delassus

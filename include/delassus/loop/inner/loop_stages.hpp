@@ -37,7 +37,7 @@ void AnimationLoop<Policies...>::begin(double h) {
   if constexpr (has_constraints) {
     work_.book.attach(laws());
     inner::drop_broken(laws());
-    inner::drop_stale(std::as_const(*this).world(), laws());
+    inner::drop_stale(std::as_const(*this).world(), laws(), work_.census);
     if constexpr (Work::has_dormant) work_.activity.begin(world(), laws(), h);
   }
   tell<stage::Begin>();
@@ -237,6 +237,34 @@ void AnimationLoop<Policies...>::move_freely() {
     report_.quarantined += set.held();
   });
   end_advance();
+}
+
+template <class... Policies>
+void AnimationLoop<Policies...>::visit_joints() {
+  if constexpr (visits_joints) {
+    world().each([&](auto& set, auto s) {
+      if (set.is_separable()) {
+        delassus::kick(set, part<role::Integrator>(), h_);
+      } else {
+        delassus::free_motion(set, set, part<role::Integrator>(), std::get<s>(scratch_), h_);
+        set.v_next = set.v_free;
+      }
+    });
+    tell<stage::FreeMotion>();
+    follow(std::as_const(*this).world(), laws());
+    if (work_.reports.empty()) [[unlikely]] work_.reports.emplace_back();
+    SolveReport& solved = work_.reports[0];
+    work_.substeps.run(world(), laws(), part<role::Stabilisation>(), h_, h_ / last_h_, part<role::Scheme>(),
+                       report_, solved);
+    inner::note_broken(laws(), h_);
+    report_.status = solved.status;
+    report_.sweeps = solved.sweeps;
+    report_.residual = std::max(report_.residual, solved.measure.residual);
+    report_.siconos_error = std::max(report_.siconos_error, solved.measure.siconos);
+    report_.islands = 1;
+    tell<stage::Solve>();
+    tell<stage::Correct>();
+  }
 }
 
 template <class... Policies>

@@ -3,9 +3,13 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/loop/activity.hpp>
 #include <delassus/loop/channels.hpp>
+#include <delassus/loop/policies.hpp>
+#include <delassus/loop/scheme.hpp>
 #include <delassus/loop/stages/bias.hpp>
+#include <delassus/loop/stages/move_freely.hpp>
 #include <delassus/loop/stages/refine.hpp>
 #include <delassus/loop/workspace.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -66,6 +70,39 @@ consteval bool substeps_fit() {
   constexpr bool fit = !(requires { requires Scheme::divides_step; } && has_dormant<Activity>);
   static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
   return fit;
+}
+
+/// Joint by joint there is neither W nor a problem, and every body answers alone.
+template <class Parts, class... Policies>
+consteval bool visits_fit() {
+  if constexpr (!visits_joints<typename Parts::Scheme> || Parts::Laws::pool_count == 0) {
+    return true;
+  } else {
+    using I = typename Parts::Integrator;
+    constexpr bool are_joints = []<class... L>(const Constraints<L...>*) {
+      return (JointOfTwoEnds<L> && ...);
+    }(static_cast<const typename Parts::Laws*>(nullptr));
+    static_assert(are_joints,
+                  "delassus: JointByJoint takes joints with two ends that hold exactly or by springs (no contacts, "
+                  "limits, motors, drives and couplings); take the other laws out of Constraints{...}, or use PlainOrder");
+    constexpr bool answer_alone = []<class... S>(const delassus::World<S...>*) {
+      return EachBlockAlone<I> && (requires { requires I::takes_masses_alone; }) &&
+             ((StepsByBlock<S> && AnswersByParts<S>) && ...);
+    }(static_cast<const typename Parts::World*>(nullptr));
+    if constexpr (are_joints)
+      static_assert(answer_alone,
+                    "delassus: JointByJoint moves rigid bodies and particles, by SymplecticEuler or LiePoisson; take "
+                    "the other sets and the integrator out, or use PlainOrder");
+    constexpr bool is_plain =
+        count_of<role::Solver, Policies...> == 0 && count_of<role::Compliance, Policies...> == 0 &&
+        std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...) &&
+        !(requires { requires Parts::Stabilisation::projects_position; });
+    if constexpr (are_joints && answer_alone)
+      static_assert(is_plain,
+                    "delassus: JointByJoint solves without W and without a solver; take out the solver, the compliance, "
+                    "PositionProjection, the activity and the listeners that publish the problem, or use PlainOrder");
+    return are_joints && answer_alone && is_plain;
+  }
 }
 
 /// Springs that see the mean velocity need an integrator that goes with it, and gaps of each step.

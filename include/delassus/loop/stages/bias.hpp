@@ -122,15 +122,24 @@ double restitution_of(const Law& law, const Item& item) {
   else return 0;
 }
 
+struct SoftRow {
+  double compliance, bias;
+};
+
 /// The soft row λ = −h (k (φ + θ h ū) + c ū), ū = θ u⁺ + (1−θ) u⁻, solved for u⁺ + (1−θ)/θ u⁻:
 ///
 ///   R = 1/(θ (θ h² k + h c)),  bias = k φ/(θ (θ h k + c)).
+inline SoftRow soft_row(double stiffness, double damping, double phi, double h, double theta) {
+  return {.compliance = 1 / (theta * (theta * h * h * stiffness + h * damping)),
+          .bias = stiffness * phi / (theta * (theta * h * stiffness + damping))};
+}
 template <class Pool>
 void soften(Pool& pool, Index i, int k, double h, double theta = 1) {
   using T = typename Pool::Scalar;
-  const double stiffness = double(pool.stiffness[i][k]), damping = double(pool.damping[i][k]);
-  pool.compliance[i][k] = T(1 / (theta * (theta * h * h * stiffness + h * damping)));
-  pool.bias[i][k] = T(stiffness * double(pool.phi[i][k]) / (theta * (theta * h * stiffness + damping)));
+  const SoftRow row =
+      soft_row(double(pool.stiffness[i][k]), double(pool.damping[i][k]), double(pool.phi[i][k]), h, theta);
+  pool.compliance[i][k] = T(row.compliance);
+  pool.bias[i][k] = T(row.bias);
 }
 
 /// A law whose springs see the mean velocity of the step.

@@ -1,4 +1,4 @@
-/// FreeMotion and Advance of a loop without constraints in one pass: each body alone, from start to end.
+/// FreeMotion, and with it Advance where there are no constraints, in one pass: each body alone.
 #pragma once
 
 #include <delassus/integrators/integrator.hpp>
@@ -47,12 +47,9 @@ inline constexpr bool steps_by_block = false;
 template <template <class...> class World, StepsByBlock... Sets>
 inline constexpr bool steps_by_block<World<Sets...>> = true;
 
-}  // namespace inner
-
-/// v_next = v + A⁻¹ p and q, v from it, without arrays in between: what `free_motion` and `advance` do, to the bit but
-/// for the sign of a zero.
-template <class Set, class I>
-void move_freely(Set& set, const I& integrator, double h) {
+/// Calls f(block, b), block.v_next = v + A⁻¹ p, for every block of a set.
+template <class Set, class I, class F>
+void each_kicked(Set& set, const I& integrator, double h, F&& f) {
   using Velocity = typename Set::Velocity;
   auto blocks = set.by_block(integrator.scale(h));
   for (const Index b : set.active()) {
@@ -65,8 +62,24 @@ void move_freely(Set& set, const I& integrator, double h) {
       integrator.impulse(block, p, h);
       block.v_next = blocks.velocity(b) + blocks.solve(b, p[0]);
     }
-    integrator.advance(block, h);
+    f(block, b);
   }
+}
+
+}  // namespace inner
+
+/// v_next = v + A⁻¹ p and q, v from it, without arrays in between: what `free_motion` and `advance` do, to
+/// the bit but for the sign of a zero.
+template <class Set, class I>
+void move_freely(Set& set, const I& integrator, double h) {
+  inner::each_kicked(set, integrator, h, [&](auto& block, Index) { integrator.advance(block, h); });
+}
+
+/// v_free and v_next = v + A⁻¹ p: the first half of it.
+template <class Set, class I>
+void kick(Set& set, const I& integrator, double h) {
+  inner::each_kicked(set, integrator, h,
+                     [&](auto& block, Index b) { set.v_free[b] = set.v_next[b] = block.v_next; });
 }
 
 }  // namespace delassus
