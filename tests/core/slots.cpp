@@ -42,3 +42,16 @@ TEST_CASE("the live places are listed in ascending order whatever the order of r
   slots.take();  // reuses 1, the last one freed
   REQUIRE(slots.active() == std::vector<Index>{0, 1, 2, 3, 5});
 }
+
+TEST_CASE("the count of removals is never again what it was, whatever the slots are put back to") {
+  Slots slots;
+  for (int i = 0; i < 3; ++i) slots.take();
+  const Slots saved = slots;
+  slots.give_back(0);
+  const auto after = slots.removals();
+  slots = saved;
+  REQUIRE(slots.removals() > after);
+  const auto back = slots.removals();
+  slots.give_back(1);
+  REQUIRE(slots.removals() > back);
+}

@@ -3,6 +3,7 @@
 
 #include <delassus/core/index.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -45,8 +46,8 @@ class Slots {
   bool is_current(Index place, std::uint32_t generation) const {
     return is_alive(place) && generation_[place] == generation;
   }
-  /// Has grown when places that were alive may not be any more.
-  std::uint32_t removals() const { return removals_; }
+  /// Has grown when places that were alive may not be any more, by `give_back` or because other slots were assigned.
+  std::uint32_t removals() const { return removals_.value; }
   std::uint32_t generation(Index place) const { return generation_[place]; }
   const std::vector<Index>& active() const {
     if (stale_) [[unlikely]] gather();
@@ -74,7 +75,20 @@ class Slots {
     stale_ = false;
   }
 
-  std::uint32_t removals_ = 0;
+  /// A count that grows with what is assigned to it, too: it is never again what it was.
+  struct Growing {
+    std::uint32_t value = 0;
+
+    Growing() = default;
+    Growing(const Growing&) = default;
+    Growing& operator=(const Growing& o) {
+      value = std::max(value, o.value) + 1;
+      return *this;
+    }
+    void operator++() { ++value; }
+  };
+
+  Growing removals_;
   std::vector<std::uint32_t> generation_;
   std::vector<char> alive_;  ///< 0 free, 1 awake, 2 asleep
   std::vector<Index> free_;

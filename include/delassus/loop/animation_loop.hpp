@@ -287,6 +287,7 @@ class AnimationLoop {
                               typename Parts::Integrator, typename Parts::Stabilisation, typename Parts::Scheme,
                               typename Parts::Activity>,
       inner::Workspace<World<>, Constraints<>, void, void, void, void, void, void>>;
+  using Defaults = typename inner::DefaultsFor<Policies...>::type;
   using Channels = typename inner::channels_of_loop<sound, Parts, Policies...>::type;
 
   template <class P>
@@ -299,8 +300,16 @@ class AnimationLoop {
   template <class Role, class Self>
   static auto& part_of(Self& self) {
     using Part = typename inner::part_type<Parts, Role>::type;
-    if constexpr (inner::count_of<Role, Policies...> > 0) return std::get<Part>(self.policies_);
-    else return std::get<Part>(self.defaults_);
+    constexpr bool is_default = inner::holds_type<Part, Defaults>;
+    if constexpr (inner::count_of<Role, Policies...> > 0) {
+      return std::get<Part>(self.policies_);
+    } else {
+      static_assert(is_default,
+                    "delassus: this AnimationLoop has no part of this role: without constraints, and under JointByJoint, there is no "
+                    "solver and no compliance; do not ask for it, or take another scheme");
+      if constexpr (is_default) return std::get<Part>(self.defaults_);
+      else return inner::no_part<Part>();
+    }
   }
   Laws& laws() { return part<role::Constraints>(); }
   const Laws& laws() const { return part<role::Constraints>(); }
@@ -331,7 +340,7 @@ class AnimationLoop {
   void check_policies() const;
 
   std::tuple<Policies...> policies_;
-  [[no_unique_address]] typename inner::DefaultsFor<Policies...>::type defaults_{};
+  [[no_unique_address]] Defaults defaults_{};
   [[no_unique_address]] Work work_;
   [[no_unique_address]] Channels channels_;
   typename inner::widths_of<std::conditional_t<sound, WorldType, World<>>>::Scratch scratch_;

@@ -3,6 +3,7 @@
 
 #include <delassus/core/roles.hpp>
 
+#include <tuple>
 #include <type_traits>
 
 namespace delassus::inner {
@@ -18,6 +19,12 @@ struct pick<Role, Default, P, Rest...>
 
 template <class Role, class... Policies>
 inline constexpr int count_of = (0 + ... + int(Plays<Policies, Role>));
+
+/// Whether the tuple has an element of this type.
+template <class P, class Tuple>
+inline constexpr bool holds_type = false;
+template <class P, class... Parts>
+inline constexpr bool holds_type<P, std::tuple<Parts...>> = (std::is_same_v<P, Parts> || ...);
 
 /// In place of a part that is not there: the sentence has been said.
 template <class P>

@@ -18,6 +18,8 @@ struct BallJoint : Bilateral<3> {
     Anchor a, b;  ///< one that is not given is the world's origin
   };
 
+  using holds_point = BallJoint;  ///< `place` says it all
+
   /// The point at which both impulses act, and x_a − x_b, m: all there is to know of the joint in a step.
   struct Place {
     Vec3 point, gap;

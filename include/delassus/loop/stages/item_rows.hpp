@@ -1,8 +1,7 @@
-/// The rows of one constraint with two ends, written out: they stay in registers.
+/// The rows of one constraint with two ends, written out beside each other: what a visit needs of the waist.
 #pragma once
 
-#include <delassus/core/unrolled.hpp>
-#include <delassus/math/twist.hpp>
+#include <delassus/math/linear.hpp>
 #include <delassus/rows/anchor.hpp>
 
 #include <array>
@@ -10,141 +9,94 @@
 
 namespace delassus {
 
-/// One row of H, or of Gᵀ, over the velocities of one block.
-template <int width, class T>
-struct RowOfBlock;
-
-template <class T>
-struct RowOfBlock<3, T> {
-  Vec<3, T> linear;
-
-  RowOfBlock() {}
-  explicit RowOfBlock(const Vec<3, T>& row) : linear(row) {}
-  Vec<3, T> whole() const { return linear; }
-  T dot(const RowOfBlock& o) const {
-    return linear[0] * o.linear[0] + linear[1] * o.linear[1] + linear[2] * o.linear[2];
+/// f(s), s an integral constant: the set of an end, −1 for the world and for a body that never moves.
+template <int s = 0, class World, class F>
+void with_set(const World& world, const Anchor& end, F&& f) {
+  if constexpr (s == World::set_count) {
+    f(std::integral_constant<int, -1>{});
+  } else {
+    if (end.set == s && world.template set<s>().anchor_blocks(end) > 0) f(std::integral_constant<int, s>{});
+    else with_set<s + 1>(world, end, f);
   }
-  void operator+=(const RowOfBlock& o) { linear += o.linear; }
-};
+}
 
-template <class T>
-struct RowOfBlock<6, T> {
-  Vec<3, T> linear, angular;
+/// H of one end, row by row; the last three columns of a block that does not turn are zero.
+template <int R>
+using RowsOfEnd = std::array<Vec<6>, std::size_t(R)>;
 
-  RowOfBlock() {}
-  explicit RowOfBlock(const Vec<6, T>& row) : linear(linear_part(row)), angular(angular_part(row)) {}
-  Vec<6, T> whole() const { return twist<T>(linear, angular); }
-  T dot(const RowOfBlock& o) const {
-    return linear[0] * o.linear[0] + linear[1] * o.linear[1] + linear[2] * o.linear[2] +
-           angular[0] * o.angular[0] + angular[1] * o.angular[1] + angular[2] * o.angular[2];
-  }
-  void operator+=(const RowOfBlock& o) { linear += o.linear, angular += o.angular; }
-};
-
-/// H and Gᵀ = H A⁻¹ of one end, row by row.
-template <int R, int width, class T>
-struct RowsOfEnd {
-  static constexpr bool answers = true;
-  std::array<RowOfBlock<width, T>, R> H, G;
-
-  /// −0 + x is x for every x, so that the first addition to a row costs nothing.
-  void clear() {
-    unrolled<R>([this]<int k>() { H[k] = RowOfBlock<width, T>(Vec<width, T>::Constant(T(-0.0))); });
-  }
-};
-
-/// Of an end in the world, or on a body that never moves.
-struct NoRows {
-  static constexpr bool answers = false;
-  void clear() {}
-};
-
-/// All rows of one item: what `PoolRows` is for the items of a law.
-template <int R, class T, class RowsOfA, class RowsOfB>
+/// All rows of one item in double: what `PoolRows` is for the items of a law.
+template <int R>
 struct ItemRows {
-  using Scalar = T;
-  RowsOfA a;
-  RowsOfB b;
-  std::array<T, R> phi, stiffness, damping;
+  RowsOfEnd<R> a, b;
+  Vec<R> phi, stiffness, damping;
 
-  void clear() {
-    a.clear(), b.clear();
-    unrolled<R>([this]<int k>() { phi[k] = stiffness[k] = damping[k] = T(0); });
+  ItemRows() {
+    for (int k = 0; k < R; ++k) a[std::size_t(k)].setZero(), b[std::size_t(k)].setZero();
+    phi.setZero(), stiffness.setZero(), damping.setZero();
   }
 };
 
-/// What `RowEnd` is to a law, for one of the two ends: the sets of both, −1 for none, are known where this is
-/// compiled.
-template <class World, class Rows, int set_of_a, int set_of_b>
+/// What `RowEnd` is to a law, for one of the two ends.
+template <class World, int R>
 class ItemEnd {
  public:
-  ItemEnd(const World& world, Rows& rows, const Anchor& anchor, const Vec3& point, bool is_a)
-      : world_(world), rows_(rows), anchor_(anchor), point_(point), is_a_(is_a) {}
+  ItemEnd(const World& world, RowsOfEnd<R>& rows, const Anchor& anchor, const Vec3& point)
+      : world_(world), rows_(rows), anchor_(anchor), point_(point) {}
 
   void along(int k, const Vec3& direction) {
     add(k, [&](const auto& set) { return set.along(anchor_, 0, point_, direction); });
   }
   template <int n>
   void along(const Mat<n, 3>& axes, double sign) {
-    unrolled<n>([&]<int k>() { along(k, Vec3(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2))); });
+    for (int k = 0; k < n; ++k) along(k, Vec3(sign * axes.row(k).transpose()));
   }
+  /// Nothing for an end that does not turn.
   void about(int k, const Vec3& axis) {
     add(k, [&](const auto& set) {
       using Set = std::remove_cvref_t<decltype(set)>;
-      if constexpr (requires { set.about(anchor_, 0, axis); })
-        return set.about(anchor_, 0, axis);
-      else
-        return Vec<Set::width, typename Rows::Scalar>::Zero().eval();
+      if constexpr (requires { set.about(anchor_, 0, axis); }) return set.about(anchor_, 0, axis);
+      else return Mat<Set::width, 1, typename Set::Scalar>::Zero().eval();
     });
   }
 
  private:
   template <class F>
   void add(int k, const F& row) {
-    if (is_a_)
-      add_to<set_of_a>(rows_.a, k, row);
-    else
-      add_to<set_of_b>(rows_.b, k, row);
-  }
-  template <int s, class End, class F>
-  void add_to(End& end, int k, const F& row) {
-    if constexpr (End::answers) {
-      using Row = std::remove_reference_t<decltype(end.H[k])>;
-      end.H[k] += Row(row(world_.template set<s>()));
-    }
+    with_set(world_, anchor_, [&](auto s) {
+      if constexpr (s >= 0) {
+        const auto& set = world_.template set<s>();
+        rows_[std::size_t(k)].template head<std::remove_cvref_t<decltype(set)>::width>() += row(set).template cast<double>();
+      }
+    });
   }
 
   const World& world_;
-  Rows& rows_;
+  RowsOfEnd<R>& rows_;
   const Anchor& anchor_;
   Vec3 point_;
-  bool is_a_;
 };
 
 /// What `RowWriter` is to a law.
-template <class World, class Rows, int set_of_a, int set_of_b>
+template <class World, int R>
 class ItemWriter {
  public:
-  ItemWriter(const World& world, Rows& rows, const Anchor& a, const Anchor& b)
+  ItemWriter(const World& world, ItemRows<R>& rows, const Anchor& a, const Anchor& b)
       : world_(world), rows_(rows), a_(a), b_(b) {}
 
-  ItemEnd<World, Rows, set_of_a, set_of_b> end(const Anchor& anchor, const Vec3& point) {
-    return {world_, rows_, anchor, point, is_a(anchor)};
+  ItemEnd<World, R> end(const Anchor& anchor, const Vec3& point) {
+    return {world_, is_a(anchor) ? rows_.a : rows_.b, anchor, point};
   }
-  void phi(int k, double value) { rows_.phi[k] = typename Rows::Scalar(value); }
-  void soft(int k, double stiffness, double damping) {
-    rows_.stiffness[k] = typename Rows::Scalar(stiffness);
-    rows_.damping[k] = typename Rows::Scalar(damping);
-  }
+  void phi(int k, double value) { rows_.phi[k] = value; }
+  void soft(int k, double stiffness, double damping) { rows_.stiffness[k] = stiffness, rows_.damping[k] = damping; }
 
  private:
-  /// By its address, which is known where this is compiled; a law may copy its anchors too.
+  /// By its address, or, where a law copies its anchors, by its body: the two ends are never on one.
   bool is_a(const Anchor& anchor) const {
     return &anchor == &a_ || (&anchor != &b_ && anchor.set == a_.set && anchor.block == a_.block);
   }
 
   const World& world_;
-  Rows& rows_;
+  ItemRows<R>& rows_;
   const Anchor &a_, &b_;
 };
 

@@ -1,160 +1,139 @@
 /// One joint between bodies that answer alone: its rows, its W, and what an impulse does.
 #pragma once
 
-#include <delassus/core/unrolled.hpp>
 #include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/stages/item_rows.hpp>
 #include <delassus/math/positive.hpp>
+#include <delassus/math/twist.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
 namespace delassus {
 
-/// At the places where it is made. `sa` and `sb` are the sets of its ends, −1 for one that has no rows.
-template <class World, class Law, int sa, int sb>
+/// The velocities that a visit reads: those of the sweep, or those before all impulses.
+enum class VisitVelocity { next, free };
+
+/// At the places where it is made, in double whatever the sets are in: a short joint on a long arm has rows that single
+/// precision cannot tell from redundant ones.
+template <class World, int rows>
 class JointVisit {
  public:
-  static constexpr int R = Law::rows;
-  using T = typename World::Scalar;
-  using Item = typename Law::Item;
+  static constexpr int R = rows;
+  using Row = Vec<R>;
 
   double violation = 0;  ///< the largest |φ| of rows without a spring, m or rad
 
-  template <class S>
-  JointVisit(World& world, const Law& law, const Item& item, const S& stabilisation, double h)
-      : world_(world), item_(item) {
-    rows_.clear();
-    law.linearize(item, std::as_const(world), ItemWriter<World, Rows, sa, sb>(world, rows_, item.a, item.b));
-    unrolled<R>([&]<int k>() {
-      unrolled<k + 1>([&]<int l>() { W_(k, l) = T(-0.0); });
-      make_bias<k>(law, stabilisation, h);
-    });
-    answer<sa>(rows_.a, item.a.block);
-    answer<sb>(rows_.b, item.b.block);
+  template <class Law, class S>
+  JointVisit(World& world, const Law& law, const typename Law::Item& item, const S& stabilisation, double h) {
+    ItemRows<R> H;
+    law.linearize(item, std::as_const(world), ItemWriter<World, R>(world, H, item.a, item.b));
+    W_.setZero();
+    answer(world, item.a, H.a, a_);
+    answer(world, item.b, H.b, b_);
+    for (int k = 0; k < R; ++k) make_bias(law, item, H, k, stabilisation, h);
   }
 
-  /// H v + bias, v one of the arrays of velocities.
-  template <class Member>
-  Vec<R, T> velocity(const Member& member) const {
-    Vec<R, T> u;
-    unrolled<R>([&]<int k>() { u[k] = bias_[k]; });
-    add_velocity<sa>(rows_.a, item_.a.block, member, u);
-    add_velocity<sb>(rows_.b, item_.b.block, member, u);
+  bool answers() const { return a_.next != nullptr || b_.next != nullptr; }
+  /// H v + bias.
+  template <VisitVelocity which>
+  Row velocity() const {
+    Row u = bias_;
+    for (const End* end : {&a_, &b_}) {
+      const Scalar* v = which == VisitVelocity::free ? end->free : end->any;
+      for (int j = 0; j < end->width; ++j)
+        for (int k = 0; k < R; ++k) u[k] += end->H[std::size_t(k)][j] * double(v[j]);
+    }
     return u;
   }
-  /// δ = −(W + R)⁻¹ u.
-  Vec<R, T> against(const Vec<R, T>& u) const {
-    Mat<R, R, T> S;
-    unrolled<R>([&]<int k>() {
-      S(k, k) = W_(k, k) + yield_[k];
-      unrolled<k>([&]<int l>() { S(k, l) = W_(k, l); });
-    });
-    return -solve_positive<R, T>(S, u);
+  /// δ = −(W + R)⁻¹ u, zero where no end answers.
+  Row against(const Row& u) const {
+    Mat<R, R> S = W_;
+    S.diagonal() += yield_;
+    return -solve_positive<R, double>(S, u);
   }
   /// (W + R) λ: what λ does to this joint alone.
-  Vec<R, T> response(const Vec<R, T>& lambda) const {
-    Vec<R, T> u;
-    unrolled<R>([&]<int k>() {
-      T sum = yield_[k] * lambda[k];
-      unrolled<R>([&]<int l>() { sum += (k < l ? W_(l, k) : W_(k, l)) * lambda[l]; });
-      u[k] = sum;
-    });
-    return u;
-  }
+  Row response(const Row& lambda) const { return W_ * lambda + yields(lambda); }
   /// R λ.
-  Vec<R, T> yields(const Vec<R, T>& lambda) const {
-    Vec<R, T> u;
-    unrolled<R>([&]<int k>() { u[k] = yield_[k] * lambda[k]; });
-    return u;
+  Row yields(const Row& lambda) const { return yield_.cwiseProduct(lambda); }
+  /// v_next += G λ, of ends that answer.
+  void push(const Row& lambda) const {
+    for (const End* end : {&a_, &b_}) {
+      if (end->next == nullptr) continue;
+      for (int j = 0; j < end->width; ++j) {
+        double change = 0;
+        for (int k = 0; k < R; ++k) change += end->G[std::size_t(k)][j] * lambda[k];
+        end->next[j] += Scalar(change);
+      }
+    }
   }
-  /// v_next += G λ.
-  void push(const Vec<R, T>& lambda) const {
-    push_end<sa>(rows_.a, item_.a.block, lambda);
-    push_end<sb>(rows_.b, item_.b.block, lambda);
-  }
-  T trace() const {
-    T sum = 0;
-    unrolled<R>([&]<int k>() { sum += W_(k, k) + yield_[k]; });
-    return sum;
-  }
+  double trace() const { return W_.trace() + yield_.sum(); }
   /// f(set, block) for the ends that answer to impulses.
   template <class F>
-  void each_moving(F&& f) const {
-    if constexpr (sa >= 0)
-      if (world_.template set<sa>().moves(item_.a.block)) f(std::integral_constant<int, sa>{}, item_.a.block);
-    if constexpr (sb >= 0)
-      if (world_.template set<sb>().moves(item_.b.block)) f(std::integral_constant<int, sb>{}, item_.b.block);
+  void each_moving(const World& world, F&& f) const {
+    for (const End* end : {&a_, &b_})
+      if (end->next != nullptr)
+        with_set(world, *end->anchor, [&](auto s) {
+          if constexpr (s >= 0) f(s, end->anchor->block);
+        });
   }
 
  private:
-  template <int s>
-  static constexpr auto no_rows_or_width() {
-    if constexpr (s < 0)
-      return NoRows{};
-    else
-      return RowsOfEnd<R, World::template width_of<s>, T>{};
-  }
-  using Rows = ItemRows<R, T, decltype(no_rows_or_width<sa>()), decltype(no_rows_or_width<sb>())>;
+  using Scalar = typename World::Scalar;
+  struct End {
+    RowsOfEnd<R> H, G;  ///< G: A⁻¹ Hᵀ, by its columns
+    int width = 0;      ///< of the block's velocities; 0 in the world
+    const Anchor* anchor = nullptr;
+    const Scalar *any = nullptr, *free = nullptr;
+    Scalar* next = nullptr;  ///< `any`, where the body answers
+  };
 
-  template <int k, class S>
-  void make_bias(const Law& law, const S& stabilisation, double h) {
-    if (rows_.stiffness[k] > 0 || rows_.damping[k] > 0) {
-      const inner::SoftRow row =
-          inner::soft_row(double(rows_.stiffness[k]), double(rows_.damping[k]), double(rows_.phi[k]), h, 1);
-      yield_[k] = T(row.compliance);
-      bias_[k] = T(row.bias);
+  void answer(World& world, const Anchor& anchor, const RowsOfEnd<R>& H, End& end) {
+    with_set(world, anchor, [&](auto s) {
+      if constexpr (s >= 0) {
+        auto& set = world.template set<s>();
+        using Set = std::remove_cvref_t<decltype(set)>;
+        const Index block = anchor.block;
+        end.anchor = &anchor;
+        end.H = H;
+        end.width = Set::width;
+        end.any = set.v_next[block].data();
+        end.free = set.v_free[block].data();
+        if (!set.moves(block)) return;
+        end.next = set.v_next[block].data();
+        for (int k = 0; k < R; ++k) {
+          auto& G = end.G[std::size_t(k)];
+          G.setZero();
+          G.template head<3>() = double(set.inverse_mass(block)) * H[std::size_t(k)].template head<3>();
+          if constexpr (Set::width == 6)
+            G.template tail<3>() = set.inverse_inertia(block).template cast<double>() * H[std::size_t(k)].template tail<3>();
+          for (int l = 0; l <= k; ++l) W_(k, l) += H[std::size_t(l)].dot(G);
+          for (int l = 0; l < k; ++l) W_(l, k) = W_(k, l);
+        }
+      }
+    });
+  }
+  template <class Law, class S>
+  void make_bias(const Law& law, const typename Law::Item& item, const ItemRows<R>& H, int k, const S& stabilisation, double h) {
+    yield_[k] = 0;
+    if (H.stiffness[k] > 0 || H.damping[k] > 0) {
+      const inner::SoftRow row = inner::soft_row(H.stiffness[k], H.damping[k], H.phi[k], h, 1);
+      yield_[k] = row.compliance;
+      bias_[k] = row.bias;
     } else {
-      yield_[k] = T(0);
-      if constexpr (requires { stabilisation.joint_compliance(h); })
-        yield_[k] = T(stabilisation.joint_compliance(h));
-      bias_[k] = T(stabilisation.equality(double(rows_.phi[k]), h));
-      violation = std::max(violation, double(std::abs(rows_.phi[k])));
+      if constexpr (requires { stabilisation.joint_compliance(h); }) yield_[k] = stabilisation.joint_compliance(h);
+      bias_[k] = stabilisation.equality(H.phi[k], h);
+      violation = std::max(violation, std::abs(H.phi[k]));
     }
-    if constexpr (requires { law.speed(item_); }) bias_[k] -= T(law.speed(item_));
-  }
-  /// G and W of one end.
-  template <int s, class End>
-  void answer(End& end, Index block) {
-    if constexpr (End::answers) {
-      const auto& set = std::as_const(world_).template set<s>();
-      const T over_mass = set.inverse_mass(block);
-      unrolled<R>([&]<int k>() {
-        end.G[k].linear = end.H[k].linear * over_mass;
-        if constexpr (World::template width_of<s> == 6)
-          end.G[k].angular = set.inverse_inertia(block) * end.H[k].angular;
-        unrolled<k + 1>([&]<int l>() { W_(k, l) += end.H[l].dot(end.G[k]); });
-      });
-    }
-  }
-  template <int s, class End, class Member>
-  void add_velocity(const End& end, Index block, const Member& member, Vec<R, T>& u) const {
-    if constexpr (End::answers) {
-      using Row = std::remove_cvref_t<decltype(end.H[0])>;
-      const Row v(member(std::as_const(world_).template set<s>())[block]);
-      unrolled<R>([&]<int k>() { u[k] += end.H[k].dot(v); });
-    }
-  }
-  template <int s, class End>
-  void push_end(const End& end, Index block, const Vec<R, T>& lambda) const {
-    if constexpr (End::answers) {
-      auto& v = world_.template set<s>().v_next[block];
-      unrolled<R>([&]<int k>() {
-        const auto row = end.G[k].whole();
-        unrolled<std::remove_cvref_t<decltype(row)>::RowsAtCompileTime>(
-            [&]<int j>() { v[j] += row[j] * lambda[k]; });
-      });
-    }
+    if constexpr (requires { law.speed(item); }) bias_[k] -= law.speed(item);
+    if (!answers()) yield_[k] = 0;
   }
 
-  World& world_;
-  const Item& item_;
-  Rows rows_;
-  Mat<R, R, T> W_;  ///< on and below the diagonal, without R
-  std::array<T, R> bias_, yield_;
+  End a_, b_;
+  Mat<R, R> W_;  ///< without R
+  Row bias_, yield_;
 };
 
 }  // namespace delassus

@@ -4,6 +4,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/unrolled.hpp>
+#include <delassus/loop/stages/item_rows.hpp>
 #include <delassus/loop/stages/joint_visit.hpp>
 #include <delassus/loop/stages/point_visit.hpp>
 #include <delassus/loop/step_report.hpp>
@@ -35,7 +36,6 @@ template <class... Sets, class Laws>
 class JointVisits<World<Sets...>, Laws> {
  public:
   using World = delassus::World<Sets...>;
-  using T = typename World::Scalar;
 
   /// Leaves v_next, which is v_free on entry, and the impulses of the joints. `scheme` says `sweeps` and
   /// `tolerance`.
@@ -54,7 +54,8 @@ class JointVisits<World<Sets...>, Laws> {
       sums = measure(world, laws, stabilisation, h);
     }
     sums.give(solved.measure);
-    solved.status = solved.measure.residual <= scheme.tolerance ? Status::converged : Status::max_iterations;
+    const bool is_met = solved.measure.residual <= scheme.tolerance, is_exact = !were_shared && !are_shared_;
+    solved.status = is_met ? Status::converged : is_exact ? Status::stalled : Status::max_iterations;
   }
 
   /// What outlives a step.
@@ -69,12 +70,12 @@ class JointVisits<World<Sets...>, Laws> {
 
     double velocity() const { return std::max(d, u); }
     template <int R>
-    void add(const Vec<R, T>& d_, const Vec<R, T>& u_, const Vec<R, T>& lambda_) {
+    void add(const Vec<R>& d_, const Vec<R>& u_, const Vec<R>& lambda_) {
       double own = 0;
       unrolled<R>([&]<int k>() {
-        d += double(d_[k]) * double(d_[k]);
-        own += double(u_[k]) * double(u_[k]);
-        lambda += double(lambda_[k]) * double(lambda_[k]);
+        d += d_[k] * d_[k];
+        own += u_[k] * u_[k];
+        lambda += lambda_[k] * lambda_[k];
       });
       u += own;
       worst = std::max(worst, own);
@@ -96,8 +97,8 @@ class JointVisits<World<Sets...>, Laws> {
     void add(double w, const V& d, const V& lambda) {
       least = std::min(least, w);
       most = std::max(most, w);
-      load = std::max(load, double(d.norm()));
-      response = std::max(response, w * double(lambda.norm()));
+      load = std::max(load, d.norm());
+      response = std::max(response, w * lambda.norm());
       ++joints;
     }
     bool are_exceeded() const { return response * least > double(joints) * most * load; }
@@ -120,38 +121,28 @@ class JointVisits<World<Sets...>, Laws> {
       using Law = std::remove_cvref_t<decltype(pool.law)>;
       for (const Index place : pool.slots.active()) {
         const auto& item = std::as_const(pool.items[place]);
-        with_set(world, item.a, [&](auto sa) {
-          with_set(world, item.b, [&](auto sb) {
-            if constexpr (HoldsPoint<Law, World>)
+        if constexpr (HoldsPoint<Law>)
+          with_set(world, item.a, [&](auto sa) {
+            with_set(world, item.b, [&](auto sb) {
               f(pool, place, PointVisit<World, sa, sb>(world, pool.law, item, stabilisation, h));
-            else
-              f(pool, place, JointVisit<World, Law, sa, sb>(world, pool.law, item, stabilisation, h));
+            });
           });
-        });
+        else
+          f(pool, place, JointVisit<World, Law::rows>(world, pool.law, item, stabilisation, h));
       }
     });
   }
-  /// f(the set of an end), −1 for the world and for a body that never moves.
-  template <int s = 0, class F>
-  static void with_set(const World& world, const Anchor& end, F&& f) {
-    if constexpr (s == World::set_count) {
-      f(std::integral_constant<int, -1>{});
-    } else {
-      if (end.set == s && world.template set<s>().anchor_blocks(end) > 0)
-        f(std::integral_constant<int, s>{});
-      else
-        with_set<s + 1>(world, end, f);
-    }
-  }
+  template <class Visit>
+  static constexpr int rows_of = std::remove_cvref_t<Visit>::R;
 
   static void note(const auto& visit, Sums& sums) {
     sums.violation = std::max(sums.violation, visit.violation);
-    sums.rows += std::remove_cvref_t<decltype(visit)>::R;
+    sums.rows += rows_of<decltype(visit)>;
   }
-  /// Whether some end answers: there is nothing to measure of a joint between bodies that are led.
-  bool see(const auto& visit) {
+  /// Whether some end answers: what holds two bodies that are led has no impulse, and nothing to measure.
+  bool see(const World& world, const auto& visit) {
     bool answers = false;
-    visit.each_moving([&](auto s, Index block) {
+    visit.each_moving(world, [&](auto s, Index block) {
       auto& seen = std::get<s>(seen_)[block];
       if (seen == now_) are_shared_ = true;
       seen = now_;
@@ -159,28 +150,25 @@ class JointVisits<World<Sets...>, Laws> {
     });
     return answers;
   }
-  static void keep(auto& pool, Index place, const auto& lambda) {
-    pool.impulse[place] = lambda.template cast<double>();
+  template <int R>
+  static void keep(auto& pool, Index place, const Vec<R>& lambda) {
+    pool.impulse[place] = lambda;
     double size = 0;
-    unrolled<std::remove_cvref_t<decltype(lambda)>::RowsAtCompileTime>(
-        [&]<int k>() { size += double(lambda[k]) * double(lambda[k]); });
+    unrolled<R>([&]<int k>() { size += lambda[k] * lambda[k]; });
     pool.starts_cold[place] = !(size < std::numeric_limits<double>::infinity());
   }
-
-  static constexpr auto next = [](const auto& set) -> const auto& { return set.v_next; };
-  static constexpr auto free = [](const auto& set) -> const auto& { return set.v_free; };
 
   /// One exact visit each, from zero.
   template <class S>
   Sums visit_alone(World& world, Laws& laws, const S& stabilisation, double h) {
     Sums sums;
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
-      const bool answers = see(visit);
-      const auto d = visit.velocity(next);
-      const auto lambda = visit.against(d);
+      using Row = Vec<rows_of<decltype(visit)>>;
+      const bool answers = see(world, visit);
+      const Row d = visit.template velocity<VisitVelocity::next>(), lambda = visit.against(d);
       visit.push(lambda);
       keep(pool, place, lambda);
-      if (answers) sums.template add<std::remove_cvref_t<decltype(visit)>::R>(d, d + visit.response(lambda), lambda);
+      if (answers) sums.add(d, Row(d + visit.response(lambda)), lambda);
       note(visit, sums);
     });
     return sums;
@@ -188,27 +176,24 @@ class JointVisits<World<Sets...>, Laws> {
 
   // The ways of joints that share bodies stay out of the function that a pendulum's step is inlined to.
   template <class S>
-  [[gnu::noinline]] Sums begin_with_last(World& world, Laws& laws, const S& stabilisation, double h,
-                                         double step_ratio) {
+  [[gnu::noinline]] Sums begin_with_last(World& world, Laws& laws, const S& stabilisation, double h, double step_ratio) {
     Sums sums;
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
-      see(visit);
-      auto& impulse = pool.impulse[place];
-      if (pool.starts_cold[place])
-        impulse.setZero();
-      else
-        impulse *= step_ratio;
-      visit.push(impulse.template cast<T>());
       note(visit, sums);
+      auto& impulse = pool.impulse[place];
+      if (!see(world, visit) || pool.starts_cold[place]) impulse.setZero();
+      else impulse *= step_ratio;
+      visit.push(impulse);
     });
     return sums;
   }
   template <class S>
   [[gnu::noinline]] void sweep(World& world, Laws& laws, const S& stabilisation, double h) {
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
-      using Row = Vec<std::remove_cvref_t<decltype(visit)>::R, T>;
-      const Row lambda = pool.impulse[place].template cast<T>();
-      const Row change = visit.against(visit.velocity(next) + visit.yields(lambda));
+      using Row = Vec<rows_of<decltype(visit)>>;
+      if (!visit.answers()) return;
+      const Row lambda = pool.impulse[place];
+      const Row change = visit.against(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda));
       visit.push(change);
       keep(pool, place, Row(lambda + change));
     });
@@ -220,12 +205,11 @@ class JointVisits<World<Sets...>, Laws> {
     Sums sums;
     Loads loads;
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
-      constexpr int R = std::remove_cvref_t<decltype(visit)>::R;
-      const double w = double(visit.trace()) / R;
-      if (!(w > 0)) return;  // both ends go where they are led
-      const Vec<R, T> lambda = pool.impulse[place].template cast<T>(), d = visit.velocity(free);
-      sums.template add<R>(d, visit.velocity(next) + visit.yields(lambda), lambda);
-      loads.add(w, d, lambda);
+      using Row = Vec<rows_of<decltype(visit)>>;
+      if (!visit.answers()) return;
+      const Row lambda = pool.impulse[place], d = visit.template velocity<VisitVelocity::free>();
+      sums.add(d, Row(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda)), lambda);
+      loads.add(visit.trace() / int(Row::RowsAtCompileTime), d, lambda);
     });
     if (sums.u > far * far * sums.velocity() && loads.are_exceeded()) start_cold(laws);
     return sums;

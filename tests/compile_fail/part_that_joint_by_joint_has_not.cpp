@@ -1,0 +1,10 @@
+// expect: delassus: this AnimationLoop has no part of this role: without constraints, and under JointByJoint, there is no solver and no compliance
+#include <delassus/delassus.hpp>
+#include <delassus/loop/joint_by_joint.hpp>
+
+using namespace delassus;
+
+int main() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, JointByJoint{}};
+  return loop.part<role::Solver>().max_iterations;
+}
