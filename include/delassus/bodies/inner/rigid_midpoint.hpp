@@ -63,7 +63,6 @@ class RigidMidpoint {
     if (body.moves) {
       body.t = h * body.mean_rate;
       body.turn = cayley_matrix(body.t);
-      body.stiffness.setZero();
     }
     s.x[b] = body.x + Vector(h * body.mean).template cast<double>();
     s.R[b] = body.R * body.turn;
@@ -79,21 +78,27 @@ class RigidMidpoint {
     s.R[b] = bodies_[b].R;
   }
 
-  /// A force (N·s over the step, world axes) at the body's own point r.
+  /// What is missing to the two equations under this impulse; returns it as a velocity, m/s.
+  T balance(const RigidState<T>& s, Index b, const Twist& impulse) {
+    Body& body = bodies_[b];
+    const Matrix& I = s.inertia[b];
+    body.momentum = I * Vector(T(2) * body.mean_rate - body.rate);
+    body.missing = (T(2) * s.mass[b]) * (body.mean - body.velocity) - linear_part(impulse);
+    body.missing_moment = body.turn * body.momentum - I * body.rate - body.R.transpose() * angular_part(impulse);
+    body.stiffness.setZero();
+    const Vector rate = s.inverse_inertia[b] * body.missing_moment;
+    return std::sqrt((body.missing.squaredNorm() * s.inverse_mass[b] + body.missing_moment.dot(rate)) *
+                     s.inverse_mass[b]);
+  }
+  /// A force (N·s over the step, world axes) at the body's own point r, after `balance`.
   void stiffen(Index b, const Vector& force, const Vector& r, T h) {
     Body& body = bodies_[b];
     body.stiffness += (h / 2) * (skew(Vector(body.R.transpose() * force)) * cayley_slope(body.t, r));
   }
-
-  /// What is missing to the two equations under this impulse, and the matrix of the second; returns it as a
-  /// velocity, m/s.
-  T balance(const RigidState<T>& s, Index b, const Twist& impulse, T h) {
+  /// The matrix of the second equation where `balance` was, with the forces of `stiffen`.
+  void differentiate(const RigidState<T>& s, Index b, T h) {
     Body& body = bodies_[b];
-    const Matrix& I = s.inertia[b];
-    const Vector p = I * Vector(T(2) * body.mean_rate - body.rate);
-    body.missing = (T(2) * s.mass[b]) * (body.mean - body.velocity) - linear_part(impulse);
-    body.missing_moment = body.turn * p - I * body.rate - body.R.transpose() * angular_part(impulse);
-    const Matrix slope = T(2) * (body.turn * I) + h * cayley_slope(body.t, p) + body.stiffness;
+    const Matrix slope = T(2) * (body.turn * s.inertia[b]) + h * cayley_slope(body.t, body.momentum) + body.stiffness;
     const T scale = T(1) / slope.norm();
     body.inverse = scale * inverse(Matrix(scale * slope));
     // δθ₊ = h R (1 + t^/2)/d δΩ̄
@@ -102,12 +107,9 @@ class RigidMidpoint {
     body.response =
         (h / (T(1) + body.t.squaredNorm() / 4)) * (body.R * (turned * (body.inverse * body.R.transpose())));
     body.over_mass = h * T(0.5) * s.inverse_mass[b];
-    const Vector rate = s.inverse_inertia[b] * body.missing_moment;
-    return std::sqrt((body.missing.squaredNorm() * s.inverse_mass[b] + body.missing_moment.dot(rate)) *
-                     s.inverse_mass[b]);
   }
 
-  /// What an impulse on the body does to q₊, by the matrix of `balance`: each column of X.
+  /// What an impulse on the body does to q₊, by the matrix of `differentiate`: each column of X.
   template <int C>
   Mat<6, C, T> answer(Index b, const Mat<6, C, T>& X) const {
     const Body& body = bodies_[b];
@@ -145,7 +147,7 @@ class RigidMidpoint {
  private:
   struct Body {
     Vec3 x;
-    Vector velocity, rate, mean, mean_rate, t, missing, missing_moment;
+    Vector velocity, rate, mean, mean_rate, t, missing, missing_moment, momentum;
     Matrix R, turn, stiffness, inverse, response;
     T over_mass = 0;
     bool moves = false;

@@ -106,7 +106,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     int slow = 0;
     for (int k = 0;; ++k) {
       linearize_both(world, laws, rows, h);
-      const double size = balance(world, laws, rows, h);
+      const double size = balance(world, rows, h);
       if (k == 0) first = size;
       report.measure.residual = size;
       report.measure.floor = 64 * std::numeric_limits<T>::epsilon() * load_;
@@ -122,6 +122,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       if (report.status != Status::max_iterations || is_lost) return;
       last = size;
       ++report.factorizations;
+      differentiate(world, laws, rows, h);
       if (!improve(world, rows, is_damped ? std::clamp(1e-2 * size / first, 1e-9, 1e-2) : 1e-12)) return;
     }
   }
@@ -159,9 +160,9 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     place([&](auto& bodies, auto& state, Index b) { bodies.back(state, b); });
   }
 
-  /// P − h f − Hᵀλ with the geometric stiffness, and φ + R λ + c; returns the largest of both, in units of
+  /// P − h f − Hᵀλ, and φ + R λ + c; returns the largest of both, in units of
   /// the speed.
-  double balance(World& world, const Laws& laws, Rows& rows, double h) {
+  double balance(World& world, Rows& rows, double h) {
     double most = 0, spoilt = 0;
     load_ = 0;
     impulse_ = force_;
@@ -169,8 +170,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       auto& pool = rows.template pool<p>();
       for (Index i = 0; i < pool.items(); ++i) {
         const auto& lambda = std::get<p>(impulses.pools)[i];
-        world.each(
-            [&](auto& set, auto s) { push<p>(set, s, laws.template pool<p>().item(i), i, lambda, h); });
+        world.each([&](auto& set, auto s) { push<p>(set, s, i, lambda); });
         for (int k = 0; k < pool.rows; ++k) {
           pool.compliance[i][k] = std::get<p>(yield_.pools)[i][k];
           soften(pool, i, k, double(std::get<p>(start_.pools)[i][k]), h);
@@ -183,7 +183,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       for (const Index b : set.active())
         if (set.moves(b)) {
           const double missing =
-              double(std::get<s>(bodies_).balance(set.state(), b, std::get<s>(impulse_)[b], T(h)));
+              double(std::get<s>(bodies_).balance(set.state(), b, std::get<s>(impulse_)[b]));
           most = std::max(most, missing);
           spoilt += 0 * missing;  // NaN for one that is no number, which a maximum would lose
         }
@@ -192,21 +192,41 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     load_ /= unit;
     return most / unit + spoilt;
   }
-  /// impulse += Hᵀλ; the force at each end of an item stiffens its body.
-  template <int p, class Set, class S, class Item, class Lambda>
-  void push(const Set& set, S s, const Item& item, Index i, const Lambda& lambda, double h) {
+  /// f(b, Hᵀλ) for the ends of item i that move.
+  template <int p, class Set, class S, class Lambda, class F>
+  void each_push(const Set& set, S s, Index i, const Lambda& lambda, F&& f) {
     const auto& blocks = std::get<s>(middle_.template pool<p>().sets);
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
       const Index b = blocks.block[e];
       if (!set.moves(b)) continue;
-      const typename Set::Velocity by = blocks.H[e].transpose() * lambda;
+      f(b, typename Set::Velocity(blocks.H[e].transpose() * lambda));
+    }
+  }
+  /// impulse += Hᵀλ.
+  template <int p, class Set, class S, class Lambda>
+  void push(const Set& set, S s, Index i, const Lambda& lambda) {
+    each_push<p>(set, s, i, lambda, [&](Index b, const auto& by) {
       std::get<s>(impulse_)[b] += by;
       load_ = std::max(load_, double(linear_part(by).norm() / set.mass(b)));
-      each_end(item, [&](const Anchor& end) {
-        if (end.set == s && end.block == b)
-          std::get<s>(bodies_).stiffen(b, linear_part(by), end.local.template cast<T>(), T(h));
-      });
-    }
+    });
+  }
+  /// The matrices of the bodies where `balance` was: the force at each end of an item stiffens its body.
+  void differentiate(World& world, const Laws& laws, const Rows& rows, double h) {
+    for_each_index<Rows::pool_count>([&](auto p) {
+      for (Index i = 0; i < rows.template pool<p>().items(); ++i)
+        world.each([&](auto& set, auto s) {
+          each_push<p>(set, s, i, std::get<p>(impulses.pools)[i], [&](Index b, const auto& by) {
+            each_end(laws.template pool<p>().item(i), [&](const Anchor& end) {
+              if (end.set == s && end.block == b)
+                std::get<s>(bodies_).stiffen(b, linear_part(by), end.local.template cast<T>(), T(h));
+            });
+          });
+        });
+    });
+    world.each([&](auto& set, auto s) {
+      for (const Index b : set.active())
+        if (set.moves(b)) std::get<s>(bodies_).differentiate(set.state(), b, T(h));
+    });
   }
   /// R and c of a soft row, in `bias`; λ (h k/2 + c)⁻¹ + φ₊ + φ (h k/2 − c)/(h k/2 + c) = 0.
   template <class Pool>
