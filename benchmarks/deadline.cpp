@@ -69,9 +69,9 @@ BENCHMARK(clock_alone)->Name("deadline/lateness/clock_alone")->Iterations(2000)-
 /// A tower of boxes in the first step of its fall: no tolerance ends this solve, the deadline does, but for ten boxes whose error Newton's
 /// stage brings down to rounding. What the system adds when it runs another program meanwhile is not the solve's: those calls are counted,
 /// and the rest has figures of its own.
-template <class Solver>
+template <class Solver, class Compliance = AssembledCompliance>
 void lateness(benchmark::State& state) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, GaussSeidel{.max_iterations = 0}};
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, Compliance{}, GaussSeidel{.max_iterations = 0}};
   auto& set = bodies<RigidBodies>(loop.world());
   set.add_fixed(HalfSpace{});
   for (int i = 0; i < int(state.range(0)); ++i)
@@ -92,6 +92,7 @@ void towers(benchmark::internal::Benchmark* b) { b->Arg(10)->Arg(100)->Iteration
 void high_tower(benchmark::internal::Benchmark* b) { b->Arg(1000)->Iterations(500)->Unit(benchmark::kMillisecond); }
 BENCHMARK(lateness<AcceleratedSweeps>)->Name("deadline/lateness/sweeps/boxes")->Apply(towers);
 BENCHMARK(lateness<AcceleratedSweeps>)->Name("deadline/lateness/sweeps/boxes")->Apply(high_tower);
+BENCHMARK(lateness<AcceleratedSweeps, MatrixFreeCompliance>)->Name("deadline/lateness/matrix_free/boxes")->Apply(high_tower);
 BENCHMARK(lateness<AcceleratedGaussSeidel>)->Name("deadline/lateness/boxes")->Apply(towers);
 BENCHMARK(lateness<AcceleratedGaussSeidel>)->Name("deadline/lateness/boxes")->Apply(high_tower);
 

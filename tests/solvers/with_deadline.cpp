@@ -242,7 +242,7 @@ TEST_CASE("Newton's method that came to nothing before a deadline is passed over
 }
 
 // No more than 64 constraints lie between two looks, and what is left of one pass before the next begins: without looks inside, a
-// sweep and a measure are 1600 calls of 200 boxes.
+// sweep and a measure are 1600 calls of 200 boxes. Before the deadline is kept what loading the best takes, which are no calls.
 TEMPLATE_TEST_CASE("how much is done after the deadline does not grow with the problem", "", GaussSeidel, AcceleratedSweeps,
                    AcceleratedGaussSeidel) {
   for (const int boxes : {25, 50, 200}) {
@@ -254,8 +254,9 @@ TEMPLATE_TEST_CASE("how much is done after the deadline does not grow with the p
       const SolveReport r = solve_until(p, TestType{.tolerance = 1e-14}, double(deadline), WorkClock{});
       CAPTURE(boxes, deadline, r.sweeps, r.factorizations);
       if (r.status != Status::deadline) break;
-      REQUIRE(calls >= deadline);
-      REQUIRE(calls < deadline + 128);
+      const double kept = inner::load_share<decltype(p.W)> * 8 * boxes;
+      REQUIRE(double(calls) >= double(deadline) - kept);
+      REQUIRE(double(calls) < double(deadline) - kept / 2 + 128);
     }
   }
 }

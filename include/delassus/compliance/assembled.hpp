@@ -139,6 +139,7 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
     return T(sum);
   }
 
+  static constexpr bool commit_is_free = true;
   template <int p>
   void commit(const Rows&, Index, const Vec<Rows::template rows_of<p>, T>&) {}
 

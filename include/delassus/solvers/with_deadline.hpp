@@ -20,8 +20,9 @@ namespace delassus {
 /// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one
 /// millisecond together. The clock is read after each sweep, inside long sweeps, measures and factorizations
 /// of Newton's method in the velocities of the bodies, and before each of those, which is not begun where it
-/// would end too late. When the time is up what is half done is let go, and the iterate of the smallest
-/// measured residual is returned, with status `deadline`; islands that come later still get their
+/// would end too late. When the time is up, but for what giving an iterate back takes (`load_share` of a
+/// sweep), what is half done is let go, and the iterate of the smallest measured residual is returned, with
+/// status `deadline`; islands that come later still get their
 /// `min_iterations` sweeps and a measure, since a contact that is new has no impulse before its first sweep.
 template <class Solver = inner::Absent, Clock C = SteadyClock>
 struct WithDeadline {

@@ -25,11 +25,14 @@ class Watch {
   double look() {
     if (is_late_) return now_;
     now_ = clock_.now();
-    is_late_ = now_ >= deadline_;
+    is_late_ = now_ >= end();
     return now_;
   }
   bool is_late() const { return is_late_; }
-  double deadline() const { return deadline_; }
+  /// When work has to end, s: before the deadline, by what comes after it.
+  double end() const { return deadline_ - kept_; }
+  /// Keeps so much time, s, for what comes after the end.
+  void keep(double time) { kept_ = time; }
 
   void let_go(bool may) { may_let_go_ = may; }
   /// What is begun now, or half done, is let go.
@@ -55,7 +58,7 @@ class Watch {
 
  private:
   const C& clock_;
-  double deadline_, now_ = 0;
+  double deadline_, kept_ = 0, now_ = 0;
   int since_ = 0;  ///< work
   bool is_late_ = false, may_let_go_ = false, has_let_go_ = false;
 };
