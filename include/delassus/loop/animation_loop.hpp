@@ -149,10 +149,15 @@ class AnimationLoop {
   }
 
   /// The constraint problem of the last step, whole and apart from the loop: laws, rows, W, islands.
-  auto problem() const
-    requires(has_problem)
-  {
-    return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
+  template <class Self = AnimationLoop>
+  auto problem() const {
+    static_assert(Self::has_problem,
+                  "delassus: this AnimationLoop makes no constraint problem: without constraints, under JointByJoint and by "
+                  "NewtonMidpoint there is no W; use PlainOrder and ImplicitMidpoint, or take problem() out");
+    if constexpr (Self::has_problem)
+      return Problem<Laws, typename Work::Rows, typename Work::Operator>{laws(), work_.rows, work_.W, work_.islands, h_};
+    else
+      return inner::Absent{};
   }
   /// The same into one that is there: arrays that are large enough are written over, and nothing is allocated.
   template <class P>
@@ -319,7 +324,7 @@ class AnimationLoop {
   /// The step of which h_ is a part under LocatedImpacts, else h_, s.
   double whole_step() const {
     if constexpr (locates_impacts)
-      if (work_.substeps.h > 0) return work_.substeps.h;
+      if (work_.parts.h > 0) return work_.parts.h;
     return h_;
   }
   void set_part(double h, bool is_last);

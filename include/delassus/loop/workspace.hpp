@@ -91,12 +91,12 @@ struct whole_step<I, World, Laws, Rows> {
 
 /// A scheme that does a step in parts brings what it needs for that, `Parts`.
 template <class Scheme, class World, class Laws, class Rows>
-struct substeps_of {
+struct parts_of {
   using type = Nothing<8>;
 };
 template <class Scheme, class World, class Laws, class Rows>
   requires requires { typename Scheme::template Parts<World, Laws, Rows>; }
-struct substeps_of<Scheme, World, Laws, Rows> {
+struct parts_of<Scheme, World, Laws, Rows> {
   using type = typename Scheme::template Parts<World, Laws, Rows>;
 };
 
@@ -133,7 +133,7 @@ struct Workspace {
   [[no_unique_address]] std::conditional_t<predicts, Impulses<Rows>, Nothing<5>> predicted;
   [[no_unique_address]] typename whole_step<Integrator, World, Laws, Rows>::type whole_step;
   [[no_unique_address]] std::conditional_t<projects_position, typename widths_of<World>::Scratch, Nothing<4>> displacement;
-  [[no_unique_address]] typename substeps_of<Scheme, World, Laws, Rows>::type substeps;
+  [[no_unique_address]] typename parts_of<Scheme, World, Laws, Rows>::type parts;
   [[no_unique_address]] std::conditional_t<passes_impacts_on, std::vector<Vec3>, Nothing<9>> impacts;
 };
 
@@ -143,7 +143,7 @@ struct Workspace<World, Constraints<>, C, S, I, St, Sc, Ac> {
   using Rows = typename rows_of<World, Constraints<>>::type;
   explicit Workspace(const auto&) {}
   [[no_unique_address]] typename inner::whole_step<I, World, Constraints<>, Rows>::type whole_step;
-  [[no_unique_address]] typename substeps_of<Sc, World, Constraints<>, Rows>::type substeps;
+  [[no_unique_address]] typename parts_of<Sc, World, Constraints<>, Rows>::type parts;
 };
 
 }  // namespace delassus::inner

@@ -56,7 +56,7 @@ void each_rate_of_contact(const auto& world, Laws& laws, auto& collision, auto& 
 template <class... Policies>
 double AnimationLoop<Policies...>::begin_flights(double tolerance) {
   if constexpr (locates_impacts) {
-    auto& flights = work_.substeps;
+    auto& flights = work_.parts;
     flights.h = h_, flights.start = start_, flights.steps = steps_;
     flights.begin(world(), laws(), work_.contacts, report_);
     detect();
@@ -75,7 +75,7 @@ double AnimationLoop<Policies...>::begin_flights(double tolerance) {
 
 template <class... Policies>
 bool AnimationLoop<Policies...>::may_locate() const {
-  if constexpr (locates_impacts) return work_.substeps.are_joints_closed;
+  if constexpr (locates_impacts) return work_.parts.are_joints_closed;
   return false;
 }
 
@@ -83,7 +83,7 @@ template <class... Policies>
 bool AnimationLoop<Policies...>::closes(double reach) {
   bool is_closing = false;
   if constexpr (locates_impacts) {
-    auto& flights = work_.substeps;
+    auto& flights = work_.parts;
     std::erase_if(work_.contacts.points,
                   [&](const ContactPoint& p) { return !(p.gap <= reach) || flights.stays(p.pair); });
     inner::each_rate_of_contact(std::as_const(*this).world(), laws(), part<role::Collision>(), work_,
@@ -97,7 +97,7 @@ template <class... Policies>
 double AnimationLoop<Policies...>::soonest_touch(double reach) {
   double soonest = std::numeric_limits<double>::infinity();
   if constexpr (locates_impacts) {
-    auto& flights = work_.substeps;
+    auto& flights = work_.parts;
     work_.contacts.points = flights.ahead();
     std::erase_if(work_.contacts.points,
                   [&](const ContactPoint& p) { return p.gap <= reach || flights.stays_ahead(p.pair); });
@@ -111,9 +111,9 @@ double AnimationLoop<Policies...>::soonest_touch(double reach) {
 
 template <class... Policies>
 void AnimationLoop<Policies...>::set_part(double h, bool is_last) {
-  work_.substeps.go_back(world(), laws(), report_);
+  work_.parts.go_back(world(), laws(), report_);
   last_h_ = h_ = h;
-  work_.substeps.stay_on_the_way(world(), !is_last);
+  work_.parts.stay_on_the_way(world(), !is_last);
 }
 
 template <class... Policies>
@@ -124,7 +124,7 @@ void AnimationLoop<Policies...>::see() {
     const CollisionReport seen{.pairs = report_.pairs, .queries = report_.queries};
     report_ = flown;  // what overlaps here is no end of a step
     report_.pairs = seen.pairs, report_.queries = seen.queries;
-    work_.substeps.see(work_.contacts);
+    work_.parts.see(work_.contacts);
   }
 }
 
@@ -136,7 +136,7 @@ auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
     work_.contacts.record();
     route_contacts(laws(), work_.contacts, work_.materials);
     if constexpr (solves_whole_step) {
-      if (h < inner::shortest_flight<typename Parts::Integrator>() * work_.substeps.h) {
+      if (h < inner::shortest_flight<typename Parts::Integrator>() * work_.parts.h) {
         inner::linearize_to_build(*this);
         solve();
         correct();
@@ -151,14 +151,14 @@ auto AnimationLoop<Policies...>::fly(double h, bool is_last) {
       inner::solve_to_advance(*this);
     }
     see();
-    return work_.substeps.landing(work_.contacts);
+    return work_.parts.landing(work_.contacts);
   }
 }
 
 template <class... Policies>
 void AnimationLoop<Policies...>::meet(double reach) {
   if constexpr (locates_impacts) {
-    auto& flights = work_.substeps;
+    auto& flights = work_.parts;
     auto& contacts = work_.contacts;
     h_ = flights.h;
     flights.add_impulses(laws());
@@ -202,7 +202,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::step_with_contacts(double h) {
   if constexpr (locates_impacts) {
     set_part(h, true);
-    work_.contacts = work_.substeps.contacts_before();
+    work_.contacts = work_.parts.contacts_before();
     detect();
     inner::linearize_to_build(*this);
     solve();
@@ -211,14 +211,14 @@ void AnimationLoop<Policies...>::step_with_contacts(double h) {
       advance_by(inner::KickAndDrift{});
     else
       advance();
-    work_.substeps.add_contacts(work_.contacts);
+    work_.parts.add_contacts(work_.contacts);
   }
 }
 
 template <class... Policies>
 void AnimationLoop<Policies...>::end_flights() {
   if constexpr (locates_impacts) {
-    auto& flights = work_.substeps;
+    auto& flights = work_.parts;
     flights.add_impulses(laws());
     flights.give_impulses(laws(), work_.contacts);
     report_.contacts = Index(work_.contacts.results.size());

@@ -16,7 +16,7 @@ template <class... Policies>
 void AnimationLoop<Policies...>::memory(auto& archive) {
   archive(world(), h_, last_h_, start_, steps_);
   if constexpr (requires { work_.whole_step.memory(archive); }) work_.whole_step.memory(archive);
-  if constexpr (requires { work_.substeps.memory(archive); }) work_.substeps.memory(archive);
+  if constexpr (requires { work_.parts.memory(archive); }) work_.parts.memory(archive);
   for_each_index<Laws::pool_count>([&](auto p) {
     auto& pool = laws().template pool<p>();
     if constexpr (requires { pool.slots; }) {

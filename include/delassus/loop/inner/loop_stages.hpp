@@ -254,7 +254,7 @@ void AnimationLoop<Policies...>::visit_joints() {
     follow(std::as_const(*this).world(), laws());
     if (work_.reports.empty()) [[unlikely]] work_.reports.emplace_back();
     SolveReport& solved = work_.reports[0];
-    work_.substeps.run(world(), laws(), part<role::Stabilisation>(), h_, h_ / last_h_, part<role::Scheme>(),
+    work_.parts.run(world(), laws(), part<role::Stabilisation>(), h_, h_ / last_h_, part<role::Scheme>(),
                        report_, solved);
     inner::note_broken(laws(), h_);
     report_.status = solved.status;
@@ -305,7 +305,7 @@ void AnimationLoop<Policies...>::advance_by(const Stepper& stepper) {
 template <class... Policies>
 void AnimationLoop<Policies...>::begin_substeps(int count) {
   if constexpr (divides_step) {
-    work_.substeps.begin(world(), count, h_, start_, steps_);
+    work_.parts.begin(world(), count, h_, start_, steps_);
     start_ = time();
     steps_ = 0;
     h_ /= count;
@@ -315,7 +315,7 @@ void AnimationLoop<Policies...>::begin_substeps(int count) {
 template <class... Policies>
 void AnimationLoop<Policies...>::end_substep(int left) {
   if constexpr (divides_step) {
-    auto& parts = work_.substeps;
+    auto& parts = work_.parts;
     if constexpr (has_constraints) parts.add_impulses(laws(), work_.contacts);
     if (left > 0) {
       parts.go_on(world(), left);
