@@ -1,6 +1,8 @@
 #include "catch.hpp"
 #include "study/planted.hpp"
 
+namespace audit_rolling_tests {
+
 using namespace planted;
 
 TEST_CASE("rolling friction of a ball that lies still is found, and that of a ball that rolls out acts") {
@@ -20,3 +22,5 @@ TEST_CASE("rolling friction of a ball that lies still is found, and that of a ba
              .shape = Sphere{0.2}});
   CHECK(find(audit(run(std::move(loop), 20)), Effect::rolling).verdict == Verdict::acted);
 }
+
+}  // namespace audit_rolling_tests

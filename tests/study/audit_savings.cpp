@@ -4,6 +4,8 @@
 #include <delassus/constraints/joints/hinge.hpp>
 #include <delassus/constraints/joints/limit.hpp>
 
+namespace audit_savings_tests {
+
 using namespace planted;
 
 namespace {
@@ -60,3 +62,5 @@ TEST_CASE(
   CHECK(no_limit.difference < 1e-6);
   CHECK(no_rod.difference < 1e-6);
 }
+
+}  // namespace audit_savings_tests

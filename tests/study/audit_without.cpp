@@ -1,6 +1,8 @@
 #include "catch.hpp"
 #include "study/planted.hpp"
 
+namespace audit_without_tests {
+
 using namespace planted;
 
 TEST_CASE("a second run without what never acted ends in the same place, and saves what was predicted") {
@@ -17,3 +19,5 @@ TEST_CASE("a second run without what never acted ends in the same place, and sav
   CHECK_THROWS_WITH(without(report, [] { return run(scene(Coulomb{}, true), 1); }),
                     "delassus: without: the second run took 101 steps, the first 100; they must be as many");
 }
+
+}  // namespace audit_without_tests
