@@ -51,6 +51,25 @@ class RowEnd {
     });
   }
 
+  /// The first three rows see the velocity of the point along the axes of the world, times `sign`. Of a body that turns about
+  /// its centre, a = point − x: e_k · (v + ω × a) = e_k · v + (a × e_k) · ω.
+  void along_axes(double sign) {
+    world_.visit(anchor_.set, [&](const auto& set, auto s) {
+      if constexpr (requires { set.arm(anchor_, point_); }) {
+        auto& H = std::get<s>(pool_.sets).H;
+        if (set.anchor_blocks(anchor_) == 0) return;
+        const Vec<3, T> a = (sign * set.arm(anchor_, point_)).template cast<T>();
+        auto& rows = H[first_];
+        for (int k = 0; k < 3; ++k) rows(k, k) += T(sign);
+        rows(0, 4) += a[2], rows(0, 5) -= a[1];
+        rows(1, 3) -= a[2], rows(1, 5) += a[0];
+        rows(2, 3) += a[1], rows(2, 4) -= a[0];
+      } else {
+        for (int k = 0; k < 3; ++k) along(k, sign * unit_axis(k));
+      }
+    });
+  }
+
   /// Row k sees the rate of turn about `axis`: u_k += axis · ω. The anchor must have a frame.
   void about(int k, const Vec3& axis) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {

@@ -31,8 +31,8 @@ struct BallJoint : Bilateral<3> {
 
   void linearize(const Item& item, const auto& world, auto row) const {
     const auto [point, gap] = place(item, world);
-    row.end(item.a, point).along(Mat3::Identity().eval(), 1);
-    row.end(item.b, point).along(Mat3::Identity().eval(), -1);
+    row.end(item.a, point).along_axes(1);
+    row.end(item.b, point).along_axes(-1);
     for (int k = 0; k < 3; ++k) row.phi(k, gap[k]);
   }
 };

@@ -50,6 +50,9 @@ class ItemEnd {
   void along(const Mat<n, 3>& axes, double sign) {
     for (int k = 0; k < n; ++k) along(k, Vec3(sign * axes.row(k).transpose()));
   }
+  void along_axes(double sign) {
+    for (int k = 0; k < 3; ++k) along(k, sign * unit_axis(k));
+  }
   /// Nothing for an end that does not turn.
   void about(int k, const Vec3& axis) {
     add(k, [&](const auto& set) {
