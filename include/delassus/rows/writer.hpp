@@ -1,6 +1,7 @@
 /// What a law writes its linearisation with.
 #pragma once
 
+#include <delassus/math/linear.hpp>
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/row_system.hpp>
 
