@@ -154,10 +154,9 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   Index anchor_block(const Anchor& a, int) const { return a.block; }
   /// Row of H: direction · (v + ω × r) = (direction, r × direction) · (v, ω), r from the centre of mass to `point`.
   Velocity along(const Anchor& a, int, const Vec3& point, const Vec3& direction) const {
-    return twist<T>(direction.template cast<T>(), arm(a, point).cross(direction).template cast<T>());
+    const Vec3 arm = point - position_of(a.block);
+    return twist<T>(direction.template cast<T>(), arm.cross(direction).template cast<T>());
   }
-  /// From the centre to the point, m.
-  Vec3 arm(const Anchor& a, const Vec3& point) const { return point - position_of(a.block); }
   Velocity about(const Anchor&, int, const Vec3& axis) const {
     return twist<T>(Vec<3, T>::Zero(), axis.template cast<T>());
   }

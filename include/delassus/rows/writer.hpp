@@ -3,7 +3,10 @@
 
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/anchor.hpp>
+#include <delassus/rows/body_set.hpp>
 #include <delassus/rows/row_system.hpp>
+
+#include <type_traits>
 
 namespace delassus {
 
@@ -52,19 +55,17 @@ class RowEnd {
     });
   }
 
-  /// The first three rows see the velocity of the point along the axes of the world, times `sign`. Of a body that turns about
-  /// its centre, a = point − x: e_k · (v + ω × a) = e_k · v + (a × e_k) · ω.
+  /// The first three rows see the velocity of the point along the axes of the world, times `sign`. With r from the centre
+  /// of a body to the point, v + ω × r = [1, −skew(r)] (v, ω).
   void along_axes(double sign) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      if constexpr (requires { set.arm(anchor_, point_); }) {
-        auto& H = std::get<s>(pool_.sets).H;
+      using Set = std::remove_cvref_t<decltype(set)>;
+      if constexpr (AnswersByParts<Set> && Set::width == 6) {
         if (set.anchor_blocks(anchor_) == 0) return;
-        const Vec<3, T> a = (sign * set.arm(anchor_, point_)).template cast<T>();
-        auto& rows = H[first_];
-        for (int k = 0; k < 3; ++k) rows(k, k) += T(sign);
-        rows(0, 4) += a[2], rows(0, 5) -= a[1];
-        rows(1, 3) -= a[2], rows(1, 5) += a[0];
-        rows(2, 3) += a[1], rows(2, 4) -= a[0];
+        auto& H = std::get<s>(pool_.sets).H[first_];
+        const Vec3 r = sign * (point_ - set.centre(anchor_.block));
+        for (int k = 0; k < 3; ++k) H(k, k) += T(sign);
+        H.template block<3, 3>(0, 3) -= skew(Vec<3, T>(r.template cast<T>()));
       } else {
         for (int k = 0; k < 3; ++k) along(k, sign * unit_axis(k));
       }

@@ -53,9 +53,9 @@ struct VirtualCoupling : Bilateral<6> {
     const Vec3 xa = world.point(item.a), xb = world.point(item.b), middle = 0.5 * (xa + xb);
     const Vec3 turn = logarithm<double>(world.frame(item.a) * world.frame(item.b).conjugate());
     auto a = row.end(item.a, middle), b = row.end(item.b, middle);
+    a.along_axes(1);
+    b.along_axes(-1);
     for (int k = 0; k < 3; ++k) {
-      a.along(k, unit_axis(k));
-      b.along(k, -unit_axis(k));
       row.phi(k, xa[k] - xb[k]);
       row.soft(k, item.stiffness, item.damping);
       a.about(3 + k, unit_axis(k));
