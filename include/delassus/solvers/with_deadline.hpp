@@ -88,6 +88,8 @@ struct WithDeadline<Solver, C> : inner::Hollow {
 template <class Solver>
 WithDeadline(Solver) -> WithDeadline<Solver>;
 template <class Solver>
+WithDeadline(double, Solver) -> WithDeadline<double>;  // the number first: the loop's checks say so
+template <class Solver>
 WithDeadline(Solver, double) -> WithDeadline<Solver>;
 template <class Solver, Clock C>
 WithDeadline(Solver, double, C) -> WithDeadline<Solver, C>;
