@@ -43,6 +43,32 @@ TEST_CASE("a warm step that ends at its deadline, in the midst of a sweep or of 
   }
 }
 
+// What is freed at the end of a solve would be time after its deadline.
+TEST_CASE("a problem solved in a workspace that has seen one like it allocates nothing, before a deadline either") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+  add_stack(rigid_bodies(loop), 40, Box{1, 1, 1});
+  loop.step(1.0 / 60);
+  auto start = loop.problem();
+  for (auto& lambda : start.rows.pool<0>().lambda) lambda.setZero();
+  const AcceleratedGaussSeidel solver{.tolerance = 1e-12};
+  using Problem = decltype(start);
+  SolverWorkspace<Problem, AcceleratedGaussSeidel> workspace;
+  SolverWorkspace<Problem, WithDeadline<AcceleratedGaussSeidel, ScriptedClock>> timed;
+  for (int n = 0; n < 60; ++n) {
+    Problem p = start, q = start;
+    double time = 0;
+    const long before = allocations;
+    Eigen::internal::set_is_malloc_allowed(n == 0);
+    const SolveReport whole = solve(p, solver, workspace);
+    const SolveReport cut = solve_until(q, solver, n == 0 ? 1e300 : 10.0 * n, timed, ScriptedClock{&time, 1});
+    Eigen::internal::set_is_malloc_allowed(true);
+    const long made = allocations - before;
+    CAPTURE(n, cut.sweeps, cut.factorizations);
+    REQUIRE(whole.factorizations > 0);
+    REQUIRE((made == 0) == (n > 0));
+  }
+}
+
 TEST_CASE("a warm step of a chain that lies on the ground allocates nothing under the direct path") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}, DirectGaussSeidel{}};
   auto& set = rigid_bodies(loop);

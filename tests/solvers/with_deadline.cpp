@@ -109,6 +109,24 @@ TEMPLATE_TEST_CASE("a deadline that never comes changes no bit", "", GaussSeidel
   REQUIRE(same_bits(with, without));
 }
 
+TEMPLATE_TEST_CASE("a workspace changes no bit of a problem, whatever it was used for before", "", GaussSeidel,
+                   AcceleratedGaussSeidel, ProximalNewton, ContactNewton, DirectGaussSeidel, PathNewton) {
+  using Problem = decltype(problem_of(1, 1));
+  const TestType solver{.tolerance = 1e-9};
+  SolverWorkspace<Problem, TestType> workspace;
+  SolverWorkspace<Problem, WithDeadline<TestType>> timed;
+  for (const auto& [stacks, boxes] : {std::pair(1, 6), std::pair(3, 2), std::pair(1, 12), std::pair(1, 6)}) {
+    const Problem start = problem_of(stacks, boxes);
+    Problem fresh = start, used = start, until = start;
+    CAPTURE(stacks, boxes);
+    const SolveReport r = solve(fresh, solver);
+    REQUIRE(solve(used, solver, workspace).sweeps == r.sweeps);
+    REQUIRE(solve_until(until, solver, 1e300, timed).sweeps == r.sweeps);
+    REQUIRE(same_bits(fresh, used));
+    REQUIRE(same_bits(fresh, until));
+  }
+}
+
 TEST_CASE("a solve that meets its tolerance before the deadline is converged") {
   auto p = problem_of(1, 3);
   double time = 0;

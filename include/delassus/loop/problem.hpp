@@ -21,19 +21,28 @@ struct Problem {
   double h = 0;  ///< s
 };
 
-/// Solves a problem from its present λ with any solver; the report is the worst of the islands'.
+/// What `solve` keeps of problems of one type for the next of them.
+template <class Problem, class Solver>
+struct SolverWorkspace {
+  LawBook<decltype(Problem::laws), typename Problem::Rows::Scalar> book;
+  typename Solver::template Workspace<typename Problem::Rows> solver;
+};
+
+/// Solves a problem from its present λ with any solver; the report is the worst of the islands'. A problem no
+/// larger than `workspace` has seen is solved without an allocation.
 template <class Laws, class Rows, class Operator, class Solver>
-SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver) {
-  LawBook<Laws, typename Rows::Scalar> book(problem.laws);
-  typename Solver::template Workspace<Rows> workspace;
-  if constexpr (requires { workspace.reset(problem.rows); }) workspace.reset(problem.rows);
+SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver,
+                  SolverWorkspace<Problem<Laws, Rows, Operator>, Solver>& workspace) {
+  auto& book = workspace.book;
+  book.attach(problem.laws);
+  if constexpr (requires { workspace.solver.reset(problem.rows); }) workspace.solver.reset(problem.rows);
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
   SolveReport worst;
   for (Index k = 0; k < problem.islands.count(); ++k) {
     IslandProblem island(book, problem.rows, problem.W, problem.islands, k, problem.h, nobody);
-    const SolveReport r = solver.solve(island, workspace);
+    const SolveReport r = solver.solve(island, workspace.solver);
     worst.status = worse(worst.status, r.status);
     worst.sweeps = std::max(worst.sweeps, r.sweeps);
     worst.factorizations = std::max(worst.factorizations, r.factorizations);
@@ -43,6 +52,13 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver) 
     }
   }
   return worst;
+}
+
+/// The same with a workspace of its own.
+template <class Laws, class Rows, class Operator, class Solver>
+SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver) {
+  SolverWorkspace<Problem<Laws, Rows, Operator>, Solver> workspace;
+  return solve(problem, solver, workspace);
 }
 
 }  // namespace delassus

@@ -22,6 +22,7 @@ class LawBook<Constraints<Laws...>, T> {
   using Memories = std::tuple<std::vector<inner::memory_of_t<Laws, T>>...>;
 
  public:
+  LawBook() = default;  ///< of nothing, before it is attached
   explicit LawBook(const Constraints<Laws...>& constraints) : constraints_(&constraints) {}
 
   /// The constraints may have moved with their loop.
@@ -156,7 +157,7 @@ class LawBook<Constraints<Laws...>, T> {
   }
 
  private:
-  const Constraints<Laws...>* constraints_;
+  const Constraints<Laws...>* constraints_ = nullptr;
   Memories memory_;
 };
 
