@@ -1,18 +1,15 @@
 // A ball falls on a soft beam.
 #include "measure.hpp"
+#include "soft_beam.hpp"
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>
-#include <delassus/geometry/box_mesh.hpp>
 
 namespace demonstration {
 
 Scene soft_beam(bool is_quick, const Watch& watch) {
-  using Soft = TetrahedralFem<Corotational>;
   const double h = 0.01, seconds = is_quick ? 0.3 : 4;
   AnimationLoop loop{
-      World{RigidBodies{}, Soft{}},
+      World{RigidBodies{}, SoftBodies{}},
       Constraints{Contact{Coulomb{.friction = 0.8}}},
       ImplicitEuler{.rayleigh_stiffness = 0.005},
       LazyCompliance{},
@@ -24,11 +21,7 @@ Scene soft_beam(bool is_quick, const Watch& watch) {
                "matrix serves many steps, turned with the nodes.",
                20}};
   auto& rigid = bodies<RigidBodies>(loop.world());
-  auto& soft = bodies<Soft>(loop.world());
-  const auto beam = soft.add(
-      {.mesh = box_mesh({1, 0.16, 0.08}, {16, 4, 2}), .elasticity = {.young = 2e5}, .contact_radius = 0.01});
-  soft.fix(beam, [](const Vec3& x) { return x.x() < 1e-9 || x.x() > 1 - 1e-9; });
-  const auto ball = rigid.add({.position = {0.5, 0.08, 0.3}, .mass = 2, .shape = Sphere{0.08}});
+  const auto ball = add_soft_beam(loop);
   double violation = 0, deepest = 0;
   int factorizations = 0;
   Scene scene = measure(loop, "native", h, seconds, watch, [&](double) {
