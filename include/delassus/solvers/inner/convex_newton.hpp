@@ -74,21 +74,32 @@ struct ConvexNewton {
   };
 
   /// The convex problem of the slips that the given λ has, from λ = 0; true when its solution is one of the
-  /// law. As far as proximal points lead: they get nowhere where impulses are redundant and gaps do not fit.
+  /// law. Those slips are known to the λ's own tolerance, and where bodies are wedged |u_t| ↦ |u_t| magnifies
+  /// what is missing: from the solution, after a while from less than what the law is missed by, the slips
+  /// follow for some turns. Where impulses are redundant and gaps do not fit, proximal points go a long way by
+  /// small steps: `polish` may jump to its end.
   template <class S>
   bool solve_of_slips(S& now) const {
+    constexpr int turns = 20, between_turns = 10, between_polishes = 20, between_marks = 50;
     now.work.forget(now.problem);
     now.work.keep(now.problem);
     now.best.residual = std::numeric_limits<double>::infinity();
     double epsilon = coarse, marked = epsilon;
-    for (int k = 1; k <= max_iterations; ++k) {
+    for (int k = 1, turned = 0; k <= max_iterations && turned <= turns; ++k) {
       now.report.factorizations += now.work.descend(now.problem, epsilon);
       if (is_done(now)) return true;
-      const double left = now.work.distance(epsilon);
-      now.work.template recentre<std::remove_cvref_t<decltype(now.problem)>>(true);
-      if (left < 1e-2 * tolerance || (k % 20 == 0 && left > 0.8 * marked)) break;
-      if (k % 20 == 0) marked = left;
-      epsilon = std::clamp(std::min(left, now.report.measure.residual), least, coarse);
+      const double left = now.work.distance(epsilon), residual = now.report.measure.residual;
+      const bool is_near = left < std::min(10 * tolerance, 0.5 * residual);
+      const bool is_solved =
+          left < 0.1 * tolerance || (is_near && k > between_marks && k % between_turns == 0);
+      now.work.template recentre<std::remove_cvref_t<decltype(now.problem)>>(!is_solved);
+      turned += is_solved;
+      if (k % between_marks == 0) {
+        if (turned == 0 && left > std::max(0.8 * marked, tolerance)) break;
+        marked = left;
+      }
+      if (k % between_polishes == 0 && polish(now, true)) return true;
+      epsilon = std::clamp(std::min(left, residual), least, coarse);
     }
     return false;
   }
@@ -106,13 +117,14 @@ struct ConvexNewton {
     return true;
   }
 
-  /// Proximal points of the laws as they are, while each halves the residual.
+  /// Proximal points of the laws as they are, while each halves the residual; where that does not end it, λ is
+  /// what it was.
   template <class S>
-  bool polish(S& now) const {
+  bool polish(S& now, bool keeps_slips = false) const {
     now.work.mark(now.problem);
     double before = now.report.measure.residual, epsilon = 1e-3;
     for (int k = 0; k < 12; ++k) {
-      now.work.restart(now.problem);
+      now.work.restart(now.problem, keeps_slips);
       now.report.factorizations += now.work.polish(now.problem, epsilon);
       if (is_done(now)) return true;
       if (!(now.report.measure.residual < 0.5 * before)) break;
@@ -122,7 +134,7 @@ struct ConvexNewton {
     }
     now.work.hand_over(
         now.problem, [](const auto& c) -> const auto& { return c.before; });
-    now.work.restart(now.problem);
+    now.work.restart(now.problem, keeps_slips);
     return false;
   }
 };

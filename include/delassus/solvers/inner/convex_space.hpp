@@ -33,7 +33,7 @@ class ConvexSpace {
 
   template <class Problem>
   bool gather(Problem& problem) {
-    if (!system_.gather(problem)) return false;
+    if (!system_.gather(problem) && !system_.gather_whole(problem)) return false;
     for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
     each([&](auto p, auto& c, auto&) {
       c.total.setZero();
@@ -94,15 +94,15 @@ class ConvexSpace {
     });
     restart(problem);
   }
-  /// Begins anew from the λ that the rows have.
+  /// Begins anew from the λ that the rows have, with its slips unless those stay.
   template <class Problem>
-  void restart(const Problem& problem) {
+  void restart(const Problem& problem, bool keeps_slips = false) {
     each([&](auto p, auto& c, auto&) {
       const auto local = problem.template local<p>(c.item);
       c.centre = c.lambda = local.lambda.template cast<double>();
       c.velocity = local.d.template cast<double>();
       c.total.setZero();
-      c.slip = slip_of<Problem, p>(c.velocity);
+      if (!keeps_slips) c.slip = slip_of<Problem, p>(c.velocity);
     });
     for (auto* array : {&y_, &change_})
       for (auto& x : *array) x.setZero();

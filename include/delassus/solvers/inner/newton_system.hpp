@@ -49,20 +49,37 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
                   "delassus: Newton's method needs the bodies of a problem, and this one, as a "
                   "FrictionProblem, has W alone; "
                   "solve it by AcceleratedGaussSeidel");
-    if (!can_act(problem)) return false;
+    if (!has_tangents(problem) || !knows_answers(problem)) return false;
     number_blocks(problem);
-    for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
-    pairs_.clear();
+    begin(blocks_.size());
     bool is_sound = true;
-    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks_.size(), Velocities::value_type::Zero());
     problem.each([&](auto p, Index i) { is_sound &= !problem.is_cut_off(1) && take<p>(problem, i); });
-    if (!is_sound) return false;
-    balance();
-    analyse(problem.island());
-    return true;
+    return is_sound && finish(problem.island());
   }
 
-  std::size_t blocks() const { return blocks_.size(); }
+  /// The same of any island, of bodies that their A couples too: each constraint has a block of its own, with
+  /// the change of what it sees, u. There H = 1, and G has a column of W, all that answers to an impulse. That
+  /// is dense: false where it is more than `largest_whole` constraints, or one has more rows than a block.
+  template <class Problem>
+  bool gather_whole(Problem& problem) {
+    Index count = 0;
+    bool fits = has_tangents(problem);
+    problem.each([&](auto p, Index) {
+      ++count;
+      fits = fits && Rows::template rows_of<p> <= width;
+    });
+    if (!fits || count > largest_whole) return false;
+    begin(std::size_t(count));
+    Velocities before(std::size_t(count), Velocities::value_type::Zero());
+    each_velocity(problem, [&](Index j, int k, double u) { before[std::size_t(j)][k] = u; });
+    bool is_sound = true;
+    Index block = 0;
+    problem.each([&](auto p, Index i) { is_sound &= take_whole<p>(problem, i, block++, before); });
+    return is_sound && finish(problem.island());
+  }
+  static constexpr Index largest_whole = 400;  ///< constraints: n² blocks, and n³ products of them
+
+  std::size_t blocks() const { return unit_.size(); }
 
   /// f(p, item, sides of pool p) for every constraint.
   template <class F>
@@ -91,6 +108,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     each_until(ends, [&](auto, auto& c, auto& sides) {
       if (is_zero(c.slope)) return;
       for (Index s = c.first; s < c.last; ++s) {
+        if (is_zero(sides[s].H)) continue;
         auto SH = std::remove_cvref_t<decltype(sides[s].H)>::Zero().eval();
         add_product(c.slope, sides[s].H, SH);
         for (Index t = c.first; t < c.last; ++t)
@@ -105,7 +123,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   double cost_in_sweeps() {
     double constraints = 0, entries = 0;
     std::vector<Index>& on_block = count_;
-    on_block.assign(blocks_.size(), 0);
+    on_block.assign(blocks(), 0);
     each([&](auto, auto& c, auto& sides) {
       for (Index s = c.first; s < c.last; ++s) ++on_block[sides[s].block];
       ++constraints;
@@ -118,7 +136,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   template <class Problem>
   double energy_of_stopping(Problem& problem) {
     double weights = 0, fastest = 0, mass = 0;
-    mass_.assign(blocks_.size(), 0.0);
+    mass_.assign(blocks(), 0.0);
     const auto ends = [&](int work) { return problem.is_cut_off(work); };
     each_until(ends, [&](auto p, auto& c, auto& sides) {
       constexpr int r = Rows::template rows_of<p>;
@@ -150,18 +168,36 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   };
 
   template <class Problem>
-  static bool can_act(const Problem& problem) {
-    bool can = true;
+  static bool has_tangents(const Problem& problem) {
+    bool has = true;
+    problem.each([&](auto p, Index) {
+      if (!has_tangent<typename Problem::BookType, p, Rows::template rows_of<p>>) has = false;
+    });
+    return has;
+  }
+  /// Whether each block answers to its impulses alone, by G.
+  template <class Problem>
+  static bool knows_answers(const Problem& problem) {
+    bool knows = true;
     problem.each([&](auto p, Index i) {
-      constexpr bool differentiable = has_tangent<typename Problem::BookType, p, Rows::template rows_of<p>>;
       const auto& pool = problem.rows().template pool<p>();
       for_each_index<Rows::set_count>([&](auto s) {
         const auto& set = std::get<s>(pool.sets);
-        if (set.offset[i + 1] > set.offset[i] && set.G.size() != set.H.size()) can = false;
+        if (set.offset[i + 1] > set.offset[i] && set.G.size() != set.H.size()) knows = false;
       });
-      if (!differentiable) can = false;
     });
-    return can;
+    return knows;
+  }
+
+  void begin(std::size_t blocks) {
+    for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
+    pairs_.clear();
+    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks, Velocities::value_type::Zero());
+  }
+  bool finish(Index island) {
+    balance();
+    analyse(island);
+    return true;
   }
 
   /// f(s, e) for every entry of item i on a block that moves: where A⁻¹ = 0, G is zero.
@@ -199,18 +235,11 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     const auto& pool = problem.rows().template pool<p>();
     const Local<r, T> local = problem.template local<p>(i);
     auto& sides = std::get<p>(sides_);
-    Item<r> c{};
-    c.item = i;
-    c.first = Index(sides.size());
-    c.weight = double(local.W.trace()) / r;
+    Item<r> c = item_of(local, i, Index(sides.size()));
     for (int k = 0; k < r; ++k) {  // W_kk = (H A⁻¹ Hᵀ)_kk (1 + softness) + compliance
       const double whole = double(local.W(k, k)), softness = double(pool.softness[i][k]);
       c.compliance[k] = (whole * softness + double(pool.compliance[i][k])) / (1 + softness);
     }
-    c.best = c.centre = c.lambda = local.lambda.template cast<double>();
-    c.velocity = local.d.template cast<double>();
-    c.error.setZero();
-    c.move.setZero();
     each_side(pool, i, [&](auto s, Index e) {
       const auto& set = std::get<s>(pool.sets);
       constexpr int narrow = Rows::template width_of<s>;
@@ -222,9 +251,68 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
       add_to_balance(side, 1 / c.weight);
       sides.push_back(side);
     });
-    c.last = Index(sides.size());
-    std::get<p>(items_).push_back(c);
+    return add(c, std::get<p>(items_), Index(sides.size()));
+  }
+  template <int r>
+  static Item<r> item_of(const Local<r, T>& local, Index item, Index first) {
+    Item<r> c{};
+    c.item = item;
+    c.first = first;
+    c.weight = double(local.W.trace()) / r;
+    c.compliance.setZero();
+    c.best = c.centre = c.lambda = local.lambda.template cast<double>();
+    c.velocity = local.d.template cast<double>();
+    c.error.setZero();
+    c.move.setZero();
+    return c;
+  }
+  /// Whether it has a weight.
+  template <int r>
+  static bool add(Item<r>& c, std::vector<Item<r>>& items, Index last) {
+    c.last = last;
+    items.push_back(c);
     return c.weight > 0 && std::isfinite(c.weight);
+  }
+
+  /// f(j, k, u_k) for row k of the j-th constraint of the island.
+  template <class Problem, class F>
+  static void each_velocity(const Problem& problem, F&& f) {
+    Index j = 0;
+    problem.each([&](auto p, Index i) {
+      const auto u = problem.template local<p>(i).d;
+      for (int k = 0; k < int(u.size()); ++k) f(j, k, double(u[k]));
+      ++j;
+    });
+  }
+  /// W e_k = w (u(λ + e_k/w) − u(λ)).
+  template <int p, class Problem>
+  bool take_whole(Problem& problem, Index i, Index block, const Velocities& before) {
+    constexpr int r = Rows::template rows_of<p>;
+    if constexpr (r <= width) {
+      auto& sides = std::get<p>(sides_);
+      const Index count = Index(before.size()), first = Index(sides.size());
+      Item<r> c = item_of(problem.template local<p>(i), i, first);
+      sides.resize(std::size_t(first + count), {0, Mat<r, width>::Zero(), Mat<width, r>::Zero()});
+      sides[first + block].H.template leftCols<r>().setIdentity();
+      const Vec<r, T> lambda = problem.rows().template pool<p>().lambda[i];
+      for (int k = 0; k < r; ++k) {
+        Vec<r, T> pushed = lambda;
+        pushed[k] += T(1 / c.weight);
+        problem.template assign<p>(i, pushed);
+        each_velocity(problem, [&](Index j, int l, double u) {
+          sides[first + j].G(l, k) = c.weight * (u - before[std::size_t(j)][l]);
+        });
+        problem.template assign<p>(i, lambda);
+      }
+      for (Index j = 0; j < count; ++j) {
+        sides[first + j].block = j;
+        if (j != block) pairs_.push_back(std::minmax(j, block));
+        add_to_balance(sides[first + j], 1 / c.weight);
+      }
+      return add(c, std::get<p>(items_), first + count);
+    } else {
+      return false;
+    }
   }
 
   /// Unknown k of a block in units of 1/√A_kk, A_kk ≈ |H_k|/|G_k| over its rows: of J's entries, which are in
@@ -263,10 +351,10 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     if (Index(graphs_.size()) <= island) graphs_.resize(island + 1);
     Graph& graph = graphs_[island];
-    if (graph.blocks != blocks_.size() || graph.pairs != pairs_) {
-      graph.blocks = blocks_.size();
+    if (graph.blocks != blocks() || graph.pairs != pairs_) {
+      graph.blocks = blocks();
       graph.pairs.assign(pairs_.begin(), pairs_.end());
-      graph.matrix.analyse(Index(blocks_.size()), pairs_);
+      graph.matrix.analyse(Index(blocks()), pairs_);
     }
     matrix_ = &graph.matrix;
   }
