@@ -128,6 +128,8 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
 
   /// True when A has entries between particles: then only `solve` is right, never `solve_block`.
   bool is_coupled() const { return springs_.is_coupled(); }
+  /// f(a, b): what acts on particle a moves particle b.
+  void each_tie(auto&& f) const { springs_.each_tie(f); }
   /// x ← A⁻¹ x for the whole set.
   void solve(std::vector<Velocity>& x) const { springs_.solve(x); }
   /// What A⁻¹ would be of the masses alone: for `UncoupledCompliance`.

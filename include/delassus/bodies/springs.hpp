@@ -53,6 +53,11 @@ class Springs {
 
   bool is_empty() const { return springs_.empty(); }
   bool is_coupled() const { return is_coupled_; }
+  /// f(a, b) for blocks that A couples.
+  void each_tie(auto&& f) const {
+    if (!is_coupled_) return;
+    for (const auto& [a, b] : pairs_) f(a, b);
+  }
 
   double energy(const std::vector<Velocity>& x) const {
     double sum = 0;

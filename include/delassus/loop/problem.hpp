@@ -28,8 +28,8 @@ struct SolverWorkspace {
   typename Solver::template Workspace<typename Problem::Rows> solver;
 };
 
-/// Solves a problem from its present λ with any solver; the report is the worst of the islands'. A problem no
-/// larger than `workspace` has seen is solved without an allocation.
+/// Solves a problem from the λ in it, with any solver, and leaves the new λ there; the report is the worst of the
+/// islands'. A problem no larger than `workspace` has seen is solved without an allocation.
 template <class Laws, class Rows, class Operator, class Solver>
 SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver,
                   SolverWorkspace<Problem<Laws, Rows, Operator>, Solver>& workspace) {
