@@ -112,7 +112,8 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable
 /// Two small residuals beside a large difference say that the reference found another solution. A step whose
 /// energy guard acted has no solution of its laws for λ. Islands of a set whose A couples blocks (springs and
 /// soft bodies under an implicit integrator) are solved with all of W, which is dense: with more than
-/// `NewtonSystem::largest_whole` constraints they are not treated, and `reached` is false.
+/// `NewtonSystem::largest_whole` constraints, or one of more rows than a block has unknowns, they are not treated,
+/// and `reached` is false.
 template <class Laws, class Rows, class Operator>
 ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& problem,
                                        double tolerance = 1e-10) {

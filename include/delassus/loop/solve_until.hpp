@@ -27,7 +27,8 @@ consteval bool takes_deadline() {
 
 /// Solves from the λ in `problem` until the solver's own tolerance holds or `deadline` (s on `clock`) has come; what is left
 /// there is then the iterate of the smallest measured residual, the first λ being one of them where the solver's
-/// `min_iterations` is 0. The first island is begun whatever the time is.
+/// `min_iterations` is 0. The first island is begun whatever the time is. As from step to step in a loop, what came to
+/// nothing before a deadline is passed over in the next solves with the same workspace, up to sixteen times.
 template <class Laws, class Rows, class Operator, class Solver, Clock C = SteadyClock>
 SolveReport solve_until(Problem<Laws, Rows, Operator>& problem, const Solver& solver, double deadline,
                         SolverWorkspace<Problem<Laws, Rows, Operator>, WithDeadline<Solver, C>>& workspace,
