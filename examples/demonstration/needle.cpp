@@ -5,9 +5,8 @@
 namespace demonstration {
 
 Scene needle(bool is_quick, const Watch& watch) {
-  using Soft = TetrahedralFem<Corotational>;
   const double h = 0.01, seconds = is_quick ? 0.5 : 6;
-  AnimationLoop loop{World{RigidBodies{}, Soft{}},
+  AnimationLoop loop{World{RigidBodies{}, SoftBodies{}},
                      Constraints{PointOnLine{}},
                      ImplicitEuler{.rayleigh_stiffness = 0.01},
                      StepTime{},

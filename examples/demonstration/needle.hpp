@@ -1,10 +1,10 @@
 /// The needle of the demonstration and the tissue that it goes into.
 #pragma once
 
+#include "soft_bodies.hpp"
+
 #include <delassus/bodies/anchor_at.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/joints/point_on_line.hpp>
 #include <delassus/geometry/box_mesh.hpp>
@@ -18,8 +18,6 @@ namespace demonstration {
 template <class Loop>
 class NeedleInTissue {
  public:
-  using Soft = delassus::TetrahedralFem<delassus::Corotational>;
-
   explicit NeedleInTissue(Loop& loop) : loop_(loop) {
     using namespace delassus;
     tissue_ = soft().add(
@@ -56,10 +54,10 @@ class NeedleInTissue {
   const delassus::Quat along = delassus::frame_along(delassus::Vec3::UnitX());  ///< the needle's z axis
 
   auto& rigid() { return delassus::bodies<delassus::RigidBodies>(loop_.world()); }
-  auto& soft() { return delassus::bodies<Soft>(loop_.world()); }
+  auto& soft() { return delassus::bodies<SoftBodies>(loop_.world()); }
 
   Loop& loop_;
-  Soft::BodyHandle tissue_;
+  SoftBodies::BodyHandle tissue_;
   delassus::RigidBodies::Handle shaft_;
   delassus::Index held_ = 0;
 };

@@ -1,15 +1,13 @@
 /// The beam of the demonstration, and the ball that falls on it.
 #pragma once
 
-#include <delassus/bodies/elasticity/corotational.hpp>
+#include "soft_bodies.hpp"
+
 #include <delassus/bodies/rigid_bodies.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 namespace demonstration {
-
-using SoftBodies = delassus::TetrahedralFem<delassus::Corotational>;
 
 /// A beam of one metre, clamped at both ends, under a ball of two kilograms. Returns the ball.
 template <class Loop>

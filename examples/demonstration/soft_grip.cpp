@@ -5,9 +5,8 @@
 namespace demonstration {
 
 Scene soft_grip(bool is_quick, const Watch& watch) {
-  using Soft = TetrahedralFem<Corotational>;
   const double h = 0.01, seconds = is_quick ? 0.2 : 3;
-  AnimationLoop loop{World{RigidBodies{}, Soft{}},
+  AnimationLoop loop{World{RigidBodies{}, SoftBodies{}},
                      Constraints{Contact{Coulomb{}}, Slider{}},
                      ImplicitEuler{.rayleigh_stiffness = 0.01},
                      StepTime{},

@@ -1,10 +1,10 @@
 /// The fingers of the demonstration and the soft cubes between them.
 #pragma once
 
+#include "soft_bodies.hpp"
+
 #include <delassus/bodies/anchor_at.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/joints/slider.hpp>
 #include <delassus/geometry/box_mesh.hpp>
@@ -18,8 +18,6 @@ namespace demonstration {
 template <class Loop>
 class SoftGrip {
  public:
-  using Soft = delassus::TetrahedralFem<delassus::Corotational>;
-
   explicit SoftGrip(Loop& loop) : loop_(loop) {
     using namespace delassus;
     rigid().add_fixed(HalfSpace{Vec3::UnitZ(), -0.06});  // well below
@@ -69,12 +67,12 @@ class SoftGrip {
  private:
   static constexpr double press = 20, weight = 9.81;  ///< N
   struct Grip {
-    Soft::BodyHandle cube;
+    SoftBodies::BodyHandle cube;
     delassus::RigidBodies::Handle hand, finger[2];
   };
 
   auto& rigid() { return delassus::bodies<delassus::RigidBodies>(loop_.world()); }
-  auto& soft() { return delassus::bodies<Soft>(loop_.world()); }
+  auto& soft() { return delassus::bodies<SoftBodies>(loop_.world()); }
 
   Loop& loop_;
   Grip grips_[2];

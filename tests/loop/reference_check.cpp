@@ -3,6 +3,7 @@
 
 #include "reference_tests.hpp"
 
+#include "../examples/demonstration/blocks_on_slope.hpp"
 #include "../examples/demonstration/stack_of_boxes.hpp"
 
 namespace reference_check_tests {
@@ -62,7 +63,7 @@ TEST_CASE("one wrong impulse in the stack is found and named") {
 
 TEST_CASE("blocks that slide down a slope and blocks that stick agree with the reference") {
   auto loop = contact_loop(0.5);
-  add_slope(loop);
+  demonstration::BlocksOnSlope{}.add_to(loop);
   compare_at(loop, 1.0 / 240, {1, 2, 10, 60, 150, 300, 600});
 }
 

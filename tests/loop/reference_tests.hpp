@@ -19,23 +19,6 @@ inline auto contact_loop(double friction, double margin = NativeCollision{}.marg
                        NativeCollision{.margin = margin}, AcceleratedGaussSeidel{.tolerance = tolerance}};
 }
 
-/// Five blocks of friction 0.1 to 0.5 on a slope of 20°.
-template <class Loop>
-void add_slope(Loop& loop) {
-  auto& rigid = bodies<RigidBodies>(loop.world());
-  const Quat tilt(Eigen::AngleAxisd(20 * EIGEN_PI / 180, Vec3::UnitY()));
-  const Vec3 normal = tilt * Vec3::UnitZ();
-  const Index ground = loop.materials().add({.friction = 0.5});
-  rigid.add({.shape = HalfSpace{normal}, .motion = Motion::fixed, .material = ground});
-  for (int k = 0; k < 5; ++k) {
-    const Index material = loop.materials().add({.friction = 0.1 * (k + 1)});
-    loop.materials().set_pair(ground, material, {.friction = 0.1 * (k + 1)});
-    const Vec3 at = 0.2 * normal + 0.9 * (k - 2.0) * Vec3::UnitY();
-    rigid.add(
-        {.position = at, .orientation = tilt, .mass = 10, .shape = Box{0.6, 0.6, 0.4}, .material = material});
-  }
-}
-
 /// Solves the loop's last problem by Gauss-Seidel to 1e-10 and compares. Two residuals of 1e-10, relative to
 /// √n times velocities of at most 10 m/s, leave the velocities apart by that and a factor for the problem's
 /// conditioning: of order N² for N bodies on each other.

@@ -112,7 +112,7 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable
 /// Two small residuals beside a large difference say that the reference found another solution. A step whose
 /// energy guard acted has no solution of its laws for λ. Islands of a set whose A couples blocks (springs and
 /// soft bodies under an implicit integrator) are solved with all of W, which is dense: with more than
-/// `NewtonSystem::largest_whole` constraints, or one of more rows than a block has unknowns, they are not treated,
+/// `inner::WholeSystem::most` constraints, or one of more rows than a block has unknowns, they are not treated,
 /// and `reached` is false.
 template <class Laws, class Rows, class Operator>
 ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& problem,
@@ -134,11 +134,17 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
       check.reference.factorizations = factorizations += check.reference.factorizations;
       return check.reference.status == Status::converged;
     };
-    auto of_slips = problem;
-    if (try_with(of_slips,
-                 inner::ConvexNewton{.tolerance = tolerance, .max_iterations = 200, .from_slips = true}))
-      other = std::move(of_slips);
-    else if (!try_with(other, inner::ConvexNewton{.tolerance = tolerance}))
+    bool has_slips = false;
+    for (const int patience : {50, 0}) {
+      if (has_slips) break;
+      auto of_slips = problem;
+      has_slips = try_with(of_slips, inner::ConvexNewton{.tolerance = tolerance,
+                                                         .max_iterations = 200,
+                                                         .from_slips = true,
+                                                         .patience = patience});
+      if (has_slips) other = std::move(of_slips);
+    }
+    if (!has_slips && !try_with(other, inner::ConvexNewton{.tolerance = tolerance}))
       try_with(other, inner::path_alone(tolerance));
     // Islands that are none, since W has entries between them, would undo each other's solutions.
     const Measure end = inner::measure_of(other);

@@ -24,6 +24,7 @@ struct ConvexNewton {
   int max_iterations = 2000;  ///< convex problems
   double least = 1e-6;        ///< ε where the residual is small: less would magnify the rounding of u
   bool from_slips = false;    ///< of the given λ, and nothing else of it; else from all of λ
+  int patience = 50;          ///< convex problems before the slips follow one that is half solved
 
   template <class Rows>
   using Workspace = ConvexSpace<Rows>;
@@ -65,6 +66,8 @@ struct ConvexNewton {
   static constexpr double coarse =
       0.1;  ///< ε while the residual is large: far off a small one flips rows to and fro
 
+  static constexpr double same_slips = 1e-3;  ///< of all velocities: one motion, to what tolerances leave of it
+
   template <class Problem, class Work>
   struct Search {
     Problem& problem;
@@ -91,7 +94,7 @@ struct ConvexNewton {
       const double left = now.work.distance(epsilon), residual = now.report.measure.residual;
       const bool is_near = left < std::min(10 * tolerance, 0.5 * residual);
       const bool is_solved =
-          left < 0.1 * tolerance || (is_near && k > between_marks && k % between_turns == 0);
+          left < 0.1 * tolerance || (is_near && k > patience && k % between_turns == 0);
       now.work.template recentre<std::remove_cvref_t<decltype(now.problem)>>(!is_solved);
       turned += is_solved;
       if (k % between_marks == 0) {
@@ -101,13 +104,20 @@ struct ConvexNewton {
       if (k % between_polishes == 0 && polish(now, true)) return true;
       epsilon = std::clamp(std::min(left, residual), least, coarse);
     }
-    return false;
+    if (!(now.best.residual <= tolerance)) return false;
+    now.work.hand_over(
+        now.problem, [](const auto& c) -> const auto& { return c.best; });
+    return is_done(now, now.problem.measure());
   }
 
   /// Hands λ over, measures it by W itself, and keeps the best; true when that is within the tolerance.
   template <class S>
   bool is_done(S& now) const {
-    now.report.measure = now.work.measure(now.problem);
+    return is_done(now, now.work.measure(now.problem));
+  }
+  template <class S>
+  bool is_done(S& now, const Measure& measure) const {
+    now.report.measure = measure;
     if (now.report.measure.residual < now.best.residual) {
       now.best = now.report.measure;
       now.work.keep(now.problem);
@@ -117,8 +127,8 @@ struct ConvexNewton {
     return true;
   }
 
-  /// Proximal points of the laws as they are, while each halves the residual; where that does not end it, λ is
-  /// what it was.
+  /// Proximal points of the laws as they are, while each halves the residual; where that does not end it, or with
+  /// other slips than those that stay, which is another motion, λ is what it was.
   template <class S>
   bool polish(S& now, bool keeps_slips = false) const {
     now.work.mark(now.problem);
@@ -126,7 +136,11 @@ struct ConvexNewton {
     for (int k = 0; k < 12; ++k) {
       now.work.restart(now.problem, keeps_slips);
       now.report.factorizations += now.work.polish(now.problem, epsilon);
-      if (is_done(now)) return true;
+      if (is_done(now)) {
+        if (!keeps_slips || now.work.slip_change(now.problem) < same_slips) return true;
+        now.report.status = Status::max_iterations;
+        break;
+      }
       if (!(now.report.measure.residual < 0.5 * before)) break;
       before = now.report.measure.residual;
       now.work.mark(now.problem);

@@ -4,7 +4,8 @@
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
-#include <delassus/solvers/inner/newton_system.hpp>
+#include <delassus/solvers/inner/newton_item.hpp>
+#include <delassus/solvers/inner/whole_system.hpp>
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
@@ -28,12 +29,12 @@ struct ConvexItem : NewtonItem<R> {
 template <class Rows>
 class ConvexSpace {
  public:
-  using System = NewtonSystem<ConvexItem, Rows>;
+  using System = WholeSystem<ConvexItem, Rows>;
   using T = typename Rows::Scalar;
 
   template <class Problem>
   bool gather(Problem& problem) {
-    if (!system_.gather(problem) && !system_.gather_whole(problem)) return false;
+    if (!system_.gather(problem)) return false;
     for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
     each([&](auto p, auto& c, auto&) {
       c.total.setZero();
@@ -147,6 +148,19 @@ class ConvexSpace {
       whole += c.velocity.squaredNorm() / c.weight;
     });
     return epsilon * std::sqrt(left / whole);
+  }
+
+  /// How far the slips of the rows' λ are from those given, √Σ (|u_t| − s)²/w against √Σ |u|²/w.
+  template <class Problem>
+  double slip_change(const Problem& problem) {
+    double change = 0, whole = 0;
+    each([&](auto p, auto& c, auto&) {
+      const Vec<Rows::template rows_of<p>> u = problem.template local<p>(c.item).d.template cast<double>();
+      const double slip = slip_of<Problem, p>(u);
+      change += (slip - c.slip) * (slip - c.slip) / c.weight;
+      whole += u.squaredNorm() / c.weight;
+    });
+    return std::sqrt(change / whole);
   }
 
   template <class Problem>

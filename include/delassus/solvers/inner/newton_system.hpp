@@ -57,28 +57,6 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     return is_sound && finish(problem.island());
   }
 
-  /// The same of any island, of bodies that their A couples too: each constraint has a block of its own, with
-  /// the change of what it sees, u. There H = 1, and G has a column of W, all that answers to an impulse. That
-  /// is dense: false where it is more than `largest_whole` constraints, or one has more rows than a block.
-  template <class Problem>
-  bool gather_whole(Problem& problem) {
-    Index count = 0;
-    bool fits = has_tangents(problem);
-    problem.each([&](auto p, Index) {
-      ++count;
-      fits = fits && Rows::template rows_of<p> <= width;
-    });
-    if (!fits || count > largest_whole) return false;
-    begin(std::size_t(count));
-    Velocities before(std::size_t(count), Velocities::value_type::Zero());
-    each_velocity(problem, [&](Index j, int k, double u) { before[std::size_t(j)][k] = u; });
-    bool is_sound = true;
-    Index block = 0;
-    problem.each([&](auto p, Index i) { is_sound &= take_whole<p>(problem, i, block++, before); });
-    return is_sound && finish(problem.island());
-  }
-  static constexpr Index largest_whole = 400;  ///< constraints: n² blocks, and n³ products of them
-
   std::size_t blocks() const { return unit_.size(); }
 
   /// f(p, item, sides of pool p) for every constraint.
@@ -108,7 +86,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     each_until(ends, [&](auto, auto& c, auto& sides) {
       if (is_zero(c.slope)) return;
       for (Index s = c.first; s < c.last; ++s) {
-        if (is_zero(sides[s].H)) continue;
+        if (is_zero(sides[s].H)) continue;  // of a `WholeSystem` all but one
         auto SH = std::remove_cvref_t<decltype(sides[s].H)>::Zero().eval();
         add_product(c.slope, sides[s].H, SH);
         for (Index t = c.first; t < c.last; ++t)
@@ -159,14 +137,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     matrix_->solve(x, ends);
   }
 
- private:
-  /// The graph of an island and the matrix analysed for it.
-  struct Graph {
-    std::size_t blocks = 0;
-    std::vector<std::pair<Index, Index>> pairs;
-    BlockLu<width, double> matrix;
-  };
-
+ protected:
   template <class Problem>
   static bool has_tangents(const Problem& problem) {
     bool has = true;
@@ -175,6 +146,60 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
     return has;
   }
+
+  void begin(std::size_t blocks) {
+    for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
+    pairs_.clear();
+    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks, Velocities::value_type::Zero());
+  }
+  bool finish(Index island) {
+    balance();
+    analyse(island);
+    return true;
+  }
+
+  template <int r>
+  static Item<r> item_of(const Local<r, T>& local, Index item, Index first) {
+    Item<r> c{};
+    c.item = item;
+    c.first = first;
+    c.weight = double(local.W.trace()) / r;
+    c.compliance.setZero();
+    c.best = c.centre = c.lambda = local.lambda.template cast<double>();
+    c.velocity = local.d.template cast<double>();
+    c.error.setZero();
+    c.move.setZero();
+    return c;
+  }
+  /// Whether it has a weight.
+  template <int r>
+  static bool add(Item<r>& c, std::vector<Item<r>>& items, Index last) {
+    c.last = last;
+    items.push_back(c);
+    return c.weight > 0 && std::isfinite(c.weight);
+  }
+  /// What `side` of a constraint with 1/w = `over` adds to the sums.
+  template <int r>
+  void add_to_balance(const NewtonSide<r, width>& side, double over) {
+    const auto b = std::size_t(side.block);
+    for (int k = 0; k < width; ++k) {
+      unit_[b][k] += over * side.H.col(k).squaredNorm();
+      moved_[b][k] += over * side.G.row(k).squaredNorm();
+    }
+  }
+
+  std::tuple<std::vector<Item<R>>...> items_;
+  std::tuple<std::vector<NewtonSide<R, width>>...> sides_;
+  std::vector<std::pair<Index, Index>> pairs_;  ///< of blocks that a constraint joins
+
+ private:
+  /// The graph of an island and the matrix analysed for it.
+  struct Graph {
+    std::size_t blocks = 0;
+    std::vector<std::pair<Index, Index>> pairs;
+    BlockLu<width, double> matrix;
+  };
+
   /// Whether each block answers to its impulses alone, by G.
   template <class Problem>
   static bool knows_answers(const Problem& problem) {
@@ -187,17 +212,6 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
       });
     });
     return knows;
-  }
-
-  void begin(std::size_t blocks) {
-    for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
-    pairs_.clear();
-    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks, Velocities::value_type::Zero());
-  }
-  bool finish(Index island) {
-    balance();
-    analyse(island);
-    return true;
   }
 
   /// f(s, e) for every entry of item i on a block that moves: where A⁻¹ = 0, G is zero.
@@ -253,67 +267,6 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
     return add(c, std::get<p>(items_), Index(sides.size()));
   }
-  template <int r>
-  static Item<r> item_of(const Local<r, T>& local, Index item, Index first) {
-    Item<r> c{};
-    c.item = item;
-    c.first = first;
-    c.weight = double(local.W.trace()) / r;
-    c.compliance.setZero();
-    c.best = c.centre = c.lambda = local.lambda.template cast<double>();
-    c.velocity = local.d.template cast<double>();
-    c.error.setZero();
-    c.move.setZero();
-    return c;
-  }
-  /// Whether it has a weight.
-  template <int r>
-  static bool add(Item<r>& c, std::vector<Item<r>>& items, Index last) {
-    c.last = last;
-    items.push_back(c);
-    return c.weight > 0 && std::isfinite(c.weight);
-  }
-
-  /// f(j, k, u_k) for row k of the j-th constraint of the island.
-  template <class Problem, class F>
-  static void each_velocity(const Problem& problem, F&& f) {
-    Index j = 0;
-    problem.each([&](auto p, Index i) {
-      const auto u = problem.template local<p>(i).d;
-      for (int k = 0; k < int(u.size()); ++k) f(j, k, double(u[k]));
-      ++j;
-    });
-  }
-  /// W e_k = w (u(λ + e_k/w) − u(λ)).
-  template <int p, class Problem>
-  bool take_whole(Problem& problem, Index i, Index block, const Velocities& before) {
-    constexpr int r = Rows::template rows_of<p>;
-    if constexpr (r <= width) {
-      auto& sides = std::get<p>(sides_);
-      const Index count = Index(before.size()), first = Index(sides.size());
-      Item<r> c = item_of(problem.template local<p>(i), i, first);
-      sides.resize(std::size_t(first + count), {0, Mat<r, width>::Zero(), Mat<width, r>::Zero()});
-      sides[first + block].H.template leftCols<r>().setIdentity();
-      const Vec<r, T> lambda = problem.rows().template pool<p>().lambda[i];
-      for (int k = 0; k < r; ++k) {
-        Vec<r, T> pushed = lambda;
-        pushed[k] += T(1 / c.weight);
-        problem.template assign<p>(i, pushed);
-        each_velocity(problem, [&](Index j, int l, double u) {
-          sides[first + j].G(l, k) = c.weight * (u - before[std::size_t(j)][l]);
-        });
-        problem.template assign<p>(i, lambda);
-      }
-      for (Index j = 0; j < count; ++j) {
-        sides[first + j].block = j;
-        if (j != block) pairs_.push_back(std::minmax(j, block));
-        add_to_balance(sides[first + j], 1 / c.weight);
-      }
-      return add(c, std::get<p>(items_), first + count);
-    } else {
-      return false;
-    }
-  }
 
   /// Unknown k of a block in units of 1/√A_kk, A_kk ≈ |H_k|/|G_k| over its rows: of J's entries, which are in
   /// m, 1 and 1/m, the pivots inside a block are then the largest in any unit of length. To a power of two:
@@ -335,15 +288,6 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
       }
     });
   }
-  /// What `side` of a constraint with 1/w = `over` adds to the sums.
-  template <int r>
-  void add_to_balance(const NewtonSide<r, width>& side, double over) {
-    const auto b = std::size_t(side.block);
-    for (int k = 0; k < width; ++k) {
-      unit_[b][k] += over * side.H.col(k).squaredNorm();
-      moved_[b][k] += over * side.G.row(k).squaredNorm();
-    }
-  }
 
   /// The matrix of the island keeps its analysis while the graph of its bodies stands.
   void analyse(Index island) {
@@ -361,14 +305,11 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
 
   std::array<std::vector<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
   std::vector<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
-  std::vector<std::pair<Index, Index>> pairs_;
   std::vector<Graph> graphs_;
   BlockLu<width, double>* matrix_ = nullptr;
   std::vector<Index> count_;  ///< of sides on each block
   std::vector<double> mass_;
   Velocities unit_, moved_;  ///< of each unknown Σ |H_k|²/w and Σ |G_k|²/w, then √A_kk and its inverse
-  std::tuple<std::vector<Item<R>>...> items_;
-  std::tuple<std::vector<NewtonSide<R, width>>...> sides_;
 };
 
 }  // namespace delassus::inner
