@@ -135,7 +135,7 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
       return check.reference.status == Status::converged;
     };
     bool has_slips = false;
-    for (const int patience : {50, 0}) {
+    for (const int patience : {50, 0}) {  // wedged bodies may need either, and not bear the other
       if (has_slips) break;
       auto of_slips = problem;
       has_slips = try_with(of_slips, inner::ConvexNewton{.tolerance = tolerance,
