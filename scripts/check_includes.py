@@ -24,6 +24,7 @@ AROUND = {"compiled.hpp", "compile_here.hpp"}
 EIGEN = {"Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"}
 EIGEN_LINEAR = {"Eigen/LU", "Eigen/OrderingMethods", "Eigen/SparseCore"}
 HEAVY = {"iostream", "ranges", "regex", "execution"}
+COMPILERS = {"immintrin.h", "arm_neon.h"}  # the compiler's own names of the processor's instructions, in math/
 STANDARD = re.compile(r"^[a-z_0-9]+(\.h)?$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -65,6 +66,8 @@ def why_not_foreign(header, target):
         return "too heavy for a header"
     if STANDARD.match(target) and not target.endswith(".h"):
         return None
+    if target in COMPILERS and room == "math":
+        return None
     return None if room == "adapters" else "a third party lives in adapters/ alone"
 
 
@@ -105,6 +108,8 @@ SELF_TEST = [
     ("solvers/a.hpp", "#include <delassus/rows/ok.hpp>", None),
     ("solvers/a.hpp", "#include <delassus/solvers/ok.hpp>", None),
     ("linear/a.hpp", "#include <Eigen/SparseCore>", None),
+    ("math/a.hpp", "#include <immintrin.h>", None),
+    ("linear/a.hpp", "#include <immintrin.h>", "third party"),
     ("adapters/fcl.hpp", "#include <fcl/narrowphase/collision.h>", None),
     ("loop/defaults.hpp", "#include <delassus/listeners/ok.hpp>", None),
     ("delassus.hpp", "#include <delassus/loop/ok.hpp>", None),

@@ -1,9 +1,8 @@
 /// Several numbers at a time: as many doubles as one instruction takes, and small matrices of them.
 #pragma once
 
+#include <delassus/math/packet.hpp>
 #include <delassus/math/singular_values.hpp>
-
-#include <Eigen/Core>
 
 #include <cstddef>
 #include <cstring>
@@ -12,16 +11,13 @@
 namespace delassus {
 
 /// One double or a few, by the vector unit that is compiled for; + − * / and comparisons act on each.
-using Lanes = Eigen::internal::packet_traits<double>::type;
-inline constexpr int lane_count = int(sizeof(Lanes) / sizeof(double));
+using Lanes = Packet<double>;
+inline constexpr int lane_count = packet_size<double>;
 
 /// x in every lane.
-inline Lanes all_lanes(double x) { return Lanes{} + x; }
-/// One instruction each, where std::memcpy makes two if the compiler prefers vectors of half the length.
-inline Lanes load_lanes(const double* from) { return Eigen::internal::ploadu<Lanes>(from); }
-inline void store_lanes(double* to, const Lanes& x) { Eigen::internal::pstoreu(to, x); }
-inline Lanes root_of_lanes(const Lanes& x) { return Eigen::internal::psqrt(x); }
-inline Lanes size_of_lanes(const Lanes& x) { return Eigen::internal::pabs(x); }
+inline Lanes all_lanes(double x) { return fill_packet(x); }
+inline Lanes load_lanes(const double* from) { return load_packet(from); }
+inline void store_lanes(double* to, const Lanes& x) { store_packet(to, x); }
 inline Lanes larger_lanes(const Lanes& x, const Lanes& y) { return x > y ? x : y; }
 
 /// By columns.
@@ -70,8 +66,7 @@ template <int step = 1, class P>
   if constexpr (step < lane_count) {
 #pragma GCC unroll 8  // the rows stay in registers
     for (int k = 0; k < lane_count; ++k)
-      if (!(k & step))
-        exchange_lanes<step>(rows[k], rows[k + step], std::make_index_sequence<lane_count>());
+      if (!(k & step)) exchange_lanes<step>(rows[k], rows[k + step], std::make_index_sequence<lane_count>());
     transpose_lanes<2 * step>(rows);
   }
 }
@@ -90,18 +85,17 @@ namespace inner {
 inline bool turn_columns(LaneMatrix& B, LaneMatrix& V, int p, int q) {
   LaneVector &x = B.column[p], &y = B.column[q];
   const Lanes a = dot(x, x), b = dot(y, y), g = dot(x, y), zero = all_lanes(0), one = all_lanes(1);
-  const auto turns = size_of_lanes(g) > larger_lanes(4e-16 * root_of_lanes(a * b), all_lanes(1e-300));
+  const auto turns = size_of(g) > larger_lanes(4e-16 * root_of(a * b), all_lanes(1e-300));
   const Lanes zeta = turns ? (b - a) / (2 * g) : zero;
-  const Lanes t =
-      turns ? (zeta < zero ? -one : one) / (size_of_lanes(zeta) + root_of_lanes(1 + zeta * zeta)) : zero;
-  const Lanes c = 1 / root_of_lanes(1 + t * t), s = c * t;
+  const Lanes t = turns ? (zeta < zero ? -one : one) / (size_of(zeta) + root_of(1 + zeta * zeta)) : zero;
+  const Lanes c = 1 / root_of(1 + t * t), s = c * t;
   for (LaneMatrix* A : {&B, &V})
     for (int i = 0; i < 3; ++i) {
       const Lanes u = (*A)(i, p), v = (*A)(i, q);
       (*A)(i, p) = c * u - s * v;
       (*A)(i, q) = s * u + c * v;
     }
-  return Eigen::internal::predux_max(size_of_lanes(t)) > 0;
+  return any_is_positive(size_of(t));
 }
 
 /// Exchanges columns p and q, one of them turned round, where q is the longer one.
@@ -145,7 +139,7 @@ inline LaneSingularValues singular_values(const LaneMatrix& F) {
       is_turning = inner::turn_columns(B, V, p, q) || is_turning;
   }
   for (const auto& [p, q] : inner::pairs_of_three) inner::order_columns(B, V, p, q);
-  const Lanes longest = root_of_lanes(dot(B.column[0], B.column[0])), one = all_lanes(1), zero = all_lanes(0);
+  const Lanes longest = root_of(dot(B.column[0], B.column[0])), one = all_lanes(1), zero = all_lanes(0);
   LaneSingularValues f;
   f.V = V;
   LaneVector& u0 = f.U.column[0];
@@ -153,13 +147,13 @@ inline LaneSingularValues singular_values(const LaneMatrix& F) {
   u0 = times(1 / longest, B.column[0]);
   const Lanes along = dot(u0, B.column[1]);
   for (int i = 0; i < 3; ++i) u1[i] = B(i, 1) - along * u0[i];
-  const Lanes length = root_of_lanes(dot(u1, u1));
+  const Lanes length = root_of(dot(u1, u1));
   u1 = times(1 / length, u1);
   f.U.column[2] = cross(u0, u1);
   for (int k = 0; k < 3; ++k) f.sigma[k] = dot(f.U.column[k], B.column[k]);
   const Lanes is_sound = length > 1e-14 * longest ? one : zero;
   const Lanes is_flat = one - is_sound;
-  if (Eigen::internal::predux_max(is_flat) > 0) inner::redo_flat_lanes(F, is_flat, f);
+  if (any_is_positive(is_flat)) inner::redo_flat_lanes(F, is_flat, f);
   return f;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <delassus/core/index.hpp>
-#include <delassus/math/linear.hpp>
+#include <delassus/math/packet.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +27,10 @@ struct Columns {
 /// `panel` columns of the result at a time. The buffers keep their capacity: a warm call allocates nothing.
 template <class T>
 class DenseKernel {
-  using Packet = typename Eigen::internal::packet_traits<T>::type;
-  static constexpr Index lanes = Eigen::internal::unpacket_traits<Packet>::size;
+  using Packet = delassus::Packet<T>;
+  static constexpr Index lanes = packet_size<T>;
   /// Twelve sums in sixteen registers, or twenty-four in thirty-two.
-  static constexpr Index strip = 3 * lanes, panel = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
+  static constexpr Index strip = 3 * lanes, panel = packet_registers >= 32 ? 8 : 4;
   static constexpr Index depth = 128;  ///< columns of A packed at a time
 
  public:
@@ -144,9 +144,8 @@ class DenseKernel {
   /// std::copy_n of more than a few numbers is a call.
   template <Index height>
   static void copy_strip(const T* from, T* to) {
-    using namespace Eigen::internal;
     if constexpr (height % lanes == 0)
-      for (Index i = 0; i < height; i += lanes) pstoreu(to + i, ploadu<Packet>(from + i));
+      for (Index i = 0; i < height; i += lanes) store_packet(to + i, load_packet(from + i));
     else
       std::copy_n(from, height, to);
   }
@@ -179,22 +178,21 @@ class DenseKernel {
   /// through a copy.
   template <int packets, int high>
   static void tile(Columns<T> C, Index rows, Index columns, const T* a, const T* b, Index k, bool is_new) {
-    using namespace Eigen::internal;
     Packet s[panel][packets];
     for (auto& column : s)
-      for (Packet& p : column) p = pset1<Packet>(T(0));
+      for (Packet& p : column) p = Packet{};
     for (Index l = 0; l < k; ++l, a += high, b += panel) add_products<packets>(s, a, b);
     if (rows == packets * lanes && columns == panel) {
       for (int c = 0; c < panel; ++c)
         for (int r = 0; r < packets; ++r) {
           T* to = C.at(r * lanes, c);
-          pstoreu(to, is_new ? pnegate(s[c][r]) : psub(ploadu<Packet>(to), s[c][r]));
+          store_packet(to, is_new ? -s[c][r] : load_packet(to) - s[c][r]);
         }
       return;
     }
     T edge[panel][packets * lanes];
     for (int c = 0; c < panel; ++c)
-      for (int r = 0; r < packets; ++r) pstoreu(edge[c] + r * lanes, s[c][r]);
+      for (int r = 0; r < packets; ++r) store_packet(edge[c] + r * lanes, s[c][r]);
     for (Index c = 0; c < columns; ++c) {
       T* to = C.at(0, c);
       for (Index r = 0; r < rows; ++r) to[r] = (is_new ? T(0) : to[r]) - edge[c][r];
@@ -204,12 +202,11 @@ class DenseKernel {
   /// s += a bᵀ of one column of a strip and one of a panel.
   template <int packets>
   static void add_products(Packet (&s)[panel][packets], const T* a, const T* b) {
-    using namespace Eigen::internal;
     Packet x[packets];
-    for (int r = 0; r < packets; ++r) x[r] = ploadu<Packet>(a + r * lanes);
+    for (int r = 0; r < packets; ++r) x[r] = load_packet(a + r * lanes);
     for (int c = 0; c < panel; ++c) {
-      const Packet y = pset1<Packet>(b[c]);
-      for (int r = 0; r < packets; ++r) s[c][r] = pmadd(x[r], y, s[c][r]);
+      const T y = b[c];
+      for (int r = 0; r < packets; ++r) s[c][r] = x[r] * y + s[c][r];
     }
   }
 
@@ -229,7 +226,6 @@ class DenseKernel {
   /// alone.
   template <int packets>
   void solve_strip(Columns<T> Y, T* strip_of_y, Index rows, Index k) {
-    using namespace Eigen::internal;
     constexpr Index high = packets * lanes;
     const bool is_whole = rows == high;
     if (!is_whole) pack<high, high>(strip_of_y, {Y.data, Y.stride}, rows, k);
@@ -241,24 +237,24 @@ class DenseKernel {
 #pragma GCC unroll 8
       for (int c = 0; c < panel; ++c)
         for (int r = 0; r < packets; ++r)
-          s[c][r] = c < columns ? ploadu<Packet>((is_whole ? Y.at(0, j + c) : packed + c * high) + r * lanes)
-                                : pset1<Packet>(T(0));
+          s[c][r] = c < columns ? load_packet((is_whole ? Y.at(0, j + c) : packed + c * high) + r * lanes)
+                                : Packet{};
       const T* a = strip_of_y;
       for (Index l = 0; l < j; ++l, a += high, b += panel) add_products<packets>(s, a, b);
 #pragma GCC unroll 8  // the sums stay in registers
       for (int c = 0; c < panel; ++c, b += panel) {
-        for (int r = 0; r < packets; ++r) s[c][r] = pmul(s[c][r], pset1<Packet>(b[c]));
+        for (int r = 0; r < packets; ++r) s[c][r] = s[c][r] * b[c];
 #pragma GCC unroll 8
         for (int d = c + 1; d < panel; ++d) {
-          const Packet y = pset1<Packet>(b[d]);
-          for (int r = 0; r < packets; ++r) s[d][r] = pmadd(s[c][r], y, s[d][r]);
+          const T y = b[d];
+          for (int r = 0; r < packets; ++r) s[d][r] = s[c][r] * y + s[d][r];
         }
       }
 #pragma GCC unroll 8
       for (int c = 0; c < panel; ++c)
         for (int r = 0; r < packets && c < columns; ++r) {
-          pstoreu(packed + c * high + r * lanes, s[c][r]);
-          if (is_whole) pstoreu(Y.at(r * lanes, j + c), s[c][r]);
+          store_packet(packed + c * high + r * lanes, s[c][r]);
+          if (is_whole) store_packet(Y.at(r * lanes, j + c), s[c][r]);
         }
     }
     if (is_whole) return;

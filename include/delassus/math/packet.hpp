@@ -1,0 +1,93 @@
+/// Several numbers in one register: as many as one instruction of the target processor takes, by the
+/// compilers' own vector types.
+#pragma once
+
+#include <cstddef>
+
+#if defined(__x86_64__) || defined(__i386__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace delassus {
+
+#if defined(__AVX512F__)
+inline constexpr std::size_t packet_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr std::size_t packet_bytes = 32;
+#else
+inline constexpr std::size_t packet_bytes = 16;
+#endif
+
+/// How many packets the processor holds in registers.
+#if defined(__AVX512F__) || defined(__aarch64__)
+inline constexpr int packet_registers = 32;
+#else
+inline constexpr int packet_registers = 16;
+#endif
+
+namespace inner {
+
+template <class T>
+struct PacketTypes {
+  typedef T Packet __attribute__((vector_size(packet_bytes)));
+  typedef T Unaligned __attribute__((vector_size(packet_bytes), aligned(alignof(T)), may_alias));
+};
+
+}  // namespace inner
+
+/// + − * / and comparisons act on each number, `x ? y : z` chooses number by number. T is float or double.
+template <class T>
+using Packet = typename inner::PacketTypes<T>::Packet;
+
+template <class T>
+inline constexpr int packet_size = int(packet_bytes / sizeof(T));
+
+/// From any address: one instruction, where std::memcpy makes two if the compiler prefers vectors of half the
+/// length.
+template <class T>
+[[gnu::always_inline]] inline Packet<T> load_packet(const T* from) {
+  return *reinterpret_cast<const typename inner::PacketTypes<T>::Unaligned*>(from);
+}
+template <class T>
+[[gnu::always_inline]] inline void store_packet(T* to, const Packet<T>& x) {
+  *reinterpret_cast<typename inner::PacketTypes<T>::Unaligned*>(to) = x;
+}
+
+/// x in every place.
+template <class T>
+[[gnu::always_inline]] inline Packet<T> fill_packet(T x) {
+  return x - Packet<T>{};
+}
+
+/// Square roots, rounded as std::sqrt rounds them. No compiler has an operator for them.
+[[gnu::always_inline]] inline Packet<double> root_of(const Packet<double>& x) {
+#if defined(__AVX512F__)
+  return Packet<double>(_mm512_sqrt_pd(__m512d(x)));
+#elif defined(__AVX__)
+  return Packet<double>(_mm256_sqrt_pd(__m256d(x)));
+#elif defined(__SSE2__)
+  return Packet<double>(_mm_sqrt_pd(__m128d(x)));
+#elif defined(__aarch64__)
+  return Packet<double>(vsqrtq_f64(float64x2_t(x)));
+#else
+  Packet<double> root;
+  for (int k = 0; k < packet_size<double>; ++k) root[k] = __builtin_sqrt(x[k]);
+  return root;
+#endif
+}
+
+/// |x|: the sign bits off.
+[[gnu::always_inline]] inline Packet<double> size_of(const Packet<double>& x) {
+  using Bits = Packet<long long>;
+  return Packet<double>(Bits(x) & 0x7fffffffffffffffll);
+}
+
+[[gnu::always_inline]] inline bool any_is_positive(const Packet<double>& x) {
+  for (int k = 0; k < packet_size<double>; ++k)
+    if (x[k] > 0) return true;
+  return false;
+}
+
+}  // namespace delassus
