@@ -86,7 +86,8 @@ auto chained() {
 
 TEMPLATE_TEST_CASE("three rows along the axes of the world are those written one by one, to the bit", "", RigidBodies,
                    RigidBodiesF) {
-  const auto at_once = chained<BallJoint, TestType>(), one_by_one = chained<RowByRow, TestType>();
+  const auto at_once = chained<BallJoint, TestType>();
+  const auto one_by_one = chained<RowByRow, TestType>();
   const auto compare = [&](auto s) {
     const auto& a = std::get<s>(at_once.rows.template pool<0>().sets);
     const auto& b = std::get<s>(one_by_one.rows.template pool<0>().sets);
