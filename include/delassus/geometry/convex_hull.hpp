@@ -1,6 +1,7 @@
 /// The convex hull of a point cloud: its vertices, polygonal faces and moments of volume.
 #pragma once
 
+#include <delassus/core/bits.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
@@ -9,7 +10,6 @@
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -92,7 +92,7 @@ class ConvexHull {
     fingerprint_ = vertices_.size();
     for (const Vec3& v : vertices_)
       for (int k = 0; k < 3; ++k)
-        fingerprint_ = ((fingerprint_ ^ std::bit_cast<std::uint64_t>(v[k])) * 0x9e3779b97f4a7c15ull) ^ fingerprint_ >> 29;
+        fingerprint_ = ((fingerprint_ ^ inner::bits_as<std::uint64_t>(v[k])) * 0x9e3779b97f4a7c15ull) ^ fingerprint_ >> 29;
   }
   void put_in_blocks() {
     constexpr std::size_t lanes = 2;

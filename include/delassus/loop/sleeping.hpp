@@ -1,6 +1,7 @@
 /// Islands at rest sleep, and wake when something touches them.
 #pragma once
 
+#include <delassus/core/bits.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/loop/dormant.hpp>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -223,13 +223,13 @@ class Sleepers {
   static bool is_equal(const M& a, const M& b) {
     Bits<M> apart = 0;
     for (int k = 0; k < int(M::SizeAtCompileTime); ++k)
-      apart |= std::bit_cast<Bits<M>>(a.data()[k]) ^ std::bit_cast<Bits<M>>(b.data()[k]);
+      apart |= inner::bits_as<Bits<M>>(a.data()[k]) ^ inner::bits_as<Bits<M>>(b.data()[k]);
     return apart == 0;
   }
   template <class M>
   static bool is_null(const M& a) {
     Bits<M> set = 0;
-    for (int k = 0; k < int(M::SizeAtCompileTime); ++k) set |= std::bit_cast<Bits<M>>(a.data()[k]);
+    for (int k = 0; k < int(M::SizeAtCompileTime); ++k) set |= inner::bits_as<Bits<M>>(a.data()[k]);
     return Bits<M>(set << 1) == 0;
   }
   template <class M>

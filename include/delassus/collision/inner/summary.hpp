@@ -2,10 +2,10 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
+#include <delassus/core/bits.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 
@@ -14,7 +14,7 @@ namespace delassus::inner {
 /// A number for what a shape is, the same wherever the shape lies in memory.
 inline std::uint64_t fingerprint(const Shape& s) {
   std::uint64_t sum = std::uint64_t(s.kind) + 1;
-  const auto mix = [&](double x) { sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull; };
+  const auto mix = [&](double x) { sum = (sum ^ inner::bits_as<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull; };
   if (s.kind == ShapeKind::convex_hull) {
     sum = (sum ^ s.hull->fingerprint()) * 0x9e3779b97f4a7c15ull;
   } else {
