@@ -1,6 +1,6 @@
 // Solves friction problems from files, one line each:
 //
-//   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|newton|path|plain] [--warm FILE] [--out FILE]
+//   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|path|plain] [--warm FILE] [--out FILE]
 //             [--save FILE] [--time-limit S]
 //
 // err is Siconos' error, err_s the scale-free one; by default both must be within the tolerance. `build` is the own blocks'
@@ -14,7 +14,6 @@
 #include <delassus/io/problem_file.hpp>
 #include <delassus/loop/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/contact_newton.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/law_book.hpp>
 #include <delassus/solvers/path_newton.hpp>
@@ -49,7 +48,7 @@ struct Options {
 };
 
 constexpr const char* usage =
-    "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|newton|path|plain] "
+    "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|path|plain] "
     "[--warm FILE] [--out FILE] [--save FILE] [--time-limit S]";
 
 /// The criterion of this tool: both errors within the tolerance.
@@ -111,12 +110,9 @@ Result run_named(FrictionProblem& problem, const Options& o) {
   if (o.solver == "plain")
     return run(problem, BasicGaussSeidel<Criterion>{.tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},
                o.time_limit);
-  if (o.solver == "newton")
-    return run(problem, BasicContactNewton<Criterion>{.tolerance = o.tolerance, .min_iterations = 0, .max_sweeps = no_limit},
-               o.time_limit);
   if (o.solver == "path")
     return run(problem, BasicPathNewton<Criterion>{.tolerance = o.tolerance, .max_iterations = no_limit, .max_sweeps = no_limit}, o.time_limit);
-  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'newton', 'path' and 'plain'");
+  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'path' and 'plain'");
   return run(problem,
              BasicAcceleratedGaussSeidel<Criterion>{
                  .tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},

@@ -1,4 +1,3 @@
-#include <delassus/solvers/contact_newton.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
@@ -110,7 +109,7 @@ TEMPLATE_TEST_CASE("a deadline that never comes changes no bit", "", GaussSeidel
 }
 
 TEMPLATE_TEST_CASE("a workspace changes no bit of a problem, whatever it was used for before", "", GaussSeidel,
-                   AcceleratedGaussSeidel, ProximalNewton, ContactNewton, DirectGaussSeidel, PathNewton) {
+                   AcceleratedGaussSeidel, ProximalNewton, DirectGaussSeidel, PathNewton) {
   using Problem = decltype(problem_of(1, 1));
   const TestType solver{.tolerance = 1e-9};
   SolverWorkspace<Problem, TestType> workspace;
@@ -190,7 +189,7 @@ TEST_CASE("Newton's method alone ends at the first look after the deadline, with
 // all of them, and in Newton's method in its gathering, its evaluations and its factorizations. A tick per look: what reads the
 // clock once more after the deadline moves it once more.
 TEMPLATE_TEST_CASE("in the midst of a sweep, a measure or a factorization too a solve returns at its first look after the deadline", "",
-                   GaussSeidel, AcceleratedSweeps, AcceleratedGaussSeidel, ContactNewton, DirectGaussSeidel, PathNewton) {
+                   GaussSeidel, AcceleratedSweeps, AcceleratedGaussSeidel, DirectGaussSeidel, PathNewton) {
   const auto start = problem_of(1, 50);
   int after_factorizations = 0;
   const int last = std::is_same_v<TestType, PathNewton> ? 40 : 1200;  // its looks are whole factorizations apart

@@ -34,9 +34,9 @@ struct WholeInverse {
   static constexpr bool is_whole = true;
 };
 
-/// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. `Storage` is the
-/// type W is kept in; sums run in double. `Inverse` says what is taken of an A that couples blocks.
-template <class Storage = void, class Inverse = WholeInverse>
+/// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. W is kept in
+/// the scalar of the rows; sums run in double. `Inverse` says what is taken of an A that couples blocks.
+template <class Inverse = WholeInverse>
 struct BasicAssembledCompliance {
   using plays = role::Compliance;
 
@@ -45,12 +45,11 @@ struct BasicAssembledCompliance {
 };
 using AssembledCompliance = BasicAssembledCompliance<>;
 
-template <class Storage, class Inverse>
+template <class Inverse>
 template <class T, int... w, int... R>
-class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w...>, R...>> {
+class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
   using Rows = RowSystem<T, Widths<w...>, R...>;
-  using S = std::conditional_t<std::is_void_v<Storage>, T, Storage>;
   using Sum = double;
   static constexpr int pools = int(sizeof...(R));
 
@@ -260,14 +259,14 @@ class BasicAssembledCompliance<Storage, Inverse>::Operator<RowSystem<T, Widths<w
     if (place < 0) {
       place = Index(W.column.size());
       W.column.push_back(j);
-      W.block.emplace_back(block.template cast<S>());
+      W.block.emplace_back(block.template cast<T>());
     } else {
-      W.block[place] += block.template cast<S>();
+      W.block[place] += block.template cast<T>();
     }
   }
 
   template <int Ra>
-  using RowOf = std::tuple<BlockRows<Ra, R, S>...>;
+  using RowOf = std::tuple<BlockRows<Ra, R, T>...>;
 
   std::tuple<RowOf<R>...> blocks_;
   std::tuple<std::vector<Mat<R, R, T>>...> diagonal_;

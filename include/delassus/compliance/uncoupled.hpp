@@ -13,6 +13,6 @@ struct MassAlone {
 /// W̃ = Σ H M⁻¹ Hᵀ for particles coupled by springs under an implicit integrator; W itself where nothing couples. The
 /// corrective motion takes A⁻¹ whole, so what is solved is not what is done: the rows are violated by (W − W̃) λ after a
 /// step. `PredictiveScheme` leaves (W − W̃) Δλ of that, Δλ the change of λ from step to step.
-using UncoupledCompliance = BasicAssembledCompliance<void, MassAlone>;
+using UncoupledCompliance = BasicAssembledCompliance<MassAlone>;
 
 }  // namespace delassus

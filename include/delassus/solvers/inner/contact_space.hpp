@@ -40,11 +40,11 @@ class ContactSpace {
            (Rows::template rows_of<p> == 1 && has_rows_alone<Problem, p>());
   }
 
-  /// False where a law has no such form, or there are more rows than `most`.
+  /// False where a law has no such form.
   template <class Problem>
-  bool gather(Problem& problem, int most) {
+  bool gather(Problem& problem) {
     items_.clear();
-    bool is_known = problem.row_count() <= most;
+    bool is_known = true;
     Index row = 0;
     problem.each([&](auto p, Index i) {
       constexpr int R = Rows::template rows_of<p>;

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/contact_newton.hpp>
 #include <delassus/solvers/impulses.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
+#include <delassus/solvers/inner/newton_in_impulses.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace delassus::inner {
@@ -21,7 +20,7 @@ namespace delassus::inner {
 /// method has no form of, or without a rest, there are sweeps alone.
 template <class Criterion>
 struct SweepsThenNewton {
-  using Newton = BasicContactNewton<Criterion>;
+  using Newton = NewtonInImpulses<Criterion>;
   static constexpr int first = 400;
   BasicAcceleratedGaussSeidel<Criterion> sweeps;  ///< and how many in all
 
@@ -85,14 +84,10 @@ struct SweepsThenNewton {
     return std::min(100, int(0.5 * rest / Newton::cost_in_sweeps(problem.row_count())));
   }
   Newton newton(int swept, int factorizations) const {
-    return {.tolerance = sweeps.tolerance,
-            .max_iterations = factorizations,
-            .min_iterations = std::min(sweeps.min_iterations, swept),
-            .first_sweeps = swept,
-            .max_sweeps = swept,
-            .max_rows = std::numeric_limits<int>::max(),
-            .scale_tolerance = sweeps.scale_tolerance,
-            .all_verified = sweeps.all_verified};
+    Newton solver{sweeps, factorizations};
+    solver.sweeps.max_iterations = swept;
+    solver.sweeps.min_iterations = std::min(sweeps.min_iterations, swept);
+    return solver;
   }
 
   template <class Problem, int... p>

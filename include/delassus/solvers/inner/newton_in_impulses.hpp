@@ -1,0 +1,114 @@
+/// Newton's method in the impulses, inside a proximal point iteration, on a dense W.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/impulses.hpp>
+#include <delassus/solvers/inner/contact_space.hpp>
+#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace delassus::inner {
+
+/// Accelerated sweeps first. Where they did not end the solve, the proximal point λ̂ ← λ, each found by
+/// Newton's method on F of `ContactSpace`, with steps halved until |F| falls, while ε shrinks. The matrix is
+/// dense, of the rows that carry: one factorization of n rows costs n³/3 multiplications. The smallest
+/// measured error is kept. Source: [Rockafellar1976] for the proximal point, [QiSun1993] for Newton's method
+/// on it, [AcaryBremondHuber2018] for both.
+template <class Criterion>
+struct NewtonInImpulses {
+  using plays = role::Solver;
+  BasicAcceleratedGaussSeidel<Criterion>
+      sweeps;  ///< before the first factorization; their tolerance is that of all
+  int max_factorizations = 100;
+
+  template <class Rows>
+  struct Workspace {
+    ContactSpace<Rows> space;
+    Impulses<Rows> best;
+    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    void reset(const Rows& rows) {
+      sweeps.reset(rows);
+      best.resize_like(rows);
+    }
+  };
+
+  /// What a factorization takes with all around it, in sweeps on a dense W of n rows, n² multiplications
+  /// each: n³/3, some three products for the matrix, and those of the halved steps.
+  static double cost_in_sweeps(int rows) { return rows / 3.0 + 10; }
+
+  template <class Problem, class Workspace>
+  SolveReport solve(Problem& problem, Workspace& work) const {
+    SolveReport report = sweeps.solve(problem, work.sweeps);
+    if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
+    if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem)) {
+      const double before = Criterion::sum(report.measure);
+      problem.save(work.best);
+      descend(problem, work, report);
+      problem.load(work.best);
+      problem.attempted(Criterion::sum(report.measure) < 0.5 * before);
+      report.ended_by = "newton";
+    }
+    report.status = verdict<Criterion>(sweeps, report.measure, problem.row_count());
+    return report;
+  }
+
+ private:
+  template <class Problem, class Workspace>
+  void descend(Problem& problem, Workspace& work, SolveReport& report) const {
+    auto& space = work.space;
+    const int rows = problem.row_count();
+    double epsilon = 1e-4, last = Criterion::sum(report.measure);
+    space.take(problem);
+    for (int stalled = 0; stalled < 8 && !is_done(report.measure, rows);) {
+      if (report.factorizations >= max_factorizations || !problem.has_time_for(cost_in_sweeps(rows))) return;
+      const double fall = approach(problem, space, epsilon, report);
+      space.give(problem);
+      const Measure now = problem.measure();
+      problem.tell(report.sweeps + report.factorizations, now);
+      const bool is_better = Criterion::sum(now) < Criterion::sum(report.measure);
+      if (is_better) {
+        report.measure = now;
+        problem.save(work.best);
+      }
+      stalled = is_better ? 0 : stalled + 1;
+      if (!(Criterion::sum(now) <= 2 * last)) problem.load(work.best);  // lost: from the best again
+      epsilon = fall < 0.3 ? std::max(0.1 * epsilon, 1e-10) : std::min(10 * epsilon, 10.0);
+      last = std::min(Criterion::sum(now), 2 * last);
+      space.take(problem);
+    }
+  }
+
+  /// Newton's method around one λ̂, until |F| has fallen by a hundred or does not fall; how far it fell.
+  template <class Problem, class Space>
+  double approach(Problem& problem, Space& space, double epsilon, SolveReport& report) const {
+    const double work = cost_in_sweeps(problem.row_count()), first = space.evaluate(epsilon);
+    double size = first;
+    for (int step = 0; step < 12 && size > 1e-2 * first && report.factorizations < max_factorizations;
+         ++step) {
+      if (step > 0 && !problem.has_time_for(work)) break;
+      if (!space.find_direction(epsilon)) return 1;
+      ++report.factorizations;
+      double best = 0, least = std::numeric_limits<double>::infinity();
+      for (double t = 1; t > 2e-4; t *= 0.5) {
+        const double trial = space.evaluate(epsilon, t);
+        if (trial < least) least = trial, best = t;
+        if (trial <= (1 - 1e-3 * t) * size) break;
+      }
+      if (!(least < 0.999 * size)) return size / first;
+      space.advance(best);
+      size = space.evaluate(epsilon);
+    }
+    return first > 0 ? size / first : 0;
+  }
+
+  bool is_done(const Measure& m, int rows) const {
+    return is_within<Criterion>(sweeps, m, rows) || m.residual <= m.floor;
+  }
+};
+
+}  // namespace delassus::inner
