@@ -54,11 +54,12 @@ class Report:
             said = task[1]()
             return time.monotonic() - start, said
         start = time.monotonic()
+        wrong = self.wrong
         with ThreadPoolExecutor(2) as pool:
             for task, (seconds, said) in zip(tasks, pool.map(timed, tasks)):
                 if said or not together:
                     self.line(task[0], seconds, said)
-        if together:
+        if together and self.wrong == wrong:
             self.line(together, time.monotonic() - start)
 
 

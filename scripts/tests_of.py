@@ -98,11 +98,12 @@ def build(targets, preset="quick"):
     folder = ROOT / "build" / preset
     if not (folder / "build.ninja").exists():
         subprocess.run(["cmake", "--preset", preset], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["ninja", "-C", str(folder), "build.ninja"], stdout=subprocess.DEVNULL, check=True)  # sources may have come
     known = subprocess.run(["ninja", "-C", str(folder), "-t", "targets", "all"], text=True, capture_output=True, check=True).stdout
     known = {line.split(":")[0].rsplit("/", 1)[-1] for line in known.splitlines()}
     here = [target for target in targets if target in known]
     for target in set(targets) - set(here):
-        print(f"{target} is left out: it needs a component that is not here, or `cmake --preset {preset}` anew")
+        print(f"{target} is left out: it needs a component that is not here")
     if not here:
         return []
     jobs = os.environ.get("DELASSUS_JOBS", str(os.cpu_count() or 1))
