@@ -40,7 +40,6 @@ class AnimationLoop {
   /// Rows and W of the last step are there to be asked for.
   static constexpr bool has_problem = has_constraints && !solves_whole_step && !visits_joints;
   static constexpr bool divides_step = requires { requires Parts::Scheme::divides_step; };
-  static constexpr bool locates_impacts = requires { requires Parts::Scheme::locates_impacts; };
   /// A policy of the list, by type.
   template <class P>
   static constexpr bool has = (std::is_same_v<P, Policies> || ...);
@@ -102,7 +101,7 @@ class AnimationLoop {
   auto predicted_force(ConstraintHandle<Law> constraint) const {
     return (impulse(constraint) / h_).eval();
   }
-  /// The contacts of the last step with their impulses, sorted by pair and feature (under LocatedImpacts, in turn).
+  /// The contacts of the last step with their impulses, sorted by pair and feature.
   std::span<const ContactResult> contacts() const
     requires(Laws::has_contacts)
   {
@@ -262,23 +261,6 @@ class AnimationLoop {
   /// For a scheme that does a step in parts: h is h/count from here on, until a part ends after which none is left.
   void begin_substeps(int count);
   void end_substep(int left);
-  /// For a scheme that flies from impact to impact, see `LocatedImpacts`; the least gap (m) now.
-  double begin_flights(double tolerance);
-  /// Whether pairs that touch now, within `reach` (m), and did not push in the last step, close: for `meet`.
-  bool closes(double reach);
-  /// When the first pair touches that was seen apart by more than `reach` (m) where the present flight began,
-  /// if its velocity stays, s; infinite without one.
-  double soonest_touch(double reach);
-  /// Whether flights from here may be of any length, as those of an integrator that closes gaps may not where
-  /// joints are open.
-  bool may_locate() const;
-  /// From where flights began, without contacts, for h seconds; a `Landing`. The last one ends the step.
-  auto fly(double h, bool is_last);
-  /// Impulses of what is within `reach` (m) where the loop is; the flights to come begin here.
-  void meet(double reach);
-  /// From where flights began, with contacts, to the end of the step.
-  void step_with_contacts(double h);
-  void end_flights();
 
   /// No constraint, nobody who listens between Begin and Step, and parts that treat each block by itself.
   static constexpr bool moves_freely =
@@ -319,17 +301,6 @@ class AnimationLoop {
   Laws& laws() { return part<role::Constraints>(); }
   const Laws& laws() const { return part<role::Constraints>(); }
   void end_advance();
-  template <class Stepper>
-  void advance_by(const Stepper& stepper);
-  /// The step of which h_ is a part under LocatedImpacts, else h_, s.
-  double whole_step() const {
-    if constexpr (locates_impacts)
-      if (work_.parts.h > 0) return work_.parts.h;
-    return h_;
-  }
-  void set_part(double h, bool is_last);
-  /// Detects for the flights; the report keeps what the flight said but for the counts.
-  void see();
   /// The rows of the last step speak of what has been taken out: there are none until the next one.
   void forget_rows() {
     if constexpr (has_constraints) {
@@ -358,4 +329,3 @@ class AnimationLoop {
 
 #include <delassus/loop/inner/loop_members.hpp>  // what a host calls
 #include <delassus/loop/inner/loop_stages.hpp>   // the stages, stage by stage
-#include <delassus/loop/inner/flight_stages.hpp>  // and those of flights

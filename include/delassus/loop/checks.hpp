@@ -283,7 +283,6 @@ consteval bool loop_is_sound() {
   else if constexpr (!constraints_are_sound<Parts>()) return false;
   else if constexpr (!whole_step_fits<Parts, Policies...>()) return false;
   else if constexpr (!visits_fit<Parts, Policies...>()) return false;
-  else if constexpr (!flights_fit<Parts>()) return false;
   else if constexpr (!mean_springs_fit<Parts>()) return false;
   else if constexpr (!substeps_fit<typename Parts::Scheme, typename Parts::Activity>()) return false;
   else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;

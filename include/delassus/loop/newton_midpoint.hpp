@@ -15,7 +15,7 @@ namespace delassus {
 /// where φ is quadratic in q (all joints but couplings, screws and lengths; a rigid length too) it keeps
 /// energy to rounding, and nothing drifts. The matrix of Newton's method has the geometric stiffness of
 /// forces at points, so that light links under a heavy load hold at large steps: see docs/decisions/0010. For
-/// rigid bodies and laws whose rows are equalities.
+/// rigid bodies and laws whose rows are equalities, so no contacts.
 ///
 /// {.max_iterations = 1, .acceptable = ∞} is one linear solve a step, half the time: what a step leaves open
 /// the next one closes, and the status is `max_iterations`. Forces are those of the start of the step. All
@@ -24,7 +24,6 @@ namespace delassus {
 struct NewtonMidpoint {
   using plays = role::Integrator;
   static constexpr bool solves_whole_step = true;
-  static constexpr double shortest_flight = 1e-3;  ///< of a step, see `LocatedImpacts`: gaps are closed in it
   template <class World, class Laws, class Rows>
   using WholeStep = std::conditional_t<(Rows::pool_count > 0), MidpointHold<World, Laws, Rows>, MidpointAlone<World>>;
   template <class Set>

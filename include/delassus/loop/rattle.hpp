@@ -12,9 +12,9 @@ namespace delassus {
 /// the energy varies by O(h²) and does not drift, and steps that are turned back return to the start. Forces
 /// are asked twice a step, so they need not be those of the start. Explicit: stable for h ω < 2, ω also of
 /// springs and of what swings sideways under a tension; a heavy chain at a large step wants `NewtonMidpoint`.
-/// For rigid bodies, particles, and laws whose rows are equalities; soft rows are forces. All islands are
-/// solved as one, without W; the solver, the compliance and the stabilisation of the loop are not asked. The
-/// free rotation of bodies is that of `LiePoisson`.
+/// For rigid bodies, particles, and laws whose rows are equalities, so no contacts; soft rows are forces. All
+/// islands are solved as one, without W; the solver, the compliance and the stabilisation of the loop are not
+/// asked. The free rotation of bodies is that of `LiePoisson`.
 ///
 /// Most of what the energy varies by is the free motion's own, with joints that bend its way: `drifts` closes
 /// them at the ends of its parts, between the same two kicks. A double pendulum of points let go level, 1.24
@@ -22,7 +22,6 @@ namespace delassus {
 struct Rattle {
   using plays = role::Integrator;
   static constexpr bool solves_whole_step = true;
-  static constexpr double shortest_flight = 1e-3;  ///< of a step, see `LocatedImpacts`: gaps are closed in it
   template <class World, class Laws, class Rows>
   using WholeStep = RattleStep<World, Laws, Rows>;
   template <class Set>

@@ -10,9 +10,9 @@ namespace delassus {
 /// Four evaluations of forces and, where there are joints, of the accelerations they allow; the end of the
 /// step is brought back onto the joints. Fourth order for smooth scenes: the cheapest way to many digits. It
 /// keeps no invariant: over long runs energy leaks. Stable for h ω < 2.828. For rigid bodies, particles, and
-/// laws whose rows are equalities; soft rows are forces. All islands are solved as one, without W; the
-/// solver, the compliance and the stabilisation of the loop are not asked. Forces of the host are those of
-/// the start, and constant over the step.
+/// laws whose rows are equalities, so no contacts; soft rows are forces. All islands are solved as one,
+/// without W; the solver, the compliance and the stabilisation of the loop are not asked. Forces of the host
+/// are those of the start, and constant over the step.
 struct RungeKutta4 {
   using plays = role::Integrator;
   static constexpr bool solves_whole_step = true;

@@ -140,7 +140,7 @@ void AnimationLoop<Policies...>::make_bias() {
     }
     if constexpr (Work::at_midpoint) work_.fade.resize_like(work_.rows);
     delassus::make_bias(std::as_const(*this).world(), laws(), work_.rows, part<role::Stabilisation>(), h_,
-                        whole_step(), theta<typename Parts::Integrator>(), work_.bounce, work_.at_start, work_.fade);
+                        theta<typename Parts::Integrator>(), work_.bounce, work_.at_start, work_.fade);
   }
   tell<stage::Bias>();
 }
@@ -269,12 +269,6 @@ void AnimationLoop<Policies...>::visit_joints() {
 
 template <class... Policies>
 void AnimationLoop<Policies...>::advance() {
-  advance_by(part<role::Integrator>());
-}
-
-template <class... Policies>
-template <class Stepper>
-void AnimationLoop<Policies...>::advance_by(const Stepper& stepper) {
   const auto find = [&] {
     if constexpr (has_constraints)
       if constexpr (Work::projects_position)
@@ -287,7 +281,7 @@ void AnimationLoop<Policies...>::advance_by(const Stepper& stepper) {
   }();
   if constexpr (!sees_end) find();
   world().each([&](auto& set, auto) {
-    stepper.advance(set, h_);
+    part<role::Integrator>().advance(set, h_);
     report_.quarantined += set.held();
   });
   if constexpr (sees_end) {

@@ -10,7 +10,6 @@
 #include <delassus/loop/scheme.hpp>
 #include <delassus/loop/stages/bias.hpp>
 #include <delassus/loop/stages/move_freely.hpp>
-#include <delassus/loop/stages/refine.hpp>
 #include <delassus/loop/workspace.hpp>
 #include <delassus/rows/row_kind.hpp>
 
@@ -30,10 +29,6 @@ consteval bool holds_exactly() {
 template <class Scheme>
 inline constexpr bool takes_whole_steps = requires { requires Scheme::takes_whole_steps; };
 
-/// The order of the stages lets bodies fly without their contacts.
-template <class Scheme>
-inline constexpr bool locates_impacts = requires { requires Scheme::locates_impacts; };
-
 /// An integrator that solves for joints and bodies together leaves no room for parts between FreeMotion and Correct.
 template <class Parts, class... Policies>
 consteval bool whole_step_fits() {
@@ -42,7 +37,7 @@ consteval bool whole_step_fits() {
     return true;
   } else {
     constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
-      return ((holds_exactly<L>() || (ContactLaw<L> && locates_impacts<typename Parts::Scheme>)) && ...);
+      return (holds_exactly<L>() && ...);
     }(static_cast<const typename Parts::Laws*>(nullptr));
     constexpr bool can_move = []<class... S>(const delassus::World<S...>*) {
       return (I::template can_move<S> && ...);
@@ -51,7 +46,7 @@ consteval bool whole_step_fits() {
                               std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...);
     static_assert(are_equal,
                   "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, "
-                  "motors and drives; take their laws out, or use another integrator, such as ImplicitEuler (contacts that are impacts: LocatedImpacts)");
+                  "motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson");
     if constexpr (are_equal)
       static_assert(can_move,
                     "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles, GeneralizedAlpha, "
@@ -116,37 +111,6 @@ consteval bool mean_springs_fit() {
   static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, "
                      "and gaps of each step, which Substeps has not; use ImplicitMidpoint and no Substeps, or leave AtMean{} out");
   return fit;
-}
-
-/// A contact without a spring, or a joint that holds for good.
-template <class Law>
-consteval bool is_hit_or_held() {
-  if constexpr (ContactLaw<Law>) return !requires(const Law& contact) { contact.law.stiffness; };
-  else return holds_exactly<Law>() && !BreakableLaw<Law>;
-}
-
-/// Flights have no contacts, and impacts no forces: there are contacts that hit, and joints.
-template <class Parts>
-consteval bool flights_fit() {
-  if constexpr (!locates_impacts<typename Parts::Scheme>) {
-    return true;
-  } else {
-    using Laws = typename Parts::Laws;
-    using Rows = typename rows_of<typename Parts::World, Laws>::type;
-    constexpr bool are_impacts = []<class... L>(const Constraints<L...>*) {
-      return Laws::has_contacts && (is_hit_or_held<L>() && ...);
-    }(static_cast<const Laws*>(nullptr));
-    static_assert(are_impacts,
-                  "delassus: LocatedImpacts takes contacts that hit (no Penalty) and joints whose rows are equalities (no limits, "
-                  "motors, drives and Breakable), and at least one law of contacts; take the others out of Constraints{...}");
-    constexpr bool is_plain = std::is_same_v<typename Parts::Activity, AllActive> &&
-                              !RefinedOperator<typename Parts::Compliance::template Operator<Rows>>;
-    if constexpr (are_impacts)
-      static_assert(is_plain,
-                    "delassus: LocatedImpacts flies a step more than once; take out the activity, Sleeping or HandPicked, and "
-                    "LazyCompliance or PrecomputedCompliance");
-    return are_impacts && is_plain;
-  }
 }
 
 }  // namespace delassus::inner

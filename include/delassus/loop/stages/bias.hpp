@@ -30,12 +30,12 @@ struct RowBias {
 
 /// Lower row u⁺ + bias ≥ 0. Open: φ/h. Closing within the step with u⁻ < 0: the stronger of e u⁻ and the push-out
 /// speed, never their sum. Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that
-/// symplectic Euler itself keeps, exactly. `whole` is the step of which h is all, or a part.
+/// symplectic Euler itself keeps, exactly.
 template <class S>
-RowBias lower_bias(const S& stabilisation, const RowState& row, double h, double whole) {
+RowBias lower_bias(const S& stabilisation, const RowState& row, double h) {
   RowBias out;
   const bool is_closed = row.phi < 0;
-  out.plain = is_closed ? stabilisation.penetration(row.phi, whole) : row.phi / h;
+  out.plain = is_closed ? stabilisation.penetration(row.phi, h) : row.phi / h;
   out.bias = out.plain;
   const bool closes = row.phi + h * row.free_velocity < 0 && row.start_velocity < 0;
   if (row.restitution > 0 && closes) out.bias = std::min(is_closed ? out.plain : 0.0, row.restitution * row.start_velocity);
@@ -161,16 +161,15 @@ void drive(Pool& pool, Index i, double speed, double h) {
 
 /// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
 /// as do springs that ask for it and the direction of friction (`inner::turned_slip`), all other rows for
-/// v_next. `whole` is the step of which h may be a part: gaps are closed by it, however short the part. `bounce`
-/// takes what restitution added to the bias, where some law restitutes; `at_start` has the rows of the start of
-/// the step, where H is not those, and `fade` takes what fades.
+/// v_next. `bounce` takes what restitution added to the bias, where some law restitutes; `at_start` has the rows
+/// of the start of the step, where H is not those, and `fade` takes what fades.
 ///
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there
 /// without a tenth of what it has across the joints at the start (`inner::fading`), which is of order h² and
 /// for which only the rows of the start will do. Where that gives energy it is withheld, see `withhold_fade`.
 template <class World, class Laws, class Rows, class S, class Bounce, class AtStart, class Fade>
 void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h,
-               double whole, double theta, Bounce& bounce, const AtStart& at_start, Fade& fade) {
+               double theta, Bounce& bounce, const AtStart& at_start, Fade& fade) {
   using T = typename Rows::Scalar;
   for_each_index<Laws::pool_count>([&](auto p) {
     const auto& constraints = laws.template pool<p>();
@@ -203,7 +202,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
             inner::soften(pool, i, k, h);
           }
         } else if (kinds[k] == RowKind::equality) {
-          pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * whole));
+          pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
           pool.d[i][k] += T((1 - theta) / theta) * (start[k] - fades[k]);
           if constexpr (requires { fade.pools; })
             std::get<p>(fade.pools)[i][k] = T((1 - theta) / theta) * fades[k];
@@ -216,7 +215,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
                                           .start_velocity = sign * double(start[k]),
                                           .free_velocity = sign * double(free[k]),
                                           .restitution = restitution},
-                                         h, whole);
+                                         h);
           pool.bias[i][k] = T(sign * row.bias);
           if constexpr (requires { stabilisation.contact_compliance(h); })
             pool.compliance[i][k] = T(stabilisation.contact_compliance(h));

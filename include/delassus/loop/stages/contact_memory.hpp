@@ -54,15 +54,6 @@ class ContactMemory {
     return nearest ? claim(*nearest) : Vec3::Zero();
   }
 
-  /// Whether a contact of this pair pushed.
-  bool pushes(std::uint64_t pair) const {
-    const auto is_before = [](const Entry& e, std::uint64_t p) { return e.pair < p; };
-    auto e = std::lower_bound(entries_.begin(), entries_.end(), pair, is_before);
-    for (; e != entries_.end() && e->pair == pair; ++e)
-      if (!is_zero(e->impulse)) return true;
-    return false;
-  }
-
   void memory(auto& archive) {
     archive(entries_);
     ordered_begin_ = ordered_end_ = 0;

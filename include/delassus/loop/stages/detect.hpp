@@ -104,8 +104,6 @@ class ContactBook {
                     results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
     memory_.sort();
   }
-  /// Whether a contact of this pair pushed in the last step.
-  bool pushed(std::uint64_t pair) const { return memory_.pushes(pair); }
   void memory(auto& archive) { archive(memory_); }
 
  private:

@@ -1,13 +1,15 @@
 /// What outlives the parts of a step that is done in several: for `Substeps`.
 #pragma once
 
+#include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/loop/stages/detect.hpp>
-#include <delassus/loop/stages/part_sums.hpp>
+#include <delassus/math/linear.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 namespace delassus {
@@ -20,31 +22,47 @@ namespace delassus {
 /// So a row that was held at u₊ + φ/h ≥ 0 stays open, and momentum is kept as within a part; a normal keeps
 /// its direction until the next detection.
 template <class World, class Laws, class Rows>
-class StepParts : public PartSums<World, Laws> {
-  using Sums = PartSums<World, Laws>;
+class StepParts;
 
+template <class... Sets, class... L, class Rows>
+class StepParts<World<Sets...>, Constraints<L...>, Rows> {
  public:
+  using World = delassus::World<Sets...>;
+  using Laws = Constraints<L...>;
+  double h = 0, start = 0;  ///< of the whole step, s
+  long steps = 0;
+
   void begin(World& world, int count, double h_, double start_, long steps_) {
-    this->h = h_, this->start = start_, this->steps = steps_;
-    this->keep_loads(world);
-    this->stay_on_the_way(world, count > 1);
+    h = h_, start = start_, steps = steps_;
+    world.each([&](auto& set, auto s) {
+      if constexpr (requires { set.loads(); }) std::get<s>(loads_) = set.loads();
+    });
+    is_first_ = true;
+    stay_on_the_way(world, count > 1);
   }
   /// Before the next part; `left` of them are to come.
   void go_on(World& world, int left) {
-    this->give_loads(world);
-    this->stay_on_the_way(world, left > 1);
+    world.each([&](auto& set, auto s) {
+      if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
+    });
+    stay_on_the_way(world, left > 1);
   }
 
   void add_impulses(const Laws& laws, const ContactBook& book) {
-    pushed_.resize(book.results.size());
-    for (std::size_t i = 0; i < pushed_.size(); ++i) {
-      if (this->is_first()) pushed_[i].setZero();
-      pushed_[i] += book.results[i].impulse;
-    }
-    Sums::add_impulses(laws);
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.impulse; })
+        add(
+            std::get<p>(sums_), pool.impulse, [](const auto& x) -> const auto& { return x; });
+    });
+    add(pushed_, book.results, [](const ContactResult& r) -> const Vec3& { return r.impulse; });
+    is_first_ = false;
   }
   void give_impulses(Laws& laws, ContactBook& book) const {
-    Sums::give_impulses(laws);
+    for_each_index<Laws::pool_count>([&](auto p) {
+      auto& pool = laws.template pool<p>();
+      if constexpr (requires { pool.impulse; }) pool.impulse = std::get<p>(sums_);
+    });
     for (std::size_t i = 0; i < pushed_.size(); ++i) book.results[i].impulse = pushed_[i];
     book.remember();
   }
@@ -76,6 +94,20 @@ class StepParts : public PartSums<World, Laws> {
   }
 
  private:
+  /// Kinematic bodies arrive in the last part.
+  static void stay_on_the_way(World& world, bool is_on_the_way) {
+    world.each([&](auto& set, auto) {
+      if constexpr (requires { set.targets(); }) set.targets().stay_on_the_way(is_on_the_way);
+    });
+  }
+  template <class Sum, class From, class Impulse>
+  void add(Sum& sum, const From& from, const Impulse& impulse) const {
+    sum.resize(from.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      if (is_first_) sum[i].setZero();
+      sum[i] += impulse(from[i]);
+    }
+  }
   /// (H v_next) of the normal row, with what the stabilisation displaced.
   template <int p, class Work>
   static double closing(const World& world, const Work& work, Index i) {
@@ -91,7 +123,11 @@ class StepParts : public PartSums<World, Laws> {
     });
     return u;
   }
+
+  std::tuple<std::vector<Vec<L::rows>>...> sums_;
   std::vector<Vec3> pushed_;  ///< impulses of the contacts, N·s
+  std::tuple<std::vector<typename Sets::Velocity>...> loads_;
+  bool is_first_ = true;  ///< no part's impulses are in the sums
 };
 
 }  // namespace delassus
