@@ -153,7 +153,7 @@ const Case cases[] = {{"tower",
                        true},
                       {"heavy_tower",
                        [] {
-                         return tower({1, 50});
+                         return tower({1, 10});
                        },
                        true},
                       {"cluster", cluster, false},

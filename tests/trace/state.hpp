@@ -299,6 +299,15 @@ void each_result(const Loop& loop, const F& f) {
   });
   each_impulse(loop, f);
 }
+/// f(point) for the material point (1, 2, 3) m of every body that moves: where it is and how it is turned, in
+/// three numbers.
+template <class Loop, class F>
+void each_place(const Loop& loop, const F& f) {
+  loop.world().each([&](const auto& set, auto) {
+    for (Index b = 0; b < set.blocks(); ++b)
+      if (set.is_alive(b) && set.moves(b)) f(set.pose(b).to_world(Vec3(1, 2, 3)));
+  });
+}
 template <class Loop, class F>
 void each_velocity(const Loop& loop, const F& f) {
   loop.world().each([&](const auto& set, auto) {

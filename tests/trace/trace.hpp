@@ -27,14 +27,14 @@ inline constexpr int stored[] = {1, 2, 5, 10, 20, 50, 100, 200};
 
 /// What a step ends with.
 struct Outcome {
-  std::vector<double> v, lambda, heard;  ///< heard: what the combination looks at besides
+  std::vector<double> x, v, lambda, heard;  ///< x: a point of each body; heard: what is looked at besides
   int sweeps = 0, status = 0;
 
   void walk(Text& text) {
     text.line("after"), text(status), text(sweeps);
-    for (auto* list : {&v, &lambda, &heard}) {
-      text.line(list == &v ? "v" : list == &lambda ? "lambda" : "heard"), text.size(*list);
-      for (double& x : *list) text(x);
+    for (const auto& [name, list] : {std::pair{"x", &x}, {"v", &v}, {"lambda", &lambda}, {"heard", &heard}}) {
+      text.line(name), text.size(*list);
+      for (double& number : *list) text(number);
     }
   }
 };
@@ -54,7 +54,7 @@ class Run {
 struct Options {
   double h = 1.0 / 60;       ///< s
   double change = 0;         ///< h of step n is h (1 + change (n mod 3))
-  double tolerance = 1e-10;  ///< of v and λ, by their largest entry in all stored steps
+  double tolerance = 1e-10;  ///< of x, v and λ, by their largest entry in all stored steps
   /// Rows depend on each other: λ is not unique, and v, which is what W λ does, speaks for it.
   bool is_redundant = false;
   /// What of the memory no text holds; the forced steps then are those of a loop without it, in the data too.
@@ -81,6 +81,7 @@ class LoopRun : public Run {
         for (Index k = 0; k < Index(m.size()); ++k) list.push_back(double(m.data()[k]));
       };
     };
+    each_place(loop_, to(out.x));
     each_velocity(loop_, to(out.v));
     each_impulse(loop_, to(out.lambda));
     look_(loop_, [&](double x) { out.heard.push_back(x); });
@@ -259,9 +260,10 @@ inline Trace::Found Trace::compare(const Combination& c, const Record& then, boo
     found.line += text;
   }
   if (is_forced) {
-    double v = 0, lambda = 0, v_scale = 0, lambda_scale = 0;
+    double x = 0, v = 0, lambda = 0, x_scale = 0, v_scale = 0, lambda_scale = 0;
     int sweeps = 0, worst = 0;
     for (const auto& [n, moment] : then.moments) {
+      x_scale = std::max(x_scale, largest(moment.after.x));
       v_scale = std::max(v_scale, largest(moment.after.v));
       lambda_scale = std::max(lambda_scale, largest(moment.after.lambda));
     }
@@ -269,23 +271,24 @@ inline Trace::Found Trace::compare(const Combination& c, const Record& then, boo
     for (const auto& [n, moment] : then.moments) {
       const Outcome now = forced(c, n, moment)->outcome();
       const Outcome& before = moment.after;
-      const double dv = difference(now.v, before.v, v_scale),
+      const double dx = difference(now.x, before.x, x_scale), dv = difference(now.v, before.v, v_scale),
                    dl = difference(now.lambda, before.lambda, lambda_scale);
       const int more = std::abs(now.sweeps - before.sweeps);
-      v = std::max(v, dv), lambda = std::max(lambda, dl), sweeps = std::max(sweeps, more);
+      x = std::max(x, dx), v = std::max(v, dv), lambda = std::max(lambda, dl),
+      sweeps = std::max(sweeps, more);
       if (now.status != before.status)
         status = "another status:", status_now = delassus::name(Status(now.status));
       double heard = now.heard.size() == before.heard.size() ? 0 : INFINITY;
       for (std::size_t k = 0; k < now.heard.size() && heard < INFINITY; ++k)
         heard = std::max(heard, difference({now.heard[k]}, {before.heard[k]}, std::abs(before.heard[k])));
       if (heard > c.options.tolerance) listeners = ", heard something else";
-      const bool is_within = std::max(dv, heard) <= c.options.tolerance &&
+      const bool is_within = std::max({dx, dv, heard}) <= c.options.tolerance &&
                              (c.options.is_redundant || dl <= c.options.tolerance) &&
                              more <= std::max(2.0, 0.1 * before.sweeps) && now.status == before.status;
       if (!is_within && worst == 0) worst = n;
       found.is_within = found.is_within && is_within;
     }
-    std::snprintf(text, sizeof text, "  forced: v %.1e, lambda %.1e%s, sweeps %d, %s%s", v, lambda,
+    std::snprintf(text, sizeof text, "  forced: x %.1e, v %.1e, lambda %.1e%s, sweeps %d, %s%s", x, v, lambda,
                   c.options.is_redundant ? " (not unique)" : "", sweeps, status, status_now);
     found.line += text;
     found.line += listeners;
@@ -371,7 +374,12 @@ inline int Trace::main(int argc, char** argv) {
   }
   if (!free && !forced) free = forced = true;
   const std::string path = folder + "/" + name_ + ".txt";
-  auto data = read(path);
+  std::map<std::string, Record> data;
+  try {
+    if (!writes || !names.empty()) data = read(path);
+  } catch (const std::exception& e) {
+    return std::printf("%s: %s\n", path.c_str(), e.what()), 1;
+  }
   int same = 0, within = 0, wrong = 0;
   for (const Combination& c : all_) {
     if (!names.empty() && !std::count(names.begin(), names.end(), c.name)) continue;
