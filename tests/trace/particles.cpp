@@ -103,5 +103,15 @@ int main(int argc, char** argv) {
     add_net(loop);
     return loop;
   });
+  // Two beads, one hung on a spring with a damper, one that a damper alone slows down.
+  all.add("beads_on_dampers", {.h = 0.01}, [] {
+    auto loop = springs();
+    auto& set = rigid_of(loop);
+    const auto hung = set.add({.position = {0, 0.2, 0}, .velocity = {1, 0, 0}, .mass = 0.4});
+    const auto slowed = set.add({.position = {1, 0, 0}, .velocity = {0, 2, 0}, .mass = 0.3});
+    loop.add(DistanceJoint::Item{anchor(set, hung), world_anchor({0, 0, 0.6}), 0.5, 80.0, 3.0});
+    loop.add(DistanceJoint::Item{anchor(set, slowed), anchor(set, hung), 1.0, 0.0, 2.0});
+    return loop;
+  });
   return all.main(argc, argv);
 }
