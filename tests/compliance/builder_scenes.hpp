@@ -124,8 +124,8 @@ struct Built {
     inner::inverse_of<0>(W, rigid, 0).factor(scale);
     inner::inverse_of<1>(W, soft, 0).factor(scale);
     W.build(scene.world, scene.rows);
-    std::vector<Vec<6>> on_rigid(1, Vec<6>::Zero()), rigid_scratch;
-    std::vector<Vec3> on_soft(soft.blocks(), Vec3::Zero()), soft_scratch;
+    Array<Vec<6>> on_rigid(1, Vec<6>::Zero()), rigid_scratch;
+    Array<Vec3> on_soft(soft.blocks(), Vec3::Zero()), soft_scratch;
     add_impulses<0>(inner::inverse_of<0>(W, rigid, 1), scene.rows, on_rigid, rigid_scratch);
     add_impulses<1>(inner::inverse_of<1>(W, soft, 1), scene.rows, on_soft, soft_scratch);
     gather(scene, on_rigid[0], on_soft);
@@ -136,7 +136,7 @@ struct Built {
   }
 
  private:
-  void gather(const Scene& scene, const Vec<6>& on_rigid, const std::vector<Vec3>& on_soft) {
+  void gather(const Scene& scene, const Vec<6>& on_rigid, std::span<const Vec3> on_soft) {
     const Whole whole(scene);
     const auto& pool = scene.rows.pool<0>();
     const auto& blocks = W.template blocks<0, 0>();

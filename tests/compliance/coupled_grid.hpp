@@ -39,9 +39,9 @@ struct Grids {
   Index body_of(Index block) const {
     return Index(std::upper_bound(first.begin(), first.end(), block) - first.begin()) - 1;
   }
-  void solve(std::vector<Velocity>& x) const {
+  void solve(std::span<Velocity> x) const {
     for (std::size_t k = 0; k < factor.size(); ++k) {
-      std::vector<Velocity> part(x.begin() + first[k], x.begin() + first[k + 1]);
+      Array<Velocity> part(x.begin() + first[k], x.begin() + first[k + 1]);
       factor[k].solve(part);
       std::copy(part.begin(), part.end(), x.begin() + first[k]);
     }

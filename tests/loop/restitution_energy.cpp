@@ -11,7 +11,7 @@ namespace {
 
 /// ½ v·A v of velocities that are not yet the bodies' own.
 template <class Set>
-double energy(const Set& set, const std::vector<typename Set::Velocity>& v) {
+double energy(const Set& set, std::span<const typename Set::Velocity> v) {
   double sum = 0;
   for (Index b = 0; b < set.blocks(); ++b) {
     if (!set.moves(b)) continue;

@@ -204,10 +204,10 @@ class Memory {
 
   // --- collision
   // ---------------------------------------------------------------------------------------------------
-  void part(std::vector<inner::RestingPair>& pairs) { each_pair(pairs); }
-  void part(std::vector<PairMemory>& pairs) { each_pair(pairs); }
+  void part(Array<inner::RestingPair>& pairs) { each_pair(pairs); }
+  void part(Array<PairMemory>& pairs) { each_pair(pairs); }
   template <class Pair>
-  void each_pair(std::vector<Pair>& pairs) {
+  void each_pair(Array<Pair>& pairs) {
     if (pairs_.reads() && pairs_.is_at_end()) return;
     Memory to(pairs_, pairs_);
     pairs_.line("pairs"), pairs_.size(pairs);
@@ -233,10 +233,10 @@ class Memory {
   void part(std::vector<Compound>&) {}
   template <class Kind>
   requires requires(Kind k) { k.is_field; }
-  void part(std::vector<Kind>&) {}
+  void part(Array<Kind>&) {}
   template <class Ignored>
   requires requires(Ignored p) { p.a.block, p.b.block; }
-  void part(std::vector<Ignored>&) {}
+  void part(Array<Ignored>&) {}
   template <class Names>
   requires requires(Names n) { n.body, n.compound, n.first; }
   void part(Names& n) { text_(n.body), text_(n.compound), text_(n.first); }
@@ -257,7 +257,7 @@ class Memory {
     for (Index k = 0; k < Index(m.size()); ++k) text_(m.derived().data()[k]);
   }
   template <class E>
-  void part(std::vector<E>& list) {
+  void part(Array<E>& list) {
     text_.size(list);
     for (E& e : list) part(e);
   }

@@ -4,8 +4,8 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/linear/factorization.hpp>
 
-#include <cholmod.h>
 #include <algorithm>
+#include <cholmod.h>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -97,7 +97,7 @@ class CholmodFactor {
     return is_factored_ = common_.status == CHOLMOD_OK && L_->minor == L_->n;
   }
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w>>& x) const {
+  void solve(std::span<Vec<w>> x) const {
     if (!x.empty()) answer(x[0].data(), 1, x[0].data());
   }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,7 +81,7 @@ inline std::vector<GivenBlock> fclib_blocks(std::vector<FclibEntry> entries) {
   return blocks;
 }
 
-inline std::vector<double> flat(const std::vector<Vec3>& x) {
+inline std::vector<double> flat(std::span<const Vec3> x) {
   std::vector<double> numbers;
   for (const Vec3& v : x) numbers.insert(numbers.end(), v.data(), v.data() + 3);
   return numbers;

@@ -1,6 +1,7 @@
 /// Deformable bodies of finite elements, their nodes a structure of arrays.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/bodies/inner/bodies_of_nodes.hpp>
 #include <delassus/bodies/inner/elastic_body.hpp>
 #include <delassus/bodies/soft_body.hpp>
@@ -11,7 +12,6 @@
 #include <concepts>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -107,7 +107,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   }
 
   /// The elastic ones are those of the last `factor`.
-  void add_forces(std::vector<Velocity>& p) const {
+  void add_forces(std::span<Velocity> p) const {
     const Velocity g = gravity.template cast<T>();
     each_body([&](const auto& body) {
       const auto blocks = body.blocks();
@@ -115,7 +115,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
         if (moves(blocks[k])) p[blocks[k]] += load_[blocks[k]] + mass_[blocks[k]] * g + body.force()[k];
     });
   }
-  void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
+  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
     for (const Index b : slots_.active()) p[b] += T(s) * mass_[b] * v_[b];
   }
 
@@ -210,9 +210,9 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   using Nodes::bodies_, Nodes::body_slots_, Nodes::scale_;
   using Nodes::checked, Nodes::checked_body, Nodes::body_name, Nodes::each_body;
   using Nodes::slots_, Nodes::held_, Nodes::v_, Nodes::load_, Nodes::is_fixed_;
-  std::vector<Velocity> x_, shifted_x_;
-  std::vector<T> mass_, inverse_mass_;
-  std::vector<double> radius_;
+  Array<Velocity> x_, shifted_x_;
+  Array<T> mass_, inverse_mass_;
+  Array<double> radius_;
 };
 
 template <class E, ElasticMaterial M, class T>
@@ -226,7 +226,7 @@ auto BasicFem<E, M, T>::add(const Body& body) -> BodyHandle {
   }
   inner::check_placed(mesh, body.position, body_name(body_slots_.size()));
   const Index k = this->take_body();
-  std::vector<Index> blocks;
+  Array<Index> blocks;
   for (const Vec3& p : mesh.points) {
     const Index b =
         this->take_node(body, k, Index(blocks.size()), Velocity(body.velocity.template cast<T>()));
@@ -262,3 +262,4 @@ Anchor BasicFem<E, M, T>::anchor_at(BodyHandle body, const Vec3& point) const {
 }  // namespace delassus
 
 #include <delassus/bodies/soft_invariants.hpp>  // its energy and momentum
+#include <span>

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <delassus/bodies/inner/slope_search.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/rows/body_set.hpp>
 
-#include <vector>
+#include <span>
 
 namespace delassus {
 
@@ -32,8 +33,8 @@ RestReport find_rest(Set& set, const RestOptions& options = {}) {
                   "find_rest: max_iterations " + inner::text(options.max_iterations) + " must be > 0");
   using Velocity = typename Set::Velocity;
   using T = typename Set::Scalar;
-  std::vector<Velocity> force(set.blocks()), step, trial(set.blocks());
-  const auto pull = [&](std::vector<Velocity>& f) {
+  Array<Velocity> force(set.blocks()), step, trial(set.blocks());
+  const auto pull = [&](std::span<Velocity> f) {
     for (Velocity& x : f) x.setZero();
     set.add_forces(f);
   };

@@ -4,6 +4,7 @@
 #include <delassus/bodies/inner/particle_path.hpp>
 #include <delassus/bodies/inner/places.hpp>
 #include <delassus/bodies/springs.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/shape.hpp>
 #include <delassus/math/fits.hpp>
@@ -12,9 +13,9 @@
 
 #include <concepts>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -110,19 +111,19 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
 
   void factor(SystemScale scale) { springs_.factor(scale, x_, mass_, inverse_mass_, slots_.active()); }
 
-  void add_forces(std::vector<Velocity>& p) const {
+  void add_forces(std::span<Velocity> p) const {
     const Velocity g = gravity.template cast<T>();
     for (const Index b : slots_.active())
       if (moves(b)) p[b] += load_[b] + mass_[b] * g;
     springs_.add_forces(p, x_, v_);
   }
   /// p += s ∂f/∂q v: what the forces change while the set moves with its present velocity.
-  void add_stiffness_times_velocity(std::vector<Velocity>& p, double s) const {
+  void add_stiffness_times_velocity(std::span<Velocity> p, double s) const {
     springs_.add_stiffness_times_velocity(p, x_, v_, T(s));
   }
 
   /// p += s M v.
-  void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
+  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
     for (const Index b : slots_.active()) p[b] += T(s) * mass_[b] * v_[b];
   }
 
@@ -131,7 +132,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   /// f(a, b): what acts on particle a moves particle b.
   void each_tie(auto&& f) const { springs_.each_tie(f); }
   /// x ← A⁻¹ x for the whole set.
-  void solve(std::vector<Velocity>& x) const { springs_.solve(x); }
+  void solve(std::span<Velocity> x) const { springs_.solve(x); }
   /// What A⁻¹ would be of the masses alone: for `UncoupledCompliance`.
   template <int C>
   Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
@@ -242,9 +243,9 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
 
   using Places::checked, Places::slots_, Places::held_, Places::v_, Places::load_;
   Springs<T> springs_;
-  std::vector<Velocity> x_, shifted_x_;
-  std::vector<T> mass_, inverse_mass_;
-  std::vector<double> radius_;
+  Array<Velocity> x_, shifted_x_;
+  Array<T> mass_, inverse_mass_;
+  Array<double> radius_;
 };
 
 using Particles = BasicParticles<double>;

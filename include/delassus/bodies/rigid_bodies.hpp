@@ -8,6 +8,7 @@
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/bodies/inner/shapes.hpp>
 #include <delassus/bodies/inner/targets.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/math/pose.hpp>
 #include <delassus/math/rotation.hpp>
@@ -15,9 +16,9 @@
 #include <delassus/rows/body_set.hpp>
 
 #include <concepts>
+#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -121,7 +122,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
 
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }
 
-  void add_forces(std::vector<Velocity>& p) const {
+  void add_forces(std::span<Velocity> p) const {
     for (const Index b : slots_.active()) add_force(b, p[b]);
   }
   void add_force(Index b, Velocity& p) const {
@@ -131,7 +132,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   }
 
   /// p += s M v.
-  void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
+  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
     for (const Index b : slots_.active()) add_mass_times_velocity(b, p[b], s);
   }
   void add_mass_times_velocity(Index b, Velocity& p, double s) const {
@@ -277,7 +278,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   using Places::checked, Places::slots_, Places::held_, Places::v_, Places::load_;
   T inverse_scale_ = 1;
   inner::RigidState<T> state_;
-  std::vector<Motion> motion_;
+  Array<Motion> motion_;
   inner::Targets targets_;
   inner::Shapes shapes_;
 };

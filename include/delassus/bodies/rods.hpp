@@ -1,6 +1,7 @@
 /// Rods: needles, catheters and threads as chains of corotational Timoshenko beams.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/bodies/inner/bodies_of_nodes.hpp>
 #include <delassus/bodies/inner/elastic_line.hpp>
 #include <delassus/bodies/rod.hpp>
@@ -107,7 +108,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   }
 
   /// The elastic ones are those of the last `factor`.
-  void add_forces(std::vector<Velocity>& p) const {
+  void add_forces(std::span<Velocity> p) const {
     const Vec<3, T> g = gravity.template cast<T>();
     this->each_body([&](const auto& rod) {
       const auto blocks = rod.blocks();
@@ -119,7 +120,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
       }
     });
   }
-  void add_mass_times_velocity(std::vector<Velocity>& p, double s) const {
+  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
     for (const Index b : slots_.active()) p[b] += state_.momentum(b, v_[b], T(s));
   }
 
@@ -207,8 +208,8 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   }
 
   inner::RigidState<T> state_;
-  std::vector<double> radius_;
-  std::vector<Index> next_;  ///< the block of the next node of the rod; −1 at its end
+  Array<double> radius_;
+  Array<Index> next_;  ///< the block of the next node of the rod; −1 at its end
 };
 
 using Rods = BasicRods<double>;
@@ -235,11 +236,11 @@ auto BasicRods<T>::add(const Rod& rod) -> BodyHandle {
     p = rod.position + unit(rod.orientation) * p;
     DELASSUS_EXPECT(inner::fits<T>(p), who + ": a node at " + inner::beyond<T>(p, "m"));
   }
-  const std::vector<Quat> frames = inner::frames_along(points, unit(rod.orientation) * rod.up);
+  const Array<Quat> frames = inner::frames_along(points, unit(rod.orientation) * rod.up);
   // Half of each segment's mass and moments, the moments in the node's axes.
   const Index n = Index(points.size());
-  std::vector<double> mass(n, 0);
-  std::vector<Mat3> inertia(n, Mat3::Zero());
+  Array<double> mass(n, 0);
+  Array<Mat3> inertia(n, Mat3::Zero());
   const RodSection& s = rod.section;
   const Vec3 section(s.second_y + s.second_z, s.second_y, s.second_z);
   for (Index e = 0; e + 1 < n; ++e)
@@ -260,7 +261,7 @@ auto BasicRods<T>::add(const Rod& rod) -> BodyHandle {
   }
 
   const Index k = this->take_body();
-  std::vector<Index> blocks;
+  Array<Index> blocks;
   for (Index i = 0; i < n; ++i) {
     const Index b = this->take_node(rod, k, i, twist<T>(rod.velocity.template cast<T>(), Vec<3, T>::Zero()));
     const std::size_t size = std::size_t(slots_.size());
@@ -302,3 +303,4 @@ Anchor BasicRods<T>::anchor_at(BodyHandle rod, const Vec3& point) const {
 }  // namespace delassus
 
 #include <delassus/bodies/rod_invariants.hpp>  // its energy and momentum
+#include <span>

@@ -1,6 +1,7 @@
 /// Springs with damping between points, and the system matrix they make under an implicit integrator.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/linear/block_cholesky.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -8,7 +9,7 @@
 
 #include <string>
 #include <utility>
-#include <vector>
+#include <span>
 
 namespace delassus {
 
@@ -47,7 +48,7 @@ class Springs {
     analysed_blocks_ = -1;
   }
   void remove_of(Index block) {
-    std::erase_if(springs_, [&](const Spring& s) { return s.a == block || s.b == block; });
+    erase_if(springs_, [&](const Spring& s) { return s.a == block || s.b == block; });
     analysed_blocks_ = -1;
   }
 
@@ -59,7 +60,7 @@ class Springs {
     for (const auto& [a, b] : pairs_) f(a, b);
   }
 
-  double energy(const std::vector<Velocity>& x) const {
+  double energy(std::span<const Velocity> x) const {
     double sum = 0;
     for (const Spring& s : springs_) {
       const double stretch = span(s, x).norm() - s.rest;
@@ -68,7 +69,7 @@ class Springs {
     return sum;
   }
 
-  void add_forces(std::vector<Velocity>& p, const std::vector<Velocity>& x, const std::vector<Velocity>& v) const {
+  void add_forces(std::span<Velocity> p, std::span<const Velocity> x, std::span<const Velocity> v) const {
     for (const Spring& s : springs_) {
       const Vec3 d = span(s, x);
       const double length = d.norm();
@@ -80,14 +81,14 @@ class Springs {
   }
 
   /// p += s ∂f/∂x v = −s K v.
-  void add_stiffness_times_velocity(std::vector<Velocity>& p, const std::vector<Velocity>& x,
-                                    const std::vector<Velocity>& v, T scale) const {
+  void add_stiffness_times_velocity(std::span<Velocity> p, std::span<const Velocity> x,
+                                    std::span<const Velocity> v, T scale) const {
     for (const Spring& s : springs_) push(p, s, -double(scale) * (stiffness(s, x) * rate(s, v)));
   }
 
   /// Makes A and its factors. `active` are the live blocks; those with inverse mass 0 do not move.
-  void factor(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
-              const std::vector<T>& inverse_mass, const std::vector<Index>& active) {
+  void factor(SystemScale scale, std::span<const Velocity> x, const Array<T>& mass,
+              const Array<T>& inverse_mass, const Array<Index>& active) {
     const bool is_plain = springs_.empty() || (scale.stiffness == 0 && scale.damping == 0);
     is_coupled_ = false;
     inverse_mass_ = inverse_mass.data();
@@ -126,7 +127,7 @@ class Springs {
   }
 
   /// x ← A⁻¹ x; entries of blocks that do not move become zero.
-  void solve(std::vector<Velocity>& x) const {
+  void solve(std::span<Velocity> x) const {
     for (std::size_t b = 0; b < x.size(); ++b)
       if (!(inverse_mass_[b] > 0)) x[b].setZero();
     if (is_coupled_) cholesky_.solve(x);
@@ -140,19 +141,19 @@ class Springs {
   }
 
  private:
-  Vec3 span(const Spring& s, const std::vector<Velocity>& x) const {
+  Vec3 span(const Spring& s, std::span<const Velocity> x) const {
     const Vec3 end = s.b < 0 ? s.point : Vec3(x[s.b].template cast<double>());
     return x[s.a].template cast<double>() - end;
   }
-  static Vec3 rate(const Spring& s, const std::vector<Velocity>& v) {
+  static Vec3 rate(const Spring& s, std::span<const Velocity> v) {
     const Vec3 end = s.b < 0 ? Vec3(Vec3::Zero()) : Vec3(v[s.b].template cast<double>());
     return v[s.a].template cast<double>() - end;
   }
-  static void push(std::vector<Velocity>& p, const Spring& s, const Vec3& force) {
+  static void push(std::span<Velocity> p, const Spring& s, const Vec3& force) {
     p[s.a] += force.template cast<T>();
     if (s.b >= 0) p[s.b] -= force.template cast<T>();
   }
-  Mat3 stiffness(const Spring& s, const std::vector<Velocity>& x) const {
+  Mat3 stiffness(const Spring& s, std::span<const Velocity> x) const {
     const Vec3 d = span(s, x);
     const double length = d.norm();
     if (length == 0) return s.rest > 0 ? Mat3(Mat3::Zero()) : Mat3(s.stiffness * Mat3::Identity());
@@ -160,14 +161,14 @@ class Springs {
     const double across = s.stiffness * std::max(0.0, 1 - s.rest / length);
     return across * Mat3::Identity() + (s.stiffness - across) * e * e.transpose();
   }
-  Block system(const Spring& s, const std::vector<Velocity>& x, SystemScale scale) const {
+  Block system(const Spring& s, std::span<const Velocity> x, SystemScale scale) const {
     const Vec3 d = span(s, x);
     const double length = d.norm();
     const Vec3 e = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
     return (scale.stiffness * stiffness(s, x) + scale.damping * s.damping * e * e.transpose()).template cast<T>();
   }
 
-  void factor_coupled(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& inverse_mass, Index n) {
+  void factor_coupled(SystemScale scale, std::span<const Velocity> x, const Array<T>& inverse_mass, Index n) {
     if (analysed_blocks_ != n) cholesky_.analyse(n, pairs_);
     analysed_blocks_ = n;
     cholesky_.set_zero();
@@ -179,9 +180,9 @@ class Springs {
     cholesky_.factor();
   }
 
-  std::vector<Spring> springs_;
-  std::vector<std::pair<Index, Index>> pairs_;
-  std::vector<Block> inverse_;
+  Array<Spring> springs_;
+  Array<std::pair<Index, Index>> pairs_;
+  Array<Block> inverse_;
   BlockCholesky<3, T> cholesky_;
   const T* inverse_mass_ = nullptr;
   T inverse_scale_ = 1;

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/inner/dynamic_tree.hpp>
 #include <delassus/collision/queries.hpp>
+#include <delassus/core/array.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -81,7 +82,7 @@ class BodyTree {
   }
 
   std::vector<Leaf> leaf_;
-  std::vector<Place> others_;
+  Array<Place> others_;
   inner::DynamicTree tree_;
 };
 

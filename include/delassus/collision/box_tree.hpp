@@ -3,6 +3,7 @@
 
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/collision/inner/dynamic_tree.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -143,7 +144,7 @@ class BoxTree {
   /// Drops the pairs of the leaves that moved and looks them up again. Two that both moved are found by the
   /// lower one.
   void renew_pairs() {
-    std::erase_if(kept_, [&](std::uint64_t pair) {
+    erase_if(kept_, [&](std::uint64_t pair) {
       return leaf_[Index(pair >> 32)].has_moved || leaf_[Index(pair & 0xffffffffu)].has_moved;
     });
     fresh_.clear();
@@ -180,9 +181,9 @@ class BoxTree {
   }
 
   std::vector<Leaf> leaf_;
-  std::vector<Index> leaf_of_, sorted_, free_, moved_;
-  std::vector<std::uint64_t> kept_, fresh_, merged_;
-  std::vector<BoxTag> places_;
+  Array<Index> leaf_of_, sorted_, free_, moved_;
+  Array<std::uint64_t> kept_, fresh_, merged_;
+  Array<BoxTag> places_;
   inner::DynamicTree trees_[2];  ///< of what does not move, of what does
 };
 static_assert(BroadPhase<BoxTree> && TaggedBroadPhase<BoxTree>);

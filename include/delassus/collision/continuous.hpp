@@ -5,6 +5,7 @@
 #include <delassus/collision/inner/swing.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 
 #include <algorithm>
@@ -273,7 +274,7 @@ struct Continuous {
   /// Names that no point of a patch has.
   static constexpr std::uint32_t whole_name = 0x3ffffff0u, core_name = 0x3ffffff1u, end_name = 0x3ffffff4u;
 
-  std::vector<Index> fast_;
+  Array<Index> fast_;
   std::vector<bool> is_fast_;
   Patch patch_;
 };

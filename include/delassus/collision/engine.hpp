@@ -12,6 +12,7 @@
 #include <delassus/collision/inner/settle.hpp>
 #include <delassus/collision/manifold.hpp>
 #include <delassus/collision/pair_memory.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <algorithm>
@@ -202,12 +203,12 @@ class CollisionEngine {
   CollisionReport report_;
   Patch patch_;
   std::vector<Aabb> boxes_;
-  std::vector<inner::Summary> summary_;
-  std::vector<BoxTag> tags_;
-  std::vector<Index> half_spaces_;
+  Array<inner::Summary> summary_;
+  Array<BoxTag> tags_;
+  Array<Index> half_spaces_;
   std::vector<CandidatePair> pairs_;
-  std::vector<Job> jobs_;
-  std::vector<RestingPair> memory_, next_memory_;
+  Array<Job> jobs_;
+  Array<RestingPair> memory_, next_memory_;
   std::array<PatchPoint, PairMemory::capacity> repeated_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/geometry/support.hpp>
@@ -119,8 +120,8 @@ struct Seamless {
     return n.dot(c.pose.position) + local.dot(support(c.shape, local));
   }
 
-  std::vector<Side> sides_;
-  std::vector<char> is_seam_;
+  Array<Side> sides_;
+  Array<char> is_seam_;
 };
 
 /// Around what is no backend, or in another order; the loop's checks say so.

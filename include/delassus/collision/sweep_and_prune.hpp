@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/broad_phase.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
 
@@ -74,7 +75,7 @@ class SweepAndPrune {
     return variance[widest] > 2 * variance[axis_] ? widest : axis_;
   }
 
-  std::vector<Index> order_;
+  Array<Index> order_;
   Index count_ = -1;
   int axis_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/geometry/compound.hpp>
 
@@ -152,10 +153,10 @@ struct WithCompounds {
   }
 
   std::vector<Compound> compounds_;
-  std::vector<Names> names_;
+  Array<Names> names_;
   std::uint32_t next_name_ = 0;
   std::vector<Collider> parts_;
-  std::vector<Owner> owners_, by_key_;
+  Array<Owner> owners_, by_key_;
 };
 
 /// Around what is no backend, or in another order; the loop's checks say so.

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/anchor.hpp>
@@ -53,7 +54,7 @@ struct WithFilter {
   /// b).
   template <class World, class EachJoint>
   void refresh(const World& world, const EachJoint& each_joint) {
-    std::erase_if(named_, [&](const Pair& p) { return !world.is_current(p.a) || !world.is_current(p.b); });
+    erase_if(named_, [&](const Pair& p) { return !world.is_current(p.a) || !world.is_current(p.b); });
     pairs_.clear();
     for (const Pair& p : named_) pairs_.push_back(key(p.a, p.b));
     if (joined)
@@ -103,8 +104,8 @@ struct WithFilter {
                     "collision filter: body " + inner::text(a.block) + " is named twice; name two bodies");
   }
 
-  std::vector<Pair> named_;
-  std::vector<std::uint64_t> pairs_;
+  Array<Pair> named_;
+  Array<std::uint64_t> pairs_;
 };
 
 /// Around what is no backend, or in another order; the loop's checks say so.

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/inner/surface_pairs.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/geometry/height_field.hpp>
 #include <delassus/geometry/triangle_mesh.hpp>
@@ -18,8 +19,8 @@ namespace delassus {
 
 /// `WithMeshes{NativeCollision{}}` in the place of the backend: convex pairs are the backend's, and bodies
 /// with a shape that `add` returned meet convex ones and half-spaces by their triangles, and each other by
-/// their vertices, edges and triangles. The solid is behind the triangles, so a convex body whose middle is behind
-/// one does not meet it; a mesh wholly inside a closed one is pushed out. `WithFilter` goes around it.
+/// their vertices, edges and triangles. The solid is behind the triangles, so a convex body whose middle is
+/// behind one does not meet it; a mesh wholly inside a closed one is pushed out. `WithFilter` goes around it.
 template <class Backend = inner::Absent>
 struct WithMeshes {
   using plays = role::Collision;
@@ -164,9 +165,9 @@ struct WithMeshes {
 
   std::vector<TriangleMesh> meshes_;
   std::vector<HeightField> fields_;
-  std::vector<Kind> kinds_;
+  Array<Kind> kinds_;
   std::vector<Collider> convex_;
-  std::vector<Job> jobs_;
+  Array<Job> jobs_;
   inner::SurfacePairs pairs_;
 };
 

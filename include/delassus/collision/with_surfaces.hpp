@@ -4,6 +4,7 @@
 
 #include <delassus/collision/inner/soft_pairs.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 
 #include <algorithm>
@@ -154,10 +155,10 @@ struct WithSurfaces {
   bool is_present(std::size_t i) const { return place_[i] >= 0 && surfaces_[i].is_sound(); }
 
   std::vector<inner::SoftSurface> surfaces_, next_;
-  std::vector<Owner> owners_;
-  std::vector<Index> place_;   ///< of each surface among the colliders
-  std::vector<char> is_node_;  ///< of each collider
-  std::vector<Ends> ends_;
+  Array<Owner> owners_;
+  Array<Index> place_;   ///< of each surface among the colliders
+  Array<char> is_node_;  ///< of each collider
+  Array<Ends> ends_;
   inner::SoftPairs pairs_;
 };
 

@@ -5,11 +5,11 @@
 #include <delassus/compliance/inner/block_row.hpp>
 #include <delassus/compliance/inner/incidence.hpp>
 #include <delassus/compliance/inner/nodal_rows.hpp>
+#include <delassus/core/array.hpp>
 
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -17,8 +17,8 @@ namespace delassus {
 /// Blocks are stored column-major, so that W_ij λ_j is a sum of columns.
 template <int Ra, int Rb, class S>
 struct BlockRows {
-  std::vector<Index> start{0}, column;
-  std::vector<Mat<Ra, Rb, S>> block;
+  Array<Index> start{0}, column;
+  Array<Mat<Ra, Rb, S>> block;
 
   static void each_array(auto& self, auto&& f) { f(self.start), f(self.column), f(self.block); }
   /// No block yet in any of `rows` rows.
@@ -269,8 +269,8 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   using RowOf = std::tuple<BlockRows<Ra, R, T>...>;
 
   std::tuple<RowOf<R>...> blocks_;
-  std::tuple<std::vector<Mat<R, R, T>>...> diagonal_;
-  std::array<std::vector<Index>, sizeof...(R)> place_;
+  std::tuple<Array<Mat<R, R, T>>...> diagonal_;
+  std::array<Array<Index>, sizeof...(R)> place_;
   inner::Incidence<Rows> incidence_;
   inner::CoupledColumns<Rows> columns_;
   inner::NodalRows<Rows> nodal_;

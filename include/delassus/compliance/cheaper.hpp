@@ -3,10 +3,10 @@
 
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/compliance/matrix_free.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace delassus {
 
@@ -123,8 +123,8 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
 
   AssembledCompliance::Operator<Rows> matrix_;
   MatrixFreeCompliance::Operator<Rows> bodies_;
-  std::array<std::vector<Block>, Rows::set_count> blocks_;
-  std::array<std::vector<Kind>, pools> kinds_;
+  std::array<Array<Block>, Rows::set_count> blocks_;
+  std::array<Array<Kind>, pools> kinds_;
   bool is_whole_ = false, has_crowded_ = false;
 };
 

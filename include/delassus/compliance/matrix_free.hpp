@@ -2,10 +2,10 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <tuple>
-#include <vector>
 
 namespace delassus {
 
@@ -103,9 +103,9 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     }
   }
 
-  std::tuple<std::vector<Vec<w, Sum>>...> y_;  ///< in double: it takes thousands of small changes
-  std::tuple<std::vector<Mat<R, R, T>>...> diagonal_;
-  std::tuple<std::vector<Vec<R, T>>...> compliance_;
+  std::tuple<Array<Vec<w, Sum>>...> y_;  ///< in double: it takes thousands of small changes
+  std::tuple<Array<Mat<R, R, T>>...> diagonal_;
+  std::tuple<Array<Vec<R, T>>...> compliance_;
 };
 
 }  // namespace delassus

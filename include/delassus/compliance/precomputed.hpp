@@ -3,12 +3,12 @@
 
 #include <delassus/compliance/inner/compliance_file.hpp>
 #include <delassus/compliance/inner/turned_operator.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
 
 namespace delassus {
 namespace inner {
@@ -32,9 +32,8 @@ class FactorAtRest {
     const std::string path = k == 0 ? file_ : file_ + "." + std::to_string(k);
     const ComplianceKeys keys = has_file ? ComplianceKeys::of(body) : ComplianceKeys{};
     if (has_file && read_compliance(path, keys, inverse)) return;
-    std::vector<Index> nodes;
-    for (const auto& triangle : surface(body.mesh()))
-      nodes.insert(nodes.end(), triangle.begin(), triangle.end());
+    Array<Index> nodes;
+    for (const auto& triangle : surface(body.mesh())) nodes.append(triangle.begin(), triangle.end());
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     inverse.know(nodes, false);
@@ -43,7 +42,7 @@ class FactorAtRest {
 
  private:
   std::string file_;
-  std::vector<char> is_filed_;
+  Array<char> is_filed_;
 };
 
 }  // namespace inner

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/law.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
@@ -42,9 +43,9 @@ struct Pool {
   using Item = typename Law::Item;
 
   Law law{};
-  std::vector<Item> items;
-  std::vector<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
-  std::vector<char> starts_cold;   ///< that impulse is no start for the next step
+  Array<Item> items;
+  Array<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
+  Array<char> starts_cold;   ///< that impulse is no start for the next step
   Slots slots;
   std::uint32_t owner = inner::next_owner();
   /// Who broke in the last step, and goes when the next one begins.
@@ -127,7 +128,7 @@ struct Pool<Law> {
   using Item = typename Law::Item;
 
   Law law{};
-  std::vector<Item> items;
+  Array<Item> items;
 
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}

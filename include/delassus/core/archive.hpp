@@ -1,6 +1,7 @@
 /// What outlives a step, as bytes: each owner names it in `memory(archive)`.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <array>
@@ -25,6 +26,13 @@ void walk(Archive& archive, X& x) {
 }
 template <class Archive, class E>
 void walk(Archive& archive, std::vector<E>& list) {
+  archive.size(list);
+  if constexpr (requires(E& e) { e.memory(archive); })
+    for (E& e : list) walk(archive, e);
+  else archive.bytes(list.data(), list.size() * sizeof(E));
+}
+template <class Archive, class E>
+void walk(Archive& archive, Array<E>& list) {
   archive.size(list);
   if constexpr (requires(E& e) { e.memory(archive); })
     for (E& e : list) walk(archive, e);

@@ -1,11 +1,11 @@
 /// Places in an array that can be given back and reused, each with a generation, so that nothing ever moves.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
 namespace delassus {
 
@@ -49,7 +49,7 @@ class Slots {
   /// Has grown when places that were alive may not be any more, by `give_back` or because other slots were assigned.
   std::uint32_t removals() const { return removals_.value; }
   std::uint32_t generation(Index place) const { return generation_[place]; }
-  const std::vector<Index>& active() const {
+  const Array<Index>& active() const {
     if (stale_) [[unlikely]] gather();
     return active_;
   }
@@ -89,10 +89,10 @@ class Slots {
   };
 
   Growing removals_;
-  std::vector<std::uint32_t> generation_;
-  std::vector<char> alive_;  ///< 0 free, 1 awake, 2 asleep
-  std::vector<Index> free_;
-  mutable std::vector<Index> active_;
+  Array<std::uint32_t> generation_;
+  Array<char> alive_;  ///< 0 free, 1 awake, 2 asleep
+  Array<Index> free_;
+  mutable Array<Index> active_;
   mutable bool stale_ = false;
 };
 

@@ -1,6 +1,7 @@
 /// What an integrator is: how A is mixed, which impulse acts, and how the state moves on.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/body_set.hpp>
 
@@ -15,11 +16,11 @@ struct SetProbe {
   using Scalar = double;
   using Velocity = Vec<3>;
   static constexpr int width = 3;
-  std::vector<Velocity> v_free, v_next;
-  std::vector<Velocity>& velocity();
-  void add_forces(std::vector<Velocity>&) const;
-  void add_stiffness_times_velocity(std::vector<Velocity>&, double) const;
-  void add_mass_times_velocity(std::vector<Velocity>&, double) const;
+  Array<Velocity> v_free, v_next;
+  Array<Velocity>& velocity();
+  void add_forces(Array<Velocity>&) const;
+  void add_stiffness_times_velocity(Array<Velocity>&, double) const;
+  void add_mass_times_velocity(Array<Velocity>&, double) const;
   void advance(double);
   void advance_midpoint(double);
 };

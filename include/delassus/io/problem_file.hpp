@@ -7,6 +7,7 @@
 
 #include <charconv>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -157,7 +158,7 @@ inline std::string problem_text(const FrictionProblem& p) {
   return out + blocks;
 }
 
-inline std::string impulses_text(const std::vector<Vec3>& lambda) {
+inline std::string impulses_text(std::span<const Vec3> lambda) {
   std::string out;
   for (const Vec3& x : lambda)
     for (int k = 0; k < 3; ++k) {
@@ -170,7 +171,7 @@ inline std::string impulses_text(const std::vector<Vec3>& lambda) {
 inline void write_problem(const std::string& path, const FrictionProblem& p) {
   inner::write_file(path, problem_text(p));
 }
-inline void write_impulses(const std::string& path, const std::vector<Vec3>& lambda) {
+inline void write_impulses(const std::string& path, std::span<const Vec3> lambda) {
   inner::write_file(path, impulses_text(lambda));
 }
 

@@ -1,6 +1,7 @@
 /// Cholesky factorization of a block-tridiagonal matrix: each block meets its two neighbours alone.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -9,7 +10,6 @@
 #include <cstddef>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -57,7 +57,7 @@ class BlockChain {
   }
 
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w, T>>& x) const {
+  void solve(std::span<Vec<w, T>> x) const {
     for (Index i = 0; i < blocks(); ++i) {
       if (i > 0) subtract_times(x[i].data(), below_[i - 1].data(), x[i - 1].data());
       forward(diagonal_[i].data(), x[i].data());
@@ -182,9 +182,9 @@ class BlockChain {
     return U;
   }
 
-  std::vector<Block> diagonal_, below_;
-  mutable std::vector<std::pair<Index, Index>> order_;  ///< (node, number), ascending
-  mutable std::vector<Block> columns_;
+  Array<Block> diagonal_, below_;
+  mutable Array<std::pair<Index, Index>> order_;  ///< (node, number), ascending
+  mutable Array<Block> columns_;
 };
 
 }  // namespace delassus

@@ -1,6 +1,7 @@
 /// Sparse Cholesky factorization of a symmetric positive definite matrix of small square blocks.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/linear/block_pattern.hpp>
 #include <delassus/math/linear.hpp>
@@ -9,7 +10,6 @@
 
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -65,7 +65,7 @@ class BlockCholesky {
   }
 
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w, T>>& x) const {
+  void solve(std::span<Vec<w, T>> x) const {
     const Index n = Index(diagonal_.size());
     for (Index i = 0; i < n; ++i) work_[pattern_.place(i)] = x[i];
     for (Index j = 0; j < n; ++j) {
@@ -83,8 +83,8 @@ class BlockCholesky {
 
  private:
   BlockPattern pattern_;
-  std::vector<Block> diagonal_, lower_;
-  mutable std::vector<Vec<w, T>> work_;
+  Array<Block> diagonal_, lower_;
+  mutable Array<Vec<w, T>> work_;
 };
 
 }  // namespace delassus

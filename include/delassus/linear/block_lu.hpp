@@ -1,13 +1,13 @@
 /// Sparse LU factorization of an unsymmetric matrix of small square blocks whose pattern is symmetric.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/block_pattern.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 #include <delassus/math/small_products.hpp>
 
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -85,7 +85,7 @@ class BlockLu {
 
   /// x ← A⁻¹ x.
   template <class Ends = Never>
-  void solve(std::vector<Vec<w, T>>& x, Ends&& ends = {}) const {
+  void solve(std::span<Vec<w, T>> x, Ends&& ends = {}) const {
     const Index n = Index(diagonal_.size());
     for (Index i = 0; i < n; ++i) work_[pattern_.place(i)] = x[i];
     for (Index j = 0; j < n; ++j) {
@@ -104,9 +104,9 @@ class BlockLu {
 
  private:
   BlockPattern pattern_;
-  std::vector<Block> diagonal_, lower_, upper_;
-  std::vector<PivotedLu<w, T>> pivot_;
-  mutable std::vector<Vec<w, T>> work_;
+  Array<Block> diagonal_, lower_, upper_;
+  Array<PivotedLu<w, T>> pivot_;
+  mutable Array<Vec<w, T>> work_;
 };
 
 template <int w, class T>

@@ -1,6 +1,7 @@
 /// Where a sparse factorization of square blocks has entries: the order of elimination, and the fill.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 
 #include <algorithm>
@@ -31,8 +32,8 @@ class BlockPattern {
       auto& rows = lists_[j];
       sort_unique(rows);
       // Fill: the rows below the first one of a column appear in that first row's column too.
-      if (!rows.empty()) lists_[rows[0]].insert(lists_[rows[0]].end(), rows.begin() + 1, rows.end());
-      row_.insert(row_.end(), rows.begin(), rows.end());
+      if (!rows.empty()) lists_[rows[0]].append(rows.begin() + 1, rows.end());
+      row_.append(rows.begin(), rows.end());
       start_.push_back(Index(row_.size()));
     }
   }
@@ -74,7 +75,7 @@ class BlockPattern {
         merged_.clear();
         std::set_union(lists_[n].begin(), lists_[n].end(), lists_[b].begin(), lists_[b].end(),
                        std::back_inserter(merged_));
-        std::erase_if(merged_, [&](Index i) { return i == n || i == b; });
+        erase_if(merged_, [&](Index i) { return i == n || i == b; });
         lists_[n].assign(merged_.begin(), merged_.end());
         push(n);
       }
@@ -99,14 +100,14 @@ class BlockPattern {
     if (Index(lists_.size()) < blocks) lists_.resize(blocks);
     for (auto& list : lists_) list.clear();
   }
-  static void sort_unique(std::vector<Index>& list) {
+  static void sort_unique(Array<Index>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  std::vector<Index> place_, start_, row_, merged_;
-  std::vector<std::vector<Index>> lists_;
-  std::vector<Degree> queue_;
+  Array<Index> place_, start_, row_, merged_;
+  std::vector<Array<Index>> lists_;
+  Array<Degree> queue_;
 };
 
 }  // namespace delassus

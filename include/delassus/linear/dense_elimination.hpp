@@ -1,12 +1,13 @@
 /// The LU factorization of a dense matrix whose size changes from one to the next.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -44,7 +45,7 @@ class DenseElimination {
   }
 
   /// x ← A⁻¹ x.
-  void solve(std::vector<double>& x) const {
+  void solve(std::span<double> x) const {
     for (Index k = 0; k < n_; ++k) std::swap(x[k], x[swap_[k]]);
     for (Index k = 0; k < n_; ++k) subtract(x[k], column(k), x.data(), k + 1);
     for (Index k = n_; k-- > 0;) {
@@ -63,8 +64,8 @@ class DenseElimination {
   }
 
   Index n_ = 0;
-  std::vector<double> A_;
-  std::vector<Index> swap_;
+  Array<double> A_;
+  Array<Index> swap_;
 };
 
 }  // namespace delassus

@@ -1,20 +1,20 @@
 /// What a solver of A x = b with a sparse matrix of small blocks offers, whichever way it factors.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <concepts>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
 /// A symmetric positive definite A of w × w blocks of T, factored again and again with one pattern.
 template <class F, int w, class T>
 concept Factorization = requires(F f, const F fixed, Index i, std::span<const std::pair<Index, Index>> pairs,
-                                 const Mat<w, w, T> block, std::vector<Vec<w, T>>& x) {
+                                 const Mat<w, w, T> block, Array<Vec<w, T>>& x) {
   f.analyse(i, pairs);                       // how many blocks, and which pairs (i, j), i ≠ j, are not zero
   f.set_zero();                              // A = 0
   f.add_diagonal(i, block);                  // A_ii += block

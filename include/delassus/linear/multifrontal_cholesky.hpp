@@ -1,6 +1,7 @@
 /// Multifrontal Cholesky factorization of a sparse symmetric positive definite matrix of small square blocks.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_triangle.hpp>
@@ -105,7 +106,7 @@ class MultifrontalCholesky {
   }
 
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w, T>>& x) const {
+  void solve(std::span<Vec<w, T>> x) const {
     y_.resize(std::size_t(w) * blocks());
     for (Index i = 0; i < blocks(); ++i) Line(&y_[w * pattern().place(i)], w) = x[i].array();
     for (Index s = 0; s < fronts(); ++s) forward(s);
@@ -185,13 +186,13 @@ class MultifrontalCholesky {
   }
 
   inner::FrontPlan plan_;
-  std::vector<Block> A_;  ///< the diagonal blocks by place, then those below by entry
+  Array<Block> A_;  ///< the diagonal blocks by place, then those below by entry
   inner::FrontTriangle<w, T> L_;
   std::vector<std::pair<Index, bool>> path_;  ///< the supernodes of the region; true: has to be made anew
   bool is_factored_ = false;
   inner::DenseKernel<T> kernel_;
   mutable NodeCompliance<w, T> compliance_;
-  mutable std::vector<T> y_, gather_;
+  mutable Array<T> y_, gather_;
 };
 
 }  // namespace delassus

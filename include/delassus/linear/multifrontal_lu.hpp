@@ -1,6 +1,7 @@
 /// Multifrontal LU factorization of an unsymmetric matrix of small square blocks whose pattern is symmetric.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_triangle.hpp>
 #include <delassus/math/pivoted_lu.hpp>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -59,7 +59,7 @@ class MultifrontalLu {
   }
 
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w, T>>& x) const {
+  void solve(std::span<Vec<w, T>> x) const {
     y_.resize(x.size());
     for (Index i = 0; i < plan_.blocks(); ++i) y_[plan_.pattern.place(i)] = x[i];
     for (Index s = 0; s < plan_.fronts(); ++s) forward(s);
@@ -150,13 +150,13 @@ class MultifrontalLu {
   }
 
   inner::FrontPlan plan_;
-  std::vector<Block> diagonal_, lower_,
+  Array<Block> diagonal_, lower_,
       upper_;  ///< of A: by place, and by entry below and above the diagonal
-  std::vector<PivotedLu<w, T>> pivot_;
+  Array<PivotedLu<w, T>> pivot_;
   inner::FrontTriangle<w, T> L_, U_;
   inner::DenseKernel<T> kernel_;
-  mutable std::vector<Vec<w, T>> y_;
-  mutable std::vector<T> gather_;
+  mutable Array<Vec<w, T>> y_;
+  mutable Array<T> gather_;
 };
 
 }  // namespace delassus

@@ -1,6 +1,7 @@
 /// An order of elimination by nested dissection: both halves of a graph first, the nodes between them last.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -9,21 +10,20 @@
 #include <numeric>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
 /// Neighbours of the nodes of an undirected graph, compressed: those of node i are neighbour[start[i]] …
 /// [start[i+1] − 1].
 struct NodeGraph {
-  std::vector<Index> start, neighbour;
+  Array<Index> start, neighbour;
 
   NodeGraph() = default;
   /// From the pairs (i, j), i ≠ j, each once.
   NodeGraph(Index nodes, std::span<const std::pair<Index, Index>> pairs) : start(nodes + 1, 0) {
     for (auto [i, j] : pairs) ++start[i + 1], ++start[j + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Index> next(start.begin(), start.end() - 1);
+    Array<Index> next(start.begin(), start.end() - 1);
     neighbour.resize(start.back());
     for (auto [i, j] : pairs) {
       neighbour[next[i]++] = j;
@@ -46,9 +46,9 @@ struct NestedDissection {
 
   /// order[k]: the node eliminated at place k. `positions` is empty or has one point a node, m. The nodes
   /// `last`, each named once, come after all others.
-  std::vector<Index> order(const NodeGraph& graph, std::span<const Vec3> positions = {},
+  Array<Index> order(const NodeGraph& graph, std::span<const Vec3> positions = {},
                            std::span<const Index> last = {}) const {
-    Work work{graph, positions, std::vector<Index>(graph.nodes()), std::vector<Index>(graph.nodes(), 0)};
+    Work work{graph, positions, Array<Index>(graph.nodes()), Array<Index>(graph.nodes(), 0)};
     std::iota(work.order.begin(), work.order.end(), 0);
     for (const Index i : last) work.mark[i] = 1;
     std::stable_partition(work.order.begin(), work.order.end(), [&](Index i) { return work.mark[i] == 0; });
@@ -63,10 +63,10 @@ struct NestedDissection {
   struct Work {
     const NodeGraph& graph;
     std::span<const Vec3> positions;
-    std::vector<Index> order, mark;  ///< mark: which half a node is in, as a number never used before
-    std::vector<std::pair<double, Index>> key = {};
-    std::vector<Index> best = {}, trial = {};
-    std::array<std::vector<double>, 3> far = {};  ///< by node: edges from a, b and c
+    Array<Index> order, mark;  ///< mark: which half a node is in, as a number never used before
+    Array<std::pair<double, Index>> key = {};
+    Array<Index> best = {}, trial = {};
+    std::array<Array<double>, 3> far = {};  ///< by node: edges from a, b and c
     Index last_mark = 0;
   };
 

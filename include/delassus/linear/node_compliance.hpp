@@ -1,6 +1,7 @@
 /// The compliance of chosen nodes: their rows and columns of A⁻¹ from a multifrontal factor of A.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/supernodes.hpp>
 
@@ -8,7 +9,6 @@
 #include <cstddef>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -109,9 +109,9 @@ class NodeCompliance {
   }
 
   inner::DenseKernel<T> kernel_;
-  std::vector<T> y_, gather_, result_;
-  std::vector<std::pair<Index, Index>> wanted_;  ///< (place, number)
-  std::vector<Index> visited_, slot_;
+  Array<T> y_, gather_, result_;
+  Array<std::pair<Index, Index>> wanted_;  ///< (place, number)
+  Array<Index> visited_, slot_;
   Index rows_ = 0;
 };
 

@@ -35,7 +35,7 @@ class SparseLu {
   /// Whether det A < 0.
   bool is_negative() const { return has_fronts_ ? fronts_.is_negative() : plain_.is_negative(); }
   /// x ← A⁻¹ x.
-  void solve(std::vector<Vec<w, T>>& x) const { has_fronts_ ? fronts_.solve(x) : plain_.solve(x); }
+  void solve(std::span<Vec<w, T>> x) const { has_fronts_ ? fronts_.solve(x) : plain_.solve(x); }
 
  private:
   /// Products of blocks for each block in `BlockLu` from which on fronts take less time: measured with 3 × 3

@@ -2,6 +2,7 @@
 /// elimination.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/nested_dissection.hpp>
 
 #include <algorithm>
@@ -16,8 +17,8 @@ namespace delassus {
 /// elimination.
 struct Supernode {
   Index first = 0, width = 0, parent = -1, first_descendant = 0;
-  std::vector<Index> rows;
-  std::vector<Index> children;
+  Array<Index> rows;
+  Array<Index> children;
 
   Index below() const { return Index(rows.size()) - width; }
 };
@@ -28,7 +29,7 @@ class SupernodalPattern {
  public:
   /// `order[k]`: the node eliminated at place k; the postorder may permute it further. The last `last` nodes
   /// of it are not merged with others: what lies above them in the tree are nodes of their kind.
-  void analyse(const NodeGraph& graph, std::vector<Index> order, Index last = 0) {
+  void analyse(const NodeGraph& graph, Array<Index> order, Index last = 0) {
     node_ = std::move(order);
     is_last_.clear();
     if (last > 0) is_last_.assign(node_.size(), false);
@@ -59,7 +60,7 @@ class SupernodalPattern {
   /// parent_[k]: the first row below the diagonal in column k of L.
   void find_tree(const NodeGraph& graph) {
     parent_.assign(nodes(), -1);
-    std::vector<Index> ancestor(nodes(), -1);
+    Array<Index> ancestor(nodes(), -1);
     for (Index k = 0; k < nodes(); ++k)
       for (const Index neighbour : graph.of(node_[k]))
         for (Index i = place_[neighbour]; i >= 0 && i < k;) {
@@ -72,11 +73,11 @@ class SupernodalPattern {
 
   /// Renumbers so that every subtree is a run of places.
   void postorder() {
-    std::vector<Index> size(nodes(), 1), start(nodes(), -1), order(nodes());
+    Array<Index> size(nodes(), 1), start(nodes(), -1), order(nodes());
     for (Index k = 0; k < nodes(); ++k)
       if (parent_[k] >= 0) size[parent_[k]] += size[k];
     // From the roots down: a subtree of `size` places, its root last, the children packed from the end.
-    std::vector<Index> end(nodes());
+    Array<Index> end(nodes());
     Index top = nodes();
     for (Index k = nodes(); k-- > 0;) {
       Index& limit = parent_[k] >= 0 ? end[parent_[k]] : top;
@@ -91,10 +92,10 @@ class SupernodalPattern {
   void find_rows(const NodeGraph& graph) {
     rows_.assign(nodes(), {});
     child_count_.assign(nodes(), 0);
-    std::vector<std::vector<Index>> children(nodes());
-    std::vector<Index> mark(nodes(), -1);
+    std::vector<Array<Index>> children(nodes());
+    Array<Index> mark(nodes(), -1);
     for (Index k = 0; k < nodes(); ++k) {
-      std::vector<Index>& rows = rows_[k];
+      Array<Index>& rows = rows_[k];
       const auto take = [&](Index i) {
         if (i <= k || mark[i] == k) return;
         mark[i] = k;
@@ -122,7 +123,7 @@ class SupernodalPattern {
       s.first = k;
       s.width = next - k;
       for (Index i = k; i < next; ++i) s.rows.push_back(i);
-      s.rows.insert(s.rows.end(), rows_[next - 1].begin(), rows_[next - 1].end());
+      s.rows.append(rows_[next - 1].begin(), rows_[next - 1].end());
       supernodes_.push_back(std::move(s));
     }
     rows_.clear();
@@ -138,7 +139,7 @@ class SupernodalPattern {
         Supernode &a = supernodes_[kept], &b = supernodes_[k];
         if (pays(a, b)) {
           a.rows.resize(a.width);
-          a.rows.insert(a.rows.end(), b.rows.begin(), b.rows.end());
+          a.rows.append(b.rows.begin(), b.rows.end());
           a.width += b.width;
           is_changing = true;
         } else if (++kept != k) {
@@ -174,15 +175,15 @@ class SupernodalPattern {
     }
   }
 
-  std::vector<Index> node_, place_, parent_, owner_, child_count_;
+  Array<Index> node_, place_, parent_, owner_, child_count_;
   std::vector<bool> is_last_;  ///< by node; empty without last nodes
-  std::vector<std::vector<Index>> rows_;
+  std::vector<Array<Index>> rows_;
   std::vector<Supernode> supernodes_;
 };
 
 /// A's own entries below the diagonal, by columns of P A Pᵀ with rows ascending; rows and columns are places.
 struct LowerEntries {
-  std::vector<Index> start, row;
+  Array<Index> start, row;
 
   void analyse(const NodeGraph& graph, const SupernodalPattern& pattern) {
     start.assign(1, 0);

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/geometry/support.hpp>
 #include <delassus/rows/row_system.hpp>
 
@@ -34,7 +35,7 @@ class Dormant {
   };
 
   const std::vector<Body>& bodies() const { return bodies_; }
-  const std::vector<Item>& items() const { return items_; }
+  const Array<Item>& items() const { return items_; }
   Index new_group() { return groups_++; }
 
   /// The group of a block, or `awake`.
@@ -58,7 +59,7 @@ class Dormant {
   template <class Pool>
   void add_items(const World& world, Pool& pool, Index p, Index group) {
     if constexpr (requires { pool.slots; }) {
-      const std::vector<Index> active = pool.slots.active();
+      const Array<Index> active = pool.slots.active();
       for (const Index place : active) {
         const auto& item = pool.items[place];
         if constexpr (HasEnds<typename Pool::Item>) {
@@ -124,8 +125,8 @@ class Dormant {
 
  private:
   std::vector<Body> bodies_;
-  std::vector<Item> items_;
-  std::array<std::vector<Index>, World::set_count> group_;
+  Array<Item> items_;
+  std::array<Array<Index>, World::set_count> group_;
   Index groups_ = 0;
 };
 

@@ -116,7 +116,9 @@ namespace inner {
 
 /// A contact whose law has a μ.
 template <class Item>
-inline constexpr bool has_friction = requires(const Item& item) { item.parameters.friction; };
+inline constexpr bool has_friction = requires(const Item& item) {
+  item.parameters.friction;
+};
 
 }  // namespace inner
 

@@ -1,6 +1,7 @@
 /// A part of the world that the host switches off and on.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/loop/dormant.hpp>
 #include <delassus/loop/stages/detect.hpp>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <span>
-#include <vector>
 
 namespace delassus {
 
@@ -95,7 +95,7 @@ class SwitchedOff {
 
  private:
   Dormant<World, Laws> dormant_;
-  std::vector<Vec<6>> velocity_;  ///< by group: m/s, rad/s
+  Array<Vec<6>> velocity_;  ///< by group: m/s, rad/s
 };
 
 }  // namespace delassus

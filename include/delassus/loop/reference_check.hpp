@@ -2,6 +2,7 @@
 /// from it.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/loop/problem.hpp>
 #include <delassus/math/positive.hpp>
@@ -15,7 +16,6 @@
 #include <limits>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -37,7 +37,7 @@ struct ReferenceCheck {
   SolveReport reference;                         ///< of the worst island
   double residual = 0;                           ///< of the loop's λ, the worst island's
   double velocity = 0;                           ///< the largest |u − u*|
-  std::vector<ReferenceDifference> constraints;  ///< worst first: by energy
+  Array<ReferenceDifference> constraints;  ///< worst first: by energy
 
   /// `constraint 17 of pool 0: velocities 3e-4 m/s apart, …`.
   std::string text() const {

@@ -1,6 +1,7 @@
 /// Islands at rest sleep, and wake when something touches them.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/bits.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
@@ -17,7 +18,6 @@
 #include <limits>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 namespace delassus {
 
@@ -162,7 +162,7 @@ class Sleepers {
   /// Advance: islands that were quiet long enough fall asleep, and so do single bodies that nothing pulls.
   template <int pools>
   void settle(const Sleeping& limits, World& world, Laws& laws, const Islands<pools>& islands) {
-    std::vector<Index>& group = island_group_;
+    Array<Index>& group = island_group_;
     group.assign(islands.count(), -1);
     Index first = 0;
     bool any = false;
@@ -280,11 +280,11 @@ class Sleepers {
   }
 
   Dormant<World, Laws> dormant_;
-  std::array<std::vector<double>, World::set_count> quiet_;  ///< s
+  std::array<Array<double>, World::set_count> quiet_;  ///< s
   Supports supports_;
-  std::vector<double> island_quiet_;
-  std::vector<Index> island_group_, falling_asleep_;
-  std::vector<char> called_;
+  Array<double> island_quiet_;
+  Array<Index> island_group_, falling_asleep_;
+  Array<char> called_;
   bool called_any_ = false;
 };
 

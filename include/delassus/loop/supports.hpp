@@ -1,6 +1,7 @@
 /// What sleepers lie on: bodies that do not answer, watched for a move.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/loop/dormant.hpp>
 
 #include <array>

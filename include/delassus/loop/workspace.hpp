@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/loop/activity.hpp>
 #include <delassus/loop/stages/detect.hpp>
 #include <delassus/loop/stages/move_freely.hpp>
@@ -35,7 +36,7 @@ struct widths_of;
 template <class... S>
 struct widths_of<World<S...>> {
   using type = Widths<S::width...>;
-  using Scratch = std::tuple<std::vector<typename S::Velocity>...>;
+  using Scratch = std::tuple<Array<typename S::Velocity>...>;
 };
 
 template <class W, int R, class Widths = typename widths_of<W>::type>
@@ -120,8 +121,8 @@ struct Workspace {
   Operator W;
   LawBook<Laws, typename World::Scalar> book;
   typename Solver::template Workspace<Rows> solver;
-  std::vector<SolveReport> reports;  ///< of the islands, in their order
-  std::vector<char> is_sick;
+  Array<SolveReport> reports;  ///< of the islands, in their order
+  Array<char> is_sick;
   std::array<Census, std::size_t(World::set_count)> census;
   ContactBook contacts;
   Materials materials;

@@ -1,11 +1,11 @@
 /// Groups of constraints that share no moving body: each is solved, stopped, slept and lost by itself.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <array>
 #include <span>
-#include <vector>
 
 namespace delassus {
 
@@ -129,8 +129,8 @@ class Islands {
   }
 
   Index count_ = 0;
-  std::vector<Index> parent_, island_, next_;
-  std::array<std::vector<Index>, pools> lowest_, items_, start_;
+  Array<Index> parent_, island_, next_;
+  std::array<Array<Index>, pools> lowest_, items_, start_;
 };
 
 }  // namespace delassus

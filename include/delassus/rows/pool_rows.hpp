@@ -2,12 +2,12 @@
 /// sight.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <array>
 #include <tuple>
-#include <vector>
 
 namespace delassus {
 
@@ -17,10 +17,10 @@ namespace delassus {
 /// G[e] = A⁻¹ Hᵀ (w × R) where the set's A is block-diagonal; G is empty where it is not.
 template <int R, int w, class T>
 struct SetBlocks {
-  std::vector<Index> offset{0};
-  std::vector<Index> block;
-  std::vector<Mat<R, w, T>> H;
-  std::vector<Mat<w, R, T>> G;
+  Array<Index> offset{0};
+  Array<Index> block;
+  Array<Mat<R, w, T>> H;
+  Array<Mat<w, R, T>> G;
 
   static void each_array(auto& self, auto&& f) { f(self.offset), f(self.block), f(self.H), f(self.G); }
   void reset() {
@@ -41,7 +41,7 @@ struct PoolRows {
   using Scalar = T;
 
   std::tuple<SetBlocks<R, widths, T>...> sets;
-  std::vector<Vec<R, T>> phi, stiffness, damping, bias, compliance, softness, d, lambda;
+  Array<Vec<R, T>> phi, stiffness, damping, bias, compliance, softness, d, lambda;
 
   Index items() const { return Index(phi.size()); }
 

@@ -1,6 +1,7 @@
 /// One island as a solver meets it: visits, sweeps and measurements, nothing else.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/solvers/impulses.hpp>
@@ -13,7 +14,6 @@
 #include <limits>
 #include <tuple>
 #include <type_traits>
-#include <vector>
 
 namespace delassus {
 
@@ -177,7 +177,7 @@ class IslandProblem {
   }
 
   /// The numbers √w_i λ_i of all constraints, in order; `to` has as many.
-  void gather(std::vector<double>& to) const {
+  void gather(Array<double>& to) const {
     std::size_t at = 0;
     each([&](auto p, Index i) {
       const double root = root_of_weight<p>(i);
@@ -185,7 +185,7 @@ class IslandProblem {
     });
   }
   /// The way back, each λ_i brought into its law's cone.
-  void scatter(const std::vector<double>& from) {
+  void scatter(const Array<double>& from) {
     std::size_t at = 0;
     each([&](auto p, Index i) {
       const double root = root_of_weight<p>(i);

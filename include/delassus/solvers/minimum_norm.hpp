@@ -1,6 +1,7 @@
 /// Of all impulses that make the same motion, the smallest.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
@@ -10,16 +11,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace delassus {
 namespace inner {
 
 /// Room for conjugate gradients, reserved once.
 struct NormSearch {
-  std::vector<double> x, b, r, p, q;
-  std::vector<char> how;                ///< of each constraint: `Held`
-  std::vector<char> outside, limiting;  ///< of each free one
+  Array<double> x, b, r, p, q;
+  Array<char> how;                ///< of each constraint: `Held`
+  Array<char> outside, limiting;  ///< of each free one
   void reserve(std::size_t rows) {
     for (auto* v : {&x, &b, &r, &p, &q}) v->reserve(rows);
     for (auto* v : {&how, &outside, &limiting}) v->reserve(rows);
@@ -164,7 +164,7 @@ struct MinimumNorm {
       });
     }
     /// x = √w Bᵀ λ.
-    void gather(std::vector<double>& x) {
+    void gather(Array<double>& x) {
       std::size_t k = 0;
       each_free([&](auto p, Index i, auto&& unit, int count) {
         const auto& at = std::get<p>(work.target.pools)[i];
@@ -179,7 +179,7 @@ struct MinimumNorm {
       });
     }
     /// y = Bᵀ W B x; the problem has λ = B x afterwards, and zero elsewhere.
-    void multiply(const std::vector<double>& x, std::vector<double>& y) {
+    void multiply(const Array<double>& x, Array<double>& y) {
       problem.each(
           [&](auto p, Index i) { problem.template assign<p>(i, 0 * std::get<p>(work.target.pools)[i]); });
       std::size_t k = 0;
@@ -268,7 +268,7 @@ struct MinimumNorm {
       }
       return true;
     }
-    static double product(const std::vector<double>& a, const std::vector<double>& b) {
+    static double product(const Array<double>& a, const Array<double>& b) {
       double sum = 0;
       for (std::size_t n = 0; n < a.size(); ++n) sum += a[n] * b[n];
       return sum;

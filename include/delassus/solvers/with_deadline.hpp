@@ -1,6 +1,7 @@
 /// A solve that ends when its time does: the best impulses so far, and the status that says so.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/clock.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <vector>
 
 namespace delassus {
 
@@ -38,7 +38,7 @@ struct WithDeadline {
   struct Workspace {
     typename Solver::template Workspace<Rows> solver;
     Impulses<Rows> best;
-    std::vector<inner::Attempts> attempts;                    ///< of each island
+    Array<inner::Attempts> attempts;                    ///< of each island
     double until = std::numeric_limits<double>::quiet_NaN();  ///< NaN before the first island
 
     void reset(const Rows& rows) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/inner/tie.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/geometry/inner/surface_topology.hpp>
 #include <delassus/geometry/sheet_mesh.hpp>
 #include <delassus/geometry/triangle.hpp>
@@ -10,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -115,8 +115,8 @@ inline std::array<std::array<double, 6>, 3> amplitudes(const RestPatch& p) {
 /// has half a cell less. Sources: docs/references.md, [BergouEtAl2006] for the
 /// constant form, there of single edges; [OnateZarate2000] for a triangle's curvature by its neighbours;
 /// [Liang2025] for the parabola.
-inline std::vector<Tie> bending_ties(const SheetMesh& mesh, double D, double poisson) {
-  std::vector<Tie> ties;
+inline Array<Tie> bending_ties(const SheetMesh& mesh, double D, double poisson) {
+  Array<Tie> ties;
   if (!(D > 0)) return ties;
   const SurfaceTopology topology(mesh.triangles, Index(mesh.points.size()));
   for (Index t = 0; t < Index(mesh.triangles.size()); ++t) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/inner/places.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <span>
@@ -76,10 +77,10 @@ class BodiesOfNodes : public Places<Set, T, width> {
       }
     });
   }
-  void solve(std::vector<Velocity>& x) const {
+  void solve(std::span<Velocity> x) const {
     each_body([&](const auto& body) { body.solve(x); });
   }
-  void add_stiffness_times_velocity(std::vector<Velocity>& p, double s) const {
+  void add_stiffness_times_velocity(std::span<Velocity> p, double s) const {
     each_body([&](const auto& body) { body.add_stiffness_times_velocity(p, v_, T(s)); });
   }
   /// "soft body #0, node #7".
@@ -153,15 +154,15 @@ class BodiesOfNodes : public Places<Set, T, width> {
   SystemScale scale_;
   Slots body_slots_;
   std::vector<Elastic> bodies_;
-  std::vector<char> is_fixed_;
-  std::vector<Index> body_;  ///< of each block
-  std::vector<Index> node_;  ///< its number in that body
+  Array<char> is_fixed_;
+  Array<Index> body_;  ///< of each block
+  Array<Index> node_;  ///< its number in that body
 
  private:
   Set& self() { return static_cast<Set&>(*this); }
   const Set& self() const { return static_cast<const Set&>(*this); }
 
-  mutable std::vector<Index> touched_;
+  mutable Array<Index> touched_;
 };
 
 }  // namespace delassus::inner

@@ -4,6 +4,7 @@
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/bodies/inner/held_nodes.hpp>
 #include <delassus/bodies/inner/node_matrix.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/math/lanes.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -15,7 +16,6 @@
 #include <span>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -38,7 +38,7 @@ class ElasticBody {
 
   ElasticBody() = default;
   /// Node k of the mesh is block blocks[k]; `mesh` is at rest.
-  ElasticBody(Mesh mesh, const M& material, std::vector<Index> blocks)
+  ElasticBody(Mesh mesh, const M& material, Array<Index> blocks)
       : mesh_(std::move(mesh)), material_(material), blocks_(std::move(blocks)) {
     prepare();
   }
@@ -53,7 +53,7 @@ class ElasticBody {
 
   /// The element a point of the world is in, and its place there, by which E weighs the corners; −1 where it
   /// is outside of all of them by more than 1e-6 of one.
-  Index locate(const Vec3& point, const std::vector<Velocity>& x, Vec3& local) const {
+  Index locate(const Vec3& point, std::span<const Velocity> x, Vec3& local) const {
     Index found = -1;
     double best = -1e-6;
     for (Index e = 0; e < Index(elements_.size()); ++e) {
@@ -69,16 +69,16 @@ class ElasticBody {
 
   /// Makes elastic forces, A and its factor at the positions x of the set's blocks. Where A has no factor, as
   /// where x is not finite, `solve` answers with numbers that are none, and the body stays where it was.
-  void factor(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
-              const std::vector<T>& inverse_mass) {
+  void factor(SystemScale scale, std::span<const Velocity> x, const Array<T>& mass,
+              const Array<T>& inverse_mass) {
     assemble(scale, x, mass, inverse_mass);
     if (scale.stiffness == 0 || is_factored_) return;
     is_factored_ = matrix_.factor(T(scale.mass), T(scale.stiffness), mass_, is_held_);
   }
 
   /// The same without a factor; the one there is goes, unless A is what it was.
-  void assemble(SystemScale scale, const std::vector<Velocity>& x, const std::vector<T>& mass,
-                const std::vector<T>& inverse_mass) {
+  void assemble(SystemScale scale, std::span<const Velocity> x, const Array<T>& mass,
+                const Array<T>& inverse_mass) {
     const bool is_implicit = scale.stiffness != 0;
     const bool makes_stiffness = is_implicit && !(has_constant_stiffness && has_stiffness_);
     for (Velocity& f : force_) f.setZero();
@@ -109,7 +109,7 @@ class ElasticBody {
     matrix_.enter(factor, T(scale_.mass), T(scale_.stiffness), mass_, is_held_);
   }
   /// y = A x by nodes, x zero at held ones.
-  void multiply(const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
+  void multiply(std::span<const Velocity> x, std::span<Velocity> y) const {
     for (std::size_t k = 0; k < x.size(); ++k) y[k] = (T(scale_.mass) * mass_[k]) * x[k];
     matrix_.add_product(T(scale_.stiffness), x, y);
     for (std::size_t k = 0; k < x.size(); ++k)
@@ -117,17 +117,17 @@ class ElasticBody {
   }
 
   /// ∫Ψ at the positions x, J.
-  double energy(const std::vector<Velocity>& x) const {
+  double energy(std::span<const Velocity> x) const {
     double sum = 0;
     for (Index e = 0; e < Index(elements_.size()); ++e) sum += elements_[e].energy(material_, corners(e, x));
     for (const Tie& t : ties_) sum += 0.5 * t.k * apart(t, x).squaredNorm();
     return sum;
   }
   /// N by node, at the positions of the last `factor`.
-  const std::vector<Velocity>& force() const { return force_; }
+  const Array<Velocity>& force() const { return force_; }
 
   /// p += −s K v by blocks of the set.
-  void add_stiffness_times_velocity(std::vector<Velocity>& p, const std::vector<Velocity>& v, T s) const {
+  void add_stiffness_times_velocity(std::span<Velocity> p, std::span<const Velocity> v, T s) const {
     if (!has_stiffness_) return;
     for (std::size_t k = 0; k < blocks_.size(); ++k) work_[k] = v[blocks_[k]], product_[k].setZero();
     matrix_.add_product(-s, work_, product_);
@@ -135,7 +135,7 @@ class ElasticBody {
   }
 
   /// x ← A⁻¹ x on the blocks of the body.
-  void solve(std::vector<Velocity>& x) const { held_nodes().solve(matrix_, blocks(), work_, x); }
+  void solve(std::span<Velocity> x) const { held_nodes().solve(matrix_, blocks(), work_, x); }
   /// The rows and columns of A⁻¹ of some nodes, 3n × 3n by columns.
   void compliance(std::span<const Index> nodes, std::span<T> C) const {
     held_nodes().template compliance<3>(matrix_, nodes, C);
@@ -196,17 +196,17 @@ class ElasticBody {
     }
   }
 
-  typename E::Corners corners(Index e, const std::vector<Velocity>& x) const {
+  typename E::Corners corners(Index e, std::span<const Velocity> x) const {
     typename E::Corners at;
     for (int a = 0; a < E::nodes; ++a) at[a] = x[block_of(e, a)].template cast<double>();
     return at;
   }
 
   /// x_j − x_i, m.
-  Vec3 apart(const Tie& t, const std::vector<Velocity>& x) const {
+  Vec3 apart(const Tie& t, std::span<const Velocity> x) const {
     return x[blocks_[t.j]].template cast<double>() - x[blocks_[t.i]].template cast<double>();
   }
-  void add_element(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+  void add_element(Index e, std::span<const Velocity> x, bool with_stiffness) {
     const auto& t = mesh_.cells()[e];
     const auto state = elements_[e].at(material_, corners(e, x));
     for (int a = 0; a < E::nodes; ++a) force_[t[a]] += state.force[a].template cast<T>();
@@ -221,7 +221,7 @@ class ElasticBody {
   }
 
   /// The elements that are taken as numbers e … e + lane_count − 1 at once.
-  void add_lanes(Index e, const std::vector<Velocity>& x, bool with_stiffness) {
+  void add_lanes(Index e, std::span<const Velocity> x, bool with_stiffness) {
     double places[E::nodes * 3 * lane_count], numbers[3 * lane_count];
     for (int l = 0; l < lane_count; ++l)
       for (int a = 0; a < E::nodes; ++a) {
@@ -244,7 +244,7 @@ class ElasticBody {
   }
 
   /// Whether A is the one there was; takes over the masses.
-  bool is_assembled_for(SystemScale scale, const std::vector<T>& mass, const std::vector<T>& inverse_mass) {
+  bool is_assembled_for(SystemScale scale, const Array<T>& mass, const Array<T>& inverse_mass) {
     bool is_same = has_constant_stiffness && scale_.mass == scale.mass && scale_.stiffness == scale.stiffness;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const char is_held = inverse_mass[blocks_[k]] > T(0) ? 0 : 1;
@@ -258,19 +258,19 @@ class ElasticBody {
   Mesh mesh_;
   M material_{};
   std::uint32_t number_ = 0;
-  std::vector<Index> blocks_;
-  std::vector<E> elements_;
-  std::vector<std::array<int, E::nodes>> order_;    ///< `element_at(k)`'s corners by ascending node
-  std::vector<std::array<Index, E::nodes>> nodes_;  ///< these nodes
-  std::vector<double> lane_numbers_;                ///< of whole lanes of elements
-  std::vector<Tie> ties_;
-  std::vector<Velocity> force_;
-  std::vector<T> mass_;
-  std::vector<char> is_held_;
+  Array<Index> blocks_;
+  Array<E> elements_;
+  Array<std::array<int, E::nodes>> order_;    ///< `element_at(k)`'s corners by ascending node
+  Array<std::array<Index, E::nodes>> nodes_;  ///< these nodes
+  Array<double> lane_numbers_;                ///< of whole lanes of elements
+  Array<Tie> ties_;
+  Array<Velocity> force_;
+  Array<T> mass_;
+  Array<char> is_held_;
   Matrix matrix_;
   SystemScale scale_;  ///< of A
   bool has_stiffness_ = false, is_factored_ = false;
-  mutable std::vector<Velocity> work_, product_;
+  mutable Array<Velocity> work_, product_;
 };
 
 }  // namespace delassus::inner

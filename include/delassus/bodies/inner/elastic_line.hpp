@@ -5,6 +5,7 @@
 #include <delassus/bodies/inner/held_nodes.hpp>
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/bodies/rod.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/linear/block_chain.hpp>
 #include <delassus/rows/body_set.hpp>
 
@@ -16,8 +17,8 @@ namespace delassus::inner {
 
 /// Frames of the segments of a line, x along each: the first has y towards `up`, the others turn about it no
 /// more than they must.
-inline std::vector<Quat> frames_along(const std::vector<Vec3>& points, const Vec3& up) {
-  std::vector<Quat> frames;
+inline Array<Quat> frames_along(const std::vector<Vec3>& points, const Vec3& up) {
+  Array<Quat> frames;
   const double size = up.cwiseAbs().maxCoeff();
   Vec3 x = unit_axis(0), y = size > 0 ? Vec3(up / size) : up;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -48,8 +49,8 @@ class ElasticLine {
 
   ElasticLine() = default;
   /// The beams of a rod whose points are where it is put, with the frames of its segments.
-  ElasticLine(const Rod& rod, const std::vector<Vec3>& points, const std::vector<Quat>& frames,
-              std::vector<Index> blocks)
+  ElasticLine(const Rod& rod, const std::vector<Vec3>& points, const Array<Quat>& frames,
+              Array<Index> blocks)
       : blocks_(std::move(blocks)) {
     const RodSection& s = rod.section;
     const double E = rod.young, G = E / (2 * (1 + rod.poisson));
@@ -67,9 +68,9 @@ class ElasticLine {
   }
 
   std::span<const Index> blocks() const { return blocks_; }
-  const std::vector<Beam>& beams() const { return beams_; }
+  const Array<Beam>& beams() const { return beams_; }
   /// N and N·m by node, at the places of the last `factor`.
-  const std::vector<Velocity>& force() const { return force_; }
+  const Array<Velocity>& force() const { return force_; }
 
   /// ∫Ψ where the nodes are, J.
   double energy(const RigidState<T>& nodes) const {
@@ -99,7 +100,7 @@ class ElasticLine {
   }
 
   /// p += −s K v by blocks of the set.
-  void add_stiffness_times_velocity(std::vector<Velocity>& p, const std::vector<Velocity>& v, T s) const {
+  void add_stiffness_times_velocity(std::span<Velocity> p, std::span<const Velocity> v, T s) const {
     if (!has_stiffness_) return;
     for (std::size_t k = 0; k < blocks_.size(); ++k)
       subtract_times<false>(p[blocks_[k]], s, diagonal_[k], v[blocks_[k]]);
@@ -110,7 +111,7 @@ class ElasticLine {
   }
 
   /// x ← A⁻¹ x on the blocks of the body.
-  void solve(std::vector<Velocity>& x) const { held().solve(A_, blocks(), work_, x); }
+  void solve(std::span<Velocity> x) const { held().solve(A_, blocks(), work_, x); }
   /// The rows and columns of A⁻¹ of some nodes, 6n × 6n by columns.
   void compliance(std::span<const Index> nodes, std::span<T> C) const {
     held().template compliance<6>(A_, nodes, C);
@@ -185,15 +186,15 @@ class ElasticLine {
       for (int i = 0; i < 6; ++i) y[i] -= s * (is_transposed ? K(j, i) : K(i, j)) * x[j];
   }
 
-  std::vector<Beam> beams_;
-  std::vector<Index> blocks_;
-  std::vector<Velocity> force_;
-  std::vector<Block> diagonal_,
+  Array<Beam> beams_;
+  Array<Index> blocks_;
+  Array<Velocity> force_;
+  Array<Block> diagonal_,
       beside_;  ///< K; beside_[k] has the rows of node k + 1 and the columns of node k
-  std::vector<char> is_held_;
+  Array<char> is_held_;
   BlockChain<6, T> A_;
   bool has_stiffness_ = false, is_factored_ = false;
-  mutable std::vector<Velocity> work_;
+  mutable Array<Velocity> work_;
 };
 
 }  // namespace delassus::inner

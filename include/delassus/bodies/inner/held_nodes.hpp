@@ -1,6 +1,7 @@
 /// Solving with the factor of a body's A, some of whose nodes are held.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -8,7 +9,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -20,8 +20,8 @@ struct HeldNodes {
 
   /// x ← A⁻¹ x on the body's blocks; held nodes become zero. A body on which nothing acts is passed over.
   template <class Matrix, class Velocity>
-  void solve(const Matrix& A, std::span<const Index> blocks, std::vector<Velocity>& work,
-             std::vector<Velocity>& x) const {
+  void solve(const Matrix& A, std::span<const Index> blocks, Array<Velocity>& work,
+             std::span<Velocity> x) const {
     bool is_still = true;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       if (is_held[k]) x[blocks[k]].setZero();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/inner/tie.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/math/lanes.hpp>
@@ -13,7 +14,6 @@
 #include <span>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -119,7 +119,7 @@ class NodeMatrix {
   }
 
   /// y += s K x.
-  void add_product(T s, const std::vector<Velocity>& x, std::vector<Velocity>& y) const {
+  void add_product(T s, std::span<const Velocity> x, std::span<Velocity> y) const {
     for (std::size_t i = 0; i < diagonal_.size(); ++i) y[i] += s * (diagonal_[i] * x[i]);
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       const auto [i, j] = pairs_[p];
@@ -159,7 +159,7 @@ class NodeMatrix {
     enter(factor_, mass_share, stiffness_share, mass, is_held);
     return factor_.factor();
   }
-  void solve(std::vector<Velocity>& x) const { factor_.solve(x); }
+  void solve(std::span<Velocity> x) const { factor_.solve(x); }
   /// The rows and columns of the inverse that belong to `nodes`, 3n × 3n by columns.
   void compliance(std::span<const Index> nodes, std::span<T> C) const { factor_.compliance(nodes, C); }
 
@@ -171,7 +171,7 @@ class NodeMatrix {
   };
   static Place place(Index p) { return {std::abs(p), std::max(p, 0)}; }
   void mark_first(Index batched) {
-    std::vector<char> is_met(pairs_.size(), 0);
+    Array<char> is_met(pairs_.size(), 0);
     const auto meet = [&](Index& place) {
       if (!std::exchange(is_met[place - 1], 1)) place = -place;
     };
@@ -212,14 +212,14 @@ class NodeMatrix {
     return K;
   }
 
-  std::vector<std::pair<Index, Index>> pairs_;
-  std::vector<std::array<Index, pairs_each>> places_;
-  std::vector<Eight> eights_;  ///< of zeros, and of the pairs' blocks, by columns
-  std::vector<T> ninths_;
-  std::vector<T> ties_, tie_sums_;  ///< k of each pair, and Σ k by node, with `has_ties`
-  std::vector<Block> diagonal_;
-  std::vector<Eight> sums_;  ///< Σ K_p by node, and its last number: at work
-  std::vector<T> ninth_sums_;
+  Array<std::pair<Index, Index>> pairs_;
+  Array<std::array<Index, pairs_each>> places_;
+  Array<Eight> eights_;  ///< of zeros, and of the pairs' blocks, by columns
+  Array<T> ninths_;
+  Array<T> ties_, tie_sums_;  ///< k of each pair, and Σ k by node, with `has_ties`
+  Array<Block> diagonal_;
+  Array<Eight> sums_;  ///< Σ K_p by node, and its last number: at work
+  Array<T> ninth_sums_;
   MultifrontalCholesky<3, T> factor_;
 };
 

@@ -1,11 +1,11 @@
 /// One particle on its way through a step, for schemes that lead it there themselves.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <cstddef>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -14,7 +14,7 @@ template <class T>
 class ParticlePath {
  public:
   using Vector = Vec<3, T>;
-  using State = std::vector<Vector>;
+  using State = Array<Vector>;
 
   void resize(std::size_t n) { points_.resize(n); }
   void begin(const State& x, Index b, const Vector& v) {
@@ -60,7 +60,7 @@ class ParticlePath {
   struct Point {
     Vector x, v, stage, slope_x, slope_v, sum_x, sum_v;
   };
-  std::vector<Point> points_;
+  Array<Point> points_;
 };
 
 }  // namespace delassus::inner

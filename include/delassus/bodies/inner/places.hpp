@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/inner/held.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
@@ -13,7 +14,6 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -28,7 +28,7 @@ class Places {
   static constexpr int width = width_;
 
   Vec3 gravity{0, 0, -9.81};
-  std::vector<Velocity> v_free, v_next;
+  Array<Velocity> v_free, v_next;
 
   bool contains(Handle body) const {
     return body.owner == owner_ && slots_.is_current(body.index, body.generation);
@@ -39,7 +39,7 @@ class Places {
 
   Index blocks() const { return slots_.size(); }
   Census census() const { return {owner_, slots_.removals(), slots_.size()}; }
-  const std::vector<Index>& active() const { return slots_.active(); }
+  const Array<Index>& active() const { return slots_.active(); }
   bool is_alive(Index b) const { return slots_.is_alive(b); }
   bool is_awake(Index b) const { return slots_.is_awake(b); }
   /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
@@ -52,10 +52,10 @@ class Places {
 
   const Velocity& load(Index b) const { return load_[b]; }
   /// N and N·m; each is taken when its body has moved.
-  std::vector<Velocity>& loads() { return load_; }
+  Array<Velocity>& loads() { return load_; }
   /// At the start of the step, and of kinematic bodies for this one.
-  const std::vector<Velocity>& velocity() const { return v_; }
-  std::vector<Velocity>& velocity() { return v_; }
+  const Array<Velocity>& velocity() const { return v_; }
+  Array<Velocity>& velocity() { return v_; }
   /// How many bodies the last advance left where they were.
   Index held() const { return held_.count; }
   const Held& who_was_held() const { return held_; }
@@ -103,7 +103,7 @@ class Places {
 
   Slots slots_;
   Held held_;
-  std::vector<Velocity> v_, load_;
+  Array<Velocity> v_, load_;
 
  private:
   void note_material(Index material) {
@@ -113,8 +113,8 @@ class Places {
 
   std::uint32_t owner_ = next_owner();
   Index least_material_ = 0, most_material_ = 0;
-  std::vector<Index> material_;
-  std::vector<std::uint32_t> group_, collides_with_;
+  Array<Index> material_;
+  Array<std::uint32_t> group_, collides_with_;
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// Poses, masses and inertias of rigid bodies as arrays, and how a velocity moves them.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/math/free_turns.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/math/twist.hpp>
@@ -21,11 +22,11 @@ struct RigidState {
   using Velocity = Vec<6, T>;
 
   std::vector<Vec3> x;
-  std::vector<Eigen::Quaternion<T>> q;
-  std::vector<Matrix> R, inertia, inverse_inertia, inverse_inertia_world;  ///< the last is R I⁻¹ Rᵀ
-  std::vector<T> mass, inverse_mass;
+  Array<Eigen::Quaternion<T>> q;
+  Array<Matrix> R, inertia, inverse_inertia, inverse_inertia_world;  ///< the last is R I⁻¹ Rᵀ
+  Array<T> mass, inverse_mass;
   std::vector<Vec3> kept_x;
-  std::vector<Eigen::Quaternion<T>> kept_q;
+  Array<Eigen::Quaternion<T>> kept_q;
 
   void resize(std::size_t n) {
     x.resize(n);
@@ -82,7 +83,7 @@ struct RigidState {
     kept_x = x;
     kept_q = q;
   }
-  void take_poses_back(const std::vector<Index>& blocks) {
+  void take_poses_back(const Array<Index>& blocks) {
     for (const Index b : blocks) take_pose_back(b);
   }
   void take_pose_back(Index b) {

@@ -1,6 +1,7 @@
 /// The shapes of the bodies of a set, with hulls of their own.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
@@ -52,7 +53,7 @@ class Shapes {
  private:
   std::vector<Shape> shape_;  ///< without their hulls
   std::deque<ConvexHull> hulls_;
-  std::vector<Index> hull_, free_;
+  Array<Index> hull_, free_;
 };
 
 }  // namespace delassus::inner

@@ -4,11 +4,11 @@
 #include <delassus/bodies/elasticity/material.hpp>
 #include <delassus/bodies/inner/bending.hpp>
 #include <delassus/bodies/inner/gradient_element.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/geometry/sheet_mesh.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -30,7 +30,7 @@ struct SheetTriangle : GradientElement<3, 1> {
   }
 
   /// What couples the nodes besides.
-  static std::vector<Tie> ties(const SheetMesh& mesh, const auto& material) {
+  static Array<Tie> ties(const SheetMesh& mesh, const auto& material) {
     return bending_ties(mesh,
                         material.bending * plate_stiffness(material.young, material.poisson, mesh.thickness),
                         material.poisson);

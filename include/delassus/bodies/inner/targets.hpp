@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/bodies/inner/rigid_state.hpp>
+#include <delassus/core/array.hpp>
 
 #include <cstddef>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -19,7 +19,7 @@ class Targets {
 
   /// f(b, velocity) for the bodies of `active` that have one: (q(t+h) ⊖ q(t)) / h from the present state.
   template <class T, class F>
-  void each_velocity(const std::vector<Index>& active, const RigidState<T>& state, double h, F&& f) {
+  void each_velocity(const Array<Index>& active, const RigidState<T>& state, double h, F&& f) {
     if (!are_any_) return;
     are_any_ = false;
     for (const Index b : active) {
@@ -52,7 +52,7 @@ class Targets {
     Quat orientation = Quat::Identity();
     bool is_set = false;
   };
-  std::vector<Target> targets_;
+  Array<Target> targets_;
   bool are_any_ = false;  ///< one is set and the step that goes there is not over
   bool is_on_the_way_ = false;
 };

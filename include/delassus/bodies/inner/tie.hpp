@@ -1,11 +1,11 @@
 /// What couples two nodes of a body alike in every direction.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -16,7 +16,7 @@ struct Tie {
 };
 
 /// The same by ascending pairs, each once.
-inline std::vector<Tie> merged(std::vector<Tie> ties) {
+inline Array<Tie> merged(Array<Tie> ties) {
   std::stable_sort(ties.begin(), ties.end(),
                    [](const Tie& a, const Tie& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
   std::size_t count = 0;

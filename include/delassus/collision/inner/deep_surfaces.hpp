@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/collision/inner/surface_crossing.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
 #include <array>
@@ -39,7 +40,7 @@ struct Cut {
   Index triangle_a, triangle_b;
 };
 template <class A, class B>
-void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, std::vector<Cut>& cuts) {
+void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, Array<Cut>& cuts) {
   cuts.clear();
   const auto compare = [&](Index t, const std::array<Vec3, 3>& T, Index s, const std::array<Vec3, 3>& S) {
     if (is_beside(S, T) || is_beside(T, S)) return;
@@ -170,7 +171,7 @@ void stretch(const PosedSurface<Inside>& inside, const PosedSurface<Around>& aro
 /// is how the volume they share, w long along n, shrinks as A moves back. Contacts −w deep along the curve; a
 /// curve that ends at a border says nothing.
 template <class A, class B>
-void add_cut(const PosedSurface<A>& a, const PosedSurface<B>& b, const std::vector<Cut>& cuts, double scale,
+void add_cut(const PosedSurface<A>& a, const PosedSurface<B>& b, const Array<Cut>& cuts, double scale,
              std::vector<FeatureContact>& out) {
   Vec3 area = Vec3::Zero(), open = Vec3::Zero();
   for (const Cut& c : cuts) {
@@ -199,7 +200,7 @@ void add_cut(const PosedSurface<A>& a, const PosedSurface<B>& b, const std::vect
 /// What two surfaces say whose features are farther apart than these are looked for: where one has cut the
 /// other, or is inside it, the way out.
 template <class A, class B>
-void collect_deep(const PosedSurface<A>& a, const PosedSurface<B>& b, double scale, std::vector<Cut>& cuts,
+void collect_deep(const PosedSurface<A>& a, const PosedSurface<B>& b, double scale, Array<Cut>& cuts,
                   std::vector<FeatureContact>& out) {
   find_cuts(a, b, cuts);
   if (!cuts.empty())

@@ -1,6 +1,7 @@
 /// A binary tree of boxes whose leaves come, go and grow.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/support.hpp>
 
@@ -188,8 +189,8 @@ class DynamicTree {
   }
 
   std::vector<Node> node_;
-  std::vector<Index> free_, leaves_;
-  mutable std::vector<Index> stack_;
+  Array<Index> free_, leaves_;
+  mutable Array<Index> stack_;
   Index root_ = -1, leaf_count_ = 0;
   double surface_ = 0, surface_when_built_ = 0;
 };

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/collision/manifold.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -72,7 +72,7 @@ class HullOfPatch {
     };
     for (const Index i : order_) extend(i, 0);
     const std::size_t base = hull_.size() - 1;
-    for (auto i = order_.rbegin(); i != order_.rend(); ++i) extend(*i, base);
+    for (std::size_t k = order_.size(); k-- > 0;) extend(order_[k], base);
     hull_.pop_back();
     if (hull_.empty()) hull_.push_back(order_[0]);
   }
@@ -120,8 +120,8 @@ class HullOfPatch {
     patch.add(points[deepest].point);
   }
 
-  std::vector<Place> place_;
-  std::vector<Index> order_, hull_;
+  Array<Place> place_;
+  Array<Index> order_, hull_;
 };
 
 }  // namespace delassus::inner

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <delassus/collision/triangle_patch.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -88,8 +88,8 @@ class PatchDoubts {
     pushes_.push_back(a);
   }
 
-  std::vector<Answer> answers_, pushes_;
-  std::vector<Index> false_;
+  Array<Answer> answers_, pushes_;
+  Array<Index> false_;
 };
 
 }  // namespace delassus::inner

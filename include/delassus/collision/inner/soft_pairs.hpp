@@ -7,6 +7,7 @@
 #include <delassus/collision/inner/soft_surface.hpp>
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
+#include <delassus/core/array.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -119,7 +120,7 @@ class SoftPairs {
 
   Patch patch_;
   PatchDoubts doubts_;
-  std::vector<Index> found_on_;  ///< the triangle of each in `found`
+  Array<Index> found_on_;  ///< the triangle of each in `found`
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// The outer surface of a deformable body: the triangles stay, the vertices are its nodes.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/inner/surface_topology.hpp>
 #include <delassus/geometry/outer_face.hpp>
@@ -24,7 +25,7 @@ class SoftSurface {
   SoftSurface(Index set, Index body, std::uint32_t number, const Mesh& mesh, std::span<const Index> blocks)
       : set_(set), body_(body), number_(number) {
     const Index nodes = Index(mesh.points.size());
-    std::vector<Index> vertex(2 * nodes, -1);  // of the front, of the back
+    Array<Index> vertex(2 * nodes, -1);  // of the front, of the back
     for (const OuterFace& face : outer_faces(mesh)) {
       std::array<Index, 3> corners{};
       std::array<Vec3, 3> places;
@@ -215,15 +216,15 @@ class SoftSurface {
 
   Index set_, body_;
   std::uint32_t number_;                       ///< of the body
-  std::vector<Index> block_;                   ///< of each vertex
-  std::vector<Index> front_;                   ///< of each vertex
-  std::vector<std::array<Index, 3>> corners_;  ///< vertices of each triangle
+  Array<Index> block_;                   ///< of each vertex
+  Array<Index> front_;                   ///< of each vertex
+  Array<std::array<Index, 3>> corners_;  ///< vertices of each triangle
   std::vector<std::array<Vec3, 3>> places_;    ///< where they are in the element behind
-  std::vector<char> sums_to_one_;              ///< across from corner 0 of a tetrahedron
-  std::vector<Index> element_, base_;          ///< that element, and the block of its corner 0
+  Array<char> sums_to_one_;              ///< across from corner 0 of a tetrahedron
+  Array<Index> element_, base_;          ///< that element, and the block of its corner 0
   SurfaceTopology topology_;
   std::vector<Vec3> rest_, vertices_, velocities_, normals_, outward_;
-  std::vector<char> moves_;
+  Array<char> moves_;
   FlatTree tree_;
   double radius_ = 0, top_speed_ = 0, inner_speed_ = 0;
   bool is_sheet_ = false, is_sound_ = true, is_movable_ = true;

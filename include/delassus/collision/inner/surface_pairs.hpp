@@ -10,6 +10,7 @@
 #include <delassus/collision/inner/reduce.hpp>
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 
 #include <algorithm>
@@ -101,7 +102,7 @@ class SurfacePairs {
       doubts_.add(t, patch_, n, trust);
     });
     doubts_.judge([&](Index t) { return surface.triangle(t); }, b.shape, b_in_a, scale);
-    std::erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
+    erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
     return queries;
   }
 
@@ -160,7 +161,7 @@ class SurfacePairs {
   void split_group() {
     const Vec3 n = points_[0].normal;
     group_.clear();
-    std::erase_if(points_, [&](const SurfaceContact& p) {
+    erase_if(points_, [&](const SurfaceContact& p) {
       if (p.normal.dot(n) < 0.9962) return false;
       group_.push_back(p);
       return true;
@@ -230,14 +231,14 @@ class SurfacePairs {
     return c;
   }
 
-  std::vector<SurfaceContact> points_, group_;
+  Array<SurfaceContact> points_, group_;
   std::vector<FeatureContact> features_;
-  std::vector<Cut> cuts_;
+  Array<Cut> cuts_;
   Patch patch_;
   PatchDoubts doubts_;
   std::array<Index, Patch::capacity> source_{};
   HullOfPatch hull_;
-  std::vector<PairMemory> memory_, next_;
+  Array<PairMemory> memory_, next_;
   std::size_t last_ = 0;
   std::vector<bool> is_claimed_;
 };

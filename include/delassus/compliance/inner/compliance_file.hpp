@@ -1,6 +1,7 @@
 /// The compliance of a body at rest as a file, and what it belongs to.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 
@@ -11,7 +12,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -75,8 +75,8 @@ bool read_compliance(const std::string& path, const ComplianceKeys& keys, Invers
   DELASSUS_EXPECT(header.keys.held == keys.held, refusal("choice of fixed nodes"));
   DELASSUS_EXPECT(header.keys.step == keys.step, refusal("step or damping"));
   DELASSUS_EXPECT(header.nodes <= std::uint64_t(inverse.nodes()), who + " is damaged");
-  std::vector<Index> nodes(header.nodes);
-  std::vector<S> numbers(9 * header.nodes * header.nodes);
+  Array<Index> nodes(header.nodes);
+  Array<S> numbers(9 * header.nodes * header.nodes);
   const bool is_whole = std::fread(nodes.data(), sizeof(Index), nodes.size(), file.get()) == nodes.size() &&
                         std::fread(numbers.data(), sizeof(S), numbers.size(), file.get()) == numbers.size();
   DELASSUS_EXPECT(is_whole && header.sum == key_of(numbers, key_of(nodes)), who + " is damaged");

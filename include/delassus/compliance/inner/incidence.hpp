@@ -1,6 +1,7 @@
 /// Which rows act on a block, and the columns A⁻¹ Hᵀ of a set whose blocks are coupled.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <array>
@@ -43,8 +44,8 @@ class Incidence {
 
  private:
   struct List {
-    std::vector<Index> start, next;
-    std::vector<Entry> entries;
+    Array<Index> start, next;
+    Array<Entry> entries;
   };
   std::array<List, Rows::set_count * Rows::pool_count> lists_;
 };
@@ -52,8 +53,8 @@ class Incidence {
 /// For a set whose A couples its blocks: whole columns A⁻¹ H_jᵀ, one solve a row.
 template <class T, int w, int R>
 struct ColumnsOf {
-  std::vector<Index> items;
-  std::vector<std::vector<Mat<w, R, T>>> columns;
+  Array<Index> items;
+  std::vector<Array<Mat<w, R, T>>> columns;
 };
 
 template <class Rows>
@@ -101,7 +102,7 @@ class CoupledColumns<RowSystem<T, Widths<w...>, R...>> {
   template <int width>
   using PerPool = std::tuple<ColumnsOf<T, width, R>...>;
   std::tuple<PerPool<w>...> columns_;
-  std::tuple<std::vector<Vec<w, T>>...> scratch_;
+  std::tuple<Array<Vec<w, T>>...> scratch_;
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// Rows of W from the compliance of touched nodes: for a set whose A couples the nodes of a body.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <algorithm>
@@ -107,11 +108,11 @@ class NodalRows<RowSystem<T, Widths<w...>, R...>> {
     std::size_t C;       ///< where its compliance begins
   };
   struct Touched {
-    std::vector<std::pair<Index, Index>> nodes;  ///< (body, block), ascending
-    std::vector<Index> blocks, slot, owner;  ///< block of a node; node of a block; number of a node's body
+    Array<std::pair<Index, Index>> nodes;  ///< (body, block), ascending
+    Array<Index> blocks, slot, owner;  ///< block of a node; node of a block; number of a node's body
     std::vector<Body> bodies;
-    std::vector<T> C;
-    std::array<std::vector<std::pair<Index, Index>>, pools>
+    Array<T> C;
+    std::array<Array<std::pair<Index, Index>>, pools>
         items;  ///< by pool: (body's number, item), ascending
   };
 
@@ -125,14 +126,14 @@ class NodalRows<RowSystem<T, Widths<w...>, R...>> {
 
   template <class Blocks>
   static void find_items(const Blocks& blocks, const Touched& t,
-                         std::vector<std::pair<Index, Index>>& items) {
+                         Array<std::pair<Index, Index>>& items) {
     items.clear();
     for (Index i = 0; i + 1 < Index(blocks.offset.size()); ++i)
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         if (!is_repeated(blocks, t, i, e)) items.emplace_back(t.owner[t.slot[blocks.block[e]]], i);
     std::sort(items.begin(), items.end());
   }
-  static auto first_of(const std::vector<std::pair<Index, Index>>& items, Index owner) {
+  static auto first_of(const Array<std::pair<Index, Index>>& items, Index owner) {
     return std::lower_bound(items.begin(), items.end(), std::pair<Index, Index>(owner, -1));
   }
 
@@ -161,7 +162,7 @@ class NodalRows<RowSystem<T, Widths<w...>, R...>> {
   }
 
   std::array<Touched, sizeof...(w)> touched_;
-  std::vector<T> V_;
+  Array<T> V_;
 };
 
 }  // namespace inner

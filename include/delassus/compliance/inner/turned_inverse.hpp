@@ -1,6 +1,7 @@
 /// A⁻¹ of one soft body by a factor of an earlier A, its nodes turned as they have turned since.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -10,7 +11,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -27,7 +27,7 @@ class TurnedInverse {
  public:
   using FactorScalar = S;
   using Velocity = Vec<3, T>;
-  using Places = std::vector<Velocity>;
+  using Places = Array<Velocity>;
 
   Index nodes() const { return Index(slot_.size()); }
   /// There is no factor, or it is of other held nodes, or of another step or damping.
@@ -186,14 +186,14 @@ class TurnedInverse {
   MultifrontalCholesky<3, S> factor_;
   bool is_factored_ = false;
   Places then_;  ///< where the nodes were
-  std::vector<Eigen::Quaternion<T>> rotation_;
-  std::vector<Mat<3, 3, T>> turn_, spread_;
-  std::vector<char> is_held_;
+  Array<Eigen::Quaternion<T>> rotation_;
+  Array<Mat<3, 3, T>> turn_, spread_;
+  Array<char> is_held_;
   SystemScale scale_;
-  std::vector<Index> known_, slot_;
-  std::vector<S> kept_;
+  Array<Index> known_, slot_;
+  Array<S> kept_;
   Places x_, r_, z_, p_, q_, guess_[2];
-  std::vector<Vec<3, S>> turned_;
+  Array<Vec<3, S>> turned_;
 };
 
 }  // namespace delassus::inner

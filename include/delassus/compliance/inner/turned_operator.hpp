@@ -3,6 +3,7 @@
 
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/compliance/inner/turned_inverse.hpp>
+#include <delassus/core/array.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -73,7 +74,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
     bool is_coupled() const { return set.is_coupled(); }
     Index body_of(Index b) const { return set.body_of(b); }
     void factor(SystemScale scale) { own.template factor<s>(set, scale); }
-    void solve(std::vector<Velocity>& x) const { own.template solve<s>(set, x, guess); }
+    void solve(std::span<Velocity> x) const { own.template solve<s>(set, x, guess); }
     void node_compliance(std::span<const Index> blocks, std::span<T> C) const {
       own.template node_compliance<s>(set, blocks, C);
     }
@@ -209,7 +210,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   }
 
   template <int s, class Set>
-  void solve(const Set& set, std::vector<Vec<3, T>>& x, int guess) {
+  void solve(const Set& set, std::span<Vec<3, T>> x, int guess) {
     set.each_system([&](Index k, auto, const auto& body, const auto& at) {
       auto& inverse = std::get<s>(bodies_)[k].inverse;
       part_.clear();
@@ -252,9 +253,9 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   double last_miss_ = 0;
   bool is_old_ = false, is_new_ = false;
   std::array<std::vector<Body>, sizeof...(w)> bodies_;
-  std::tuple<std::vector<Vec<R, T>>...> missed_;
-  std::vector<Vec<3, T>> places_, part_, load_;
-  std::vector<Index> nodes_;
+  std::tuple<Array<Vec<R, T>>...> missed_;
+  Array<Vec<3, T>> places_, part_, load_;
+  Array<Index> nodes_;
 };
 
 }  // namespace inner

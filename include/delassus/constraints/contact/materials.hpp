@@ -1,13 +1,13 @@
 /// Friction and restitution by material and by pair of materials.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 namespace delassus {
 
@@ -73,8 +73,8 @@ class Materials {
                     std::string(what) + ": restitution " + inner::text(m.restitution) + " must be in [0, 1]");
   }
 
-  std::vector<Material> materials_;
-  std::vector<Pair> pairs_;
+  Array<Material> materials_;
+  Array<Pair> pairs_;
 };
 
 }  // namespace delassus

@@ -2,6 +2,7 @@
 /// of a multifrontal factorization.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/packet.hpp>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -90,7 +90,7 @@ class DenseKernel {
     else
       f(std::integral_constant<int, 1>{});
   }
-  static void fit(std::vector<T>& to, Index size) {
+  static void fit(Array<T>& to, Index size) {
     if (to.size() < std::size_t(size)) to.resize(std::size_t(size));
   }
   static constexpr Index rounded_up(Index n, Index grain) { return (n + grain - 1) / grain * grain; }
@@ -283,7 +283,7 @@ class DenseKernel {
     return true;
   }
 
-  std::vector<T> a_, b_;
+  Array<T> a_, b_;
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// Where the fronts of a multifrontal factorization keep their numbers, and where a child adds to its parent.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/supernodes.hpp>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ struct FrontRun {
 struct FrontPlace {
   std::size_t factor = 0, update = 0;
   bool is_kept = false;  ///< the part for the parent is kept: it has a place of its own, not one on the stack
-  std::vector<FrontRun> runs;
+  Array<FrontRun> runs;
 };
 
 /// Columns of L lie one after the other. Parts for parents are on two stacks, as children stand before their
@@ -34,7 +35,7 @@ struct FrontLayout {
     const auto& supernodes = pattern.supernodes();
     fronts.assign(supernodes.size(), {});
     factor_size = kept_size = 0;
-    std::vector<char> depth(fronts.size(), 0);  // modulo 2
+    Array<char> depth(fronts.size(), 0);  // modulo 2
     for (Index s = Index(fronts.size()); s-- > 0;)
       if (supernodes[s].parent >= 0) depth[s] = !depth[supernodes[s].parent];
     std::size_t top[2] = {}, highest[2] = {};
@@ -59,7 +60,7 @@ struct FrontLayout {
   }
 
  private:
-  static void find_runs(const Supernode& child, const Supernode& parent, std::vector<FrontRun>& runs) {
+  static void find_runs(const Supernode& child, const Supernode& parent, Array<FrontRun>& runs) {
     for (Index k = 0, at = 0; k < child.below(); ++k, ++at) {
       while (parent.rows[at] != child.rows[child.width + k]) ++at;
       if (!runs.empty() && runs.back().to + runs.back().length == at)

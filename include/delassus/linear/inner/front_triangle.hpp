@@ -2,6 +2,7 @@
 /// leaves its parent.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_layout.hpp>
 #include <delassus/linear/supernodes.hpp>
@@ -10,7 +11,6 @@
 #include <cstddef>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -24,7 +24,7 @@ struct FrontPlan {
   /// `NestedDissection::order`.
   void analyse(int w, Index blocks, std::span<const std::pair<Index, Index>> pairs,
                std::span<const Vec3> positions = {}, std::span<const Index> region = {}) {
-    std::vector<std::pair<Index, Index>> unique;
+    Array<std::pair<Index, Index>> unique;
     for (auto [i, j] : pairs) unique.emplace_back(std::minmax(i, j));
     std::sort(unique.begin(), unique.end());
     unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
@@ -112,7 +112,7 @@ class FrontTriangle {
       }
   }
 
-  std::vector<T> factor_, stack_, kept_;
+  Array<T> factor_, stack_, kept_;
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// Impulses of contacts from one step to the next, found by name or by place.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -9,7 +10,6 @@
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -104,8 +104,8 @@ class ContactMemory {
     });
   }
 
-  std::vector<Entry> entries_;
-  std::vector<Index> order_;                   ///< of one pair, by `axis_`
+  Array<Entry> entries_;
+  Array<Index> order_;                   ///< of one pair, by `axis_`
   Index ordered_begin_ = 0, ordered_end_ = 0;  ///< that pair's entries
   int axis_ = 0;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -10,14 +11,13 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace delassus {
 
 /// change = A⁻¹ Hᵀ λ of one set: block by block through G where A is block-diagonal, else by one solve.
 template <int s, class Set, class Rows>
-void add_impulses(const Set& set, const Rows& rows, std::vector<typename Set::Velocity>& to,
-                  std::vector<typename Set::Velocity>& scratch) {
+void add_impulses(const Set& set, const Rows& rows, std::span<typename Set::Velocity> to,
+                  Array<typename Set::Velocity>& scratch) {
   const bool is_coupled = inner::is_coupled(set);
   if (is_coupled) {
     scratch.resize(set.blocks());
@@ -58,7 +58,7 @@ void drop_rounding(V& v_next, const V& v_free) {
 /// number, are all made so: `advance` leaves such bodies where they were, and no other island notices.
 template <class World, class Rows, class Operator, class Scratch, int pools>
 void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, const Islands<pools>& islands,
-             std::span<const SolveReport> reports, std::vector<char>& is_sick) {
+             std::span<const SolveReport> reports, Array<char>& is_sick) {
   is_sick.assign(islands.count(), 0);
   Index first = 0;
   bool any = false;

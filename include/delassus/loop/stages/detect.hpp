@@ -7,6 +7,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/loop/stages/contact_memory.hpp>
 #include <delassus/math/twist.hpp>
@@ -33,7 +34,7 @@ class ContactBook {
  public:
   std::vector<Collider> colliders;
   std::vector<ContactPoint> points;
-  std::vector<ContactResult> results;  ///< in the order of `points`: by pair, then by feature
+  Array<ContactResult> results;  ///< in the order of `points`: by pair, then by feature
 
   /// One collider for every body with a shape.
   template <class World>
@@ -114,8 +115,8 @@ class ContactBook {
     else return set.moves(b);
   }
 
-  std::vector<Anchor> anchors_;
-  std::vector<Index> materials_;
+  Array<Anchor> anchors_;
+  Array<Index> materials_;
   ContactMemory memory_;
 };
 

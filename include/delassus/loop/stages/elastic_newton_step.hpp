@@ -2,13 +2,14 @@
 #pragma once
 
 #include <delassus/bodies/inner/slope_search.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/loop/stages/step_by_sets.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <span>
 
 namespace delassus {
 
@@ -25,8 +26,8 @@ template <class Set>
 struct ElasticNewton {
   using Velocity = typename Set::Velocity;
   using T = typename Set::Scalar;
-  std::vector<Velocity> v, w, trial, residual, step;
-  std::vector<char> is_out;  ///< by body: its step is no number
+  Array<Velocity> v, w, trial, residual, step;
+  Array<char> is_out;  ///< by body: its step is no number
 
   template <class I>
   Status solve(Set& set, const I& integrator, double h, int& factorizations) {
@@ -102,7 +103,7 @@ struct ElasticNewton {
 
   /// residual ← θ h f(q ⊕ θ h u) − M (u − v), M of the start, where impulses act; K and A of q ⊕ θ h u
   /// made.
-  void look(Set& set, const std::vector<Velocity>& u, double ahead, SystemScale scale) {
+  void look(Set& set, std::span<const Velocity> u, double ahead, SystemScale scale) {
     set.restore();
     auto& difference = set.velocity();
     for (const Index b : set.active()) difference[b] = u[b] - v[b];

@@ -2,16 +2,16 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/integrators/integrator.hpp>
 
-#include <vector>
 
 namespace delassus {
 
 /// v_free = v + A⁻¹ p, p the integrator's impulse and A⁻¹ the set's or another `inverse`. Blocks that do not
 /// move keep v.
 template <class Set, class Inverse, class I>
-void free_motion(Set& set, Inverse&& inverse, const I& integrator, std::vector<typename Set::Velocity>& p,
+void free_motion(Set& set, Inverse&& inverse, const I& integrator, Array<typename Set::Velocity>& p,
                  double h) {
   inverse.factor(integrator.scale(h));
   p.resize(set.blocks());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/loop/stages/yielding_midpoint.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
-#include <vector>
 
 namespace delassus {
 
@@ -148,7 +148,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   }
 
   YieldingMidpoint<World, Laws, Rows> newton_;
-  std::tuple<std::vector<typename Sets::Velocity>...> velocity_;
+  std::tuple<Array<typename Sets::Velocity>...> velocity_;
   Impulses<Rows> force_, total_;  ///< λ/h of the last part, and Σ λ
   SolveReport report_;
 };

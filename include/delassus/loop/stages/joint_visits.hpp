@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/unrolled.hpp>
 #include <delassus/loop/stages/item_rows.hpp>
 #include <delassus/loop/stages/joint_visit.hpp>
@@ -18,7 +19,6 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -222,7 +222,7 @@ class JointVisits<World<Sets...>, Laws> {
   }
 
   template <class Set>
-  using Steps = std::vector<std::uint32_t>;
+  using Steps = Array<std::uint32_t>;
   std::tuple<Steps<Sets>...> seen_;  ///< the last step in which a joint held the block
   std::uint32_t now_ = 0;
   bool are_shared_ = false;  ///< some block is held by two joints

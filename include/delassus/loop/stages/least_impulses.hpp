@@ -1,6 +1,7 @@
 /// Of all impulses of equalities that make the same motion, the smallest: for rows that depend on each other.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 
 #include <cstddef>
@@ -70,7 +71,7 @@ class LeastImpulses {
     multiply(system, given_, goal_);
   }
   /// u = W x = (H G + R) x.
-  void multiply(const System& system, const std::vector<Row>& x, std::vector<Row>& u) {
+  void multiply(const System& system, const Array<Row>& x, Array<Row>& u) {
     u.resize(x.size());
     moves_.assign(system.blocks(), System::Twist::Zero());
     each_side(system,
@@ -91,7 +92,7 @@ class LeastImpulses {
     system.solve();
     for (Index k = 0; k < system.bilateral(); ++k) x_[k] += system.answer(k);
   }
-  static double squared(const System& system, const std::vector<Row>& u) {
+  static double squared(const System& system, const Array<Row>& u) {
     double sum = 0;
     for (std::size_t k = 0; k < u.size(); ++k)
       for (int r = 0; r < system.node(Index(k)).rows; ++r)
@@ -99,7 +100,7 @@ class LeastImpulses {
     return sum;
   }
 
-  std::vector<Row> given_, goal_, x_, rate_, moved_;
+  Array<Row> given_, goal_, x_, rate_, moved_;
   std::vector<typename System::Twist> moves_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/loop/stages/equalities.hpp>
 #include <delassus/loop/stages/linearize.hpp>
 #include <delassus/math/twist.hpp>
@@ -15,7 +16,6 @@
 #include <limits>
 #include <tuple>
 #include <type_traits>
-#include <vector>
 
 namespace delassus {
 
@@ -309,7 +309,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   }
 
   std::tuple<typename Sets::Midpoint...> bodies_;
-  std::tuple<std::vector<typename Sets::Velocity>...> force_, impulse_;
+  std::tuple<Array<typename Sets::Velocity>...> force_, impulse_;
   Rows middle_;
   Impulses<Rows> start_, yield_;
   inner::DirectSystem<Rows> system_;

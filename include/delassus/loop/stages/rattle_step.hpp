@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/loop/stages/equalities.hpp>
 #include <delassus/loop/stages/leave_step.hpp>
 #include <delassus/math/twist.hpp>
@@ -9,9 +10,9 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -116,7 +117,7 @@ class RattleStep<World<Sets...>, Laws, Rows> {
         rows.template pool<p>(), i, world, [](const auto& set) -> const auto& { return set.v_next; });
   }
   template <class Set, class I>
-  static void kick(const Set& set, const I& integrator, std::vector<typename Set::Velocity>& p, double h) {
+  static void kick(const Set& set, const I& integrator, Array<typename Set::Velocity>& p, double h) {
     p.resize(set.blocks());
     for (auto& x : p) x.setZero();
     integrator.impulse(set, p, h);
@@ -223,7 +224,7 @@ class RattleStep<World<Sets...>, Laws, Rows> {
   }
 
   std::tuple<typename Sets::Path...> paths_, before_;  ///< from the start of a part, of the step
-  std::tuple<std::vector<typename Sets::Velocity>...> force_, free_, sent_,
+  std::tuple<Array<typename Sets::Velocity>...> force_, free_, sent_,
       kicked_;  ///< w of a part, of the first
   Rows start_;
   Impulses<Rows> first_, second_, sum_;  ///< λ₁ and λ₂ of a part, and of all parts

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/loop/stages/equalities.hpp>
 #include <delassus/loop/stages/leave_step.hpp>
 #include <delassus/math/twist.hpp>
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
-#include <vector>
 
 namespace delassus {
 
@@ -221,7 +221,7 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
   }
 
   std::tuple<typename Sets::Path...> paths_;
-  std::tuple<std::vector<typename Sets::Velocity>...> a_;
+  std::tuple<Array<typename Sets::Velocity>...> a_;
   Impulses<Rows> lambda_, force_, turned_;
   Equalities<Rows> equalities_;
   double speed_ = 0;

@@ -1,6 +1,7 @@
 /// A whole step of points with elastic forces, solved for the acceleration at its end.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/loop/stages/step_by_sets.hpp>
 
@@ -45,9 +46,9 @@ struct StepByAcceleration {
   using Velocity = typename Set::Velocity;
   using T = typename Set::Scalar;
   std::vector<PastMotion<Velocity>> past;
-  std::vector<Velocity> next, moved, v, p;  ///< y, x₊ − x, v at the start, impulses
-  std::vector<Velocity> left_x, left_v;     ///< x and v as the last step left them
-  std::vector<std::uint32_t> generation;    ///< of the point whose past this is
+  Array<Velocity> next, moved, v, p;  ///< y, x₊ − x, v at the start, impulses
+  Array<Velocity> left_x, left_v;     ///< x and v as the last step left them
+  Array<std::uint32_t> generation;    ///< of the point whose past this is
 
   void memory(auto& archive) { archive(past, moved, left_x, left_v, generation); }
 

@@ -124,9 +124,9 @@ class StepParts<World<Sets...>, Constraints<L...>, Rows> {
     return u;
   }
 
-  std::tuple<std::vector<Vec<L::rows>>...> sums_;
+  std::tuple<Array<Vec<L::rows>>...> sums_;
   std::vector<Vec3> pushed_;  ///< impulses of the contacts, N·s
-  std::tuple<std::vector<typename Sets::Velocity>...> loads_;
+  std::tuple<Array<typename Sets::Velocity>...> loads_;
   bool is_first_ = true;  ///< no part's impulses are in the sums
 };
 

@@ -1,10 +1,11 @@
 /// Anderson's mixing of the last sweeps.
 #pragma once
 
+#include <delassus/core/array.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -12,7 +13,7 @@ namespace delassus::inner {
 /// largest problem, filled only by the stages that a stalled solve comes to.
 struct History {
   static constexpr int depth = 5;
-  std::vector<double> x, z, f, last_f, last_z, good, change_f[depth], change_z[depth];
+  Array<double> x, z, f, last_f, last_z, good, change_f[depth], change_z[depth];
 
   template <class F>
   void each(F&& apply) {
@@ -20,14 +21,14 @@ struct History {
     for (int k = 0; k < depth; ++k) apply(change_f[k]), apply(change_z[k]);
   }
   void reserve(std::size_t rows) {
-    each([&](std::vector<double>& v) { v.reserve(rows); });
+    each([&](Array<double>& v) { v.reserve(rows); });
   }
   void resize(std::size_t rows) {
-    each([&](std::vector<double>& v) { v.resize(rows); });
+    each([&](Array<double>& v) { v.resize(rows); });
   }
 };
 
-inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
+inline double dot(const Array<double>& a, const Array<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;

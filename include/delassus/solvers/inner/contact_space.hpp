@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/contact/cone.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/linear/dense_elimination.hpp>
 #include <delassus/math/linear.hpp>
@@ -11,7 +12,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -127,7 +127,7 @@ class ContactSpace {
     return true;
   }
 
-  std::vector<double> lambda;
+  Array<double> lambda;
 
  private:
   /// W column by column, from the answer to an impulse on each row; d with it.
@@ -168,7 +168,7 @@ class ContactSpace {
   }
 
   /// u ← d + W x.
-  void multiply(const std::vector<double>& x) {
+  void multiply(const Array<double>& x) {
     const std::size_t n = x.size();
     u_ = d_;
     for (std::size_t j = 0; j < n; ++j) {
@@ -232,9 +232,9 @@ class ContactSpace {
     }
   }
 
-  std::vector<Item> items_;
-  std::vector<double> centre_, d_, u_, F_, direction_, trial_, right_, W_;  ///< W column by column
-  std::vector<Index> active_;
+  Array<Item> items_;
+  Array<double> centre_, d_, u_, F_, direction_, trial_, right_, W_;  ///< W column by column
+  Array<Index> active_;
   DenseElimination matrix_;
   Impulses<Rows> was_;
 };

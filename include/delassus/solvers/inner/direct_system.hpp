@@ -1,6 +1,7 @@
 /// The bilateral rows of an island as one sparse matrix, factored whatever their rank.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/sparse_lu.hpp>
 #include <delassus/rows/row_system.hpp>
 
@@ -191,7 +192,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
  private:
   struct Graph {
     Index size = -1;
-    std::vector<std::pair<Index, Index>> pairs;
+    Array<std::pair<Index, Index>> pairs;
     SparseLu<w, double> matrix;
   };
 
@@ -255,15 +256,15 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
   Index bilateral_ = 0, size_ = 0;
-  std::array<std::vector<Index>, sizeof...(widths)> number_;  ///< of a block of a set here, or −1
-  std::vector<std::pair<int, Index>> blocks_;                 ///< (set, block)
-  std::vector<Node> nodes_;
-  std::vector<Side> sides_;
-  std::vector<Index> start_, order_, next_, held_, hub_;
-  std::vector<std::pair<Index, Index>> pairs_;
+  std::array<Array<Index>, sizeof...(widths)> number_;  ///< of a block of a set here, or −1
+  Array<std::pair<int, Index>> blocks_;                 ///< (set, block)
+  Array<Node> nodes_;
+  Array<Side> sides_;
+  Array<Index> start_, order_, next_, held_, hub_;
+  Array<std::pair<Index, Index>> pairs_;
   std::vector<Graph> graphs_;  ///< the analysis of each island is kept while its graph stands
   Graph* graph_ = nullptr;
-  std::vector<Row> x_, step_;
+  Array<Row> x_, step_;
 };
 
 }  // namespace delassus::inner

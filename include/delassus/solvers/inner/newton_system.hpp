@@ -1,6 +1,7 @@
 /// The bodies and constraints of one island, and the matrix of a Newton step in the bodies' velocities.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/block_lu.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/rows/local.hpp>
@@ -38,7 +39,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   using Rows = RowSystem<T, Widths<w...>, R...>;
   static constexpr int pools = Rows::pool_count;
   static constexpr int width = std::max({1, w...});
-  using Velocities = std::vector<Vec<width>>;  ///< one a block, narrower sets filled up with zeros
+  using Velocities = Array<Vec<width>>;  ///< one a block, narrower sets filled up with zeros
   using Never = typename BlockLu<width, double>::Never;
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
@@ -100,7 +101,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   /// gathered and measured too, 200.
   double cost_in_sweeps() {
     double constraints = 0, entries = 0;
-    std::vector<Index>& on_block = count_;
+    Array<Index>& on_block = count_;
     on_block.assign(blocks(), 0);
     each([&](auto, auto& c, auto& sides) {
       for (Index s = c.first; s < c.last; ++s) ++on_block[sides[s].block];
@@ -173,7 +174,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
   /// Whether it has a weight.
   template <int r>
-  static bool add(Item<r>& c, std::vector<Item<r>>& items, Index last) {
+  static bool add(Item<r>& c, Array<Item<r>>& items, Index last) {
     c.last = last;
     items.push_back(c);
     return c.weight > 0 && std::isfinite(c.weight);
@@ -188,15 +189,15 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     }
   }
 
-  std::tuple<std::vector<Item<R>>...> items_;
-  std::tuple<std::vector<NewtonSide<R, width>>...> sides_;
-  std::vector<std::pair<Index, Index>> pairs_;  ///< of blocks that a constraint joins
+  std::tuple<Array<Item<R>>...> items_;
+  std::tuple<Array<NewtonSide<R, width>>...> sides_;
+  Array<std::pair<Index, Index>> pairs_;  ///< of blocks that a constraint joins
 
  private:
   /// The graph of an island and the matrix analysed for it.
   struct Graph {
     std::size_t blocks = 0;
-    std::vector<std::pair<Index, Index>> pairs;
+    Array<std::pair<Index, Index>> pairs;
     BlockLu<width, double> matrix;
   };
 
@@ -303,12 +304,12 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     matrix_ = &graph.matrix;
   }
 
-  std::array<std::vector<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
-  std::vector<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
+  std::array<Array<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
+  Array<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
   std::vector<Graph> graphs_;
   BlockLu<width, double>* matrix_ = nullptr;
-  std::vector<Index> count_;  ///< of sides on each block
-  std::vector<double> mass_;
+  Array<Index> count_;  ///< of sides on each block
+  Array<double> mass_;
   Velocities unit_, moved_;  ///< of each unknown Σ |H_k|²/w and Σ |G_k|²/w, then √A_kk and its inverse
 };
 

@@ -1,6 +1,7 @@
 /// The matrix of smoothed rows: in the velocities of the bodies, or in the impulses where there are none.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/linear/block_lu.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 #include <delassus/solvers/inner/newton_system.hpp>
@@ -9,7 +10,6 @@
 #include <cstddef>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -196,12 +196,12 @@ class PathImpulses {
     Block block;
   };
 
-  std::vector<PathItem<R>> items_;
-  std::vector<Block> own_;      ///< W_ii
-  std::vector<Entry> entries_;  ///< W_ij, i ≠ j
-  std::vector<std::pair<Index, Index>> pairs_;
+  Array<PathItem<R>> items_;
+  Array<Block> own_;      ///< W_ii
+  Array<Entry> entries_;  ///< W_ij, i ≠ j
+  Array<std::pair<Index, Index>> pairs_;
   BlockLu<R, double> matrix_;
-  std::vector<Vec<R>> y_;
+  Array<Vec<R>> y_;
 };
 
 template <class Rows>

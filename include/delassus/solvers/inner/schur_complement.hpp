@@ -1,6 +1,7 @@
 /// Contacts and limits as they are when the joints of their island hold: W less what the joints take of it.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
 
 #include <algorithm>
@@ -133,8 +134,8 @@ class SchurComplement {
   }
 
   Index size_ = 0;
-  std::vector<double> S_, u_;  ///< by columns; w entries a constraint
-  std::array<std::vector<Index>, System::pools> items_, place_;
+  Array<double> S_, u_;  ///< by columns; w entries a constraint
+  std::array<Array<Index>, System::pools> items_, place_;
   std::vector<typename System::Twist> velocity_;
 };
 

@@ -1,0 +1,207 @@
+/// A growing array for flat data: numbers, fixed-size matrices and plain structs of them.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <initializer_list>
+#include <new>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace delassus {
+namespace inner {
+
+/// Memory that is grown and copied without knowing the type in it: compiled once for all arrays.
+struct ArrayMemory {
+  void* data = nullptr;
+  std::size_t size = 0, capacity = 0;  ///< in elements
+
+  static void* allocate(std::size_t bytes, std::size_t alignment) {
+    if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__) return ::operator new(bytes);
+    return ::operator new(bytes, std::align_val_t(alignment));
+  }
+  void release(std::size_t alignment) {
+    if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__)
+      ::operator delete(data);
+    else
+      ::operator delete(data, std::align_val_t(alignment));
+  }
+  /// Room for `count` elements; what is there keeps its bytes.
+  void reserve(std::size_t count, std::size_t width, std::size_t alignment) {
+    if (count <= capacity) return;
+    if (count > std::size_t(-1) / 2 / width) throw std::bad_array_new_length();
+    void* const larger = allocate(count * width, alignment);
+    if (size > 0) std::memcpy(larger, data, size * width);
+    release(alignment);
+    data = larger;
+    capacity = count;
+  }
+  /// Room for `count` elements, twice of what there was at the least.
+  void grow(std::size_t count, std::size_t width, std::size_t alignment) {
+    if (count > capacity) reserve(count > 2 * capacity ? count : 2 * capacity, width, alignment);
+  }
+  /// The bytes of another array in the place of these.
+  void copy(const ArrayMemory& other, std::size_t width, std::size_t alignment) {
+    if (this == &other) return;
+    size = 0;
+    reserve(other.size, width, alignment);
+    if (other.size > 0) std::memcpy(data, other.data, other.size * width);
+    size = other.size;
+  }
+  void swap(ArrayMemory& other) noexcept {
+    const ArrayMemory mine = *this;
+    *this = other;
+    other = mine;
+  }
+};
+
+}  // namespace inner
+
+/// What std::vector<T> is, for a T that copying its bytes copies: it is refused where T has a destructor. A
+/// compiler makes some five functions of it for each T where it makes forty-five of a std::vector. References
+/// end with growth, as there.
+template <class T>
+class Array {
+ public:
+  using value_type = T;
+  using size_type = std::size_t;
+  using iterator = T*;
+  using const_iterator = const T*;
+
+  Array() = default;
+  explicit Array(std::size_t count) { resize(count); }
+  Array(std::size_t count, const T& x) { resize(count, x); }
+  Array(std::initializer_list<T> list) { assign(list.begin(), list.end()); }
+  template <class It>
+  requires(!std::is_arithmetic_v<It>) Array(It first, It last) { assign(first, last); }
+  Array(const Array& other) { memory_.copy(other.memory_, sizeof(T), alignof(T)); }
+  Array(Array&& other) noexcept { memory_.swap(other.memory_); }
+  Array& operator=(const Array& other) {
+    memory_.copy(other.memory_, sizeof(T), alignof(T));
+    return *this;
+  }
+  Array& operator=(Array&& other) noexcept {
+    Array gone;
+    gone.memory_.swap(other.memory_);
+    memory_.swap(gone.memory_);
+    return *this;
+  }
+  /// The elements of another list, which are none of this array's.
+  Array& operator=(std::span<const T> list) {
+    assign(list.begin(), list.end());
+    return *this;
+  }
+  ~Array() {
+    static_assert(std::is_trivially_destructible_v<T>,
+                  "delassus: Array holds types without a destructor; take std::vector");
+    memory_.release(alignof(T));
+  }
+
+  T* data() { return static_cast<T*>(memory_.data); }
+  const T* data() const { return static_cast<const T*>(memory_.data); }
+  std::size_t size() const { return memory_.size; }
+  std::size_t capacity() const { return memory_.capacity; }
+  bool empty() const { return memory_.size == 0; }
+  T* begin() { return static_cast<T*>(memory_.data); }
+  T* end() { return static_cast<T*>(memory_.data) + memory_.size; }
+  const T* begin() const { return static_cast<const T*>(memory_.data); }
+  const T* end() const { return static_cast<const T*>(memory_.data) + memory_.size; }
+  T& operator[](std::size_t i) { return static_cast<T*>(memory_.data)[i]; }
+  const T& operator[](std::size_t i) const { return static_cast<const T*>(memory_.data)[i]; }
+  T& front() { return *begin(); }
+  const T& front() const { return *begin(); }
+  T& back() { return end()[-1]; }
+  const T& back() const { return end()[-1]; }
+
+  void reserve(std::size_t count) { memory_.reserve(count, sizeof(T), alignof(T)); }
+  void clear() { memory_.size = 0; }
+  /// New elements are T().
+  void resize(std::size_t count) {
+    memory_.grow(count, sizeof(T), alignof(T));
+    for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T();
+    memory_.size = count;
+  }
+  void resize(std::size_t count, const T& x) {
+    const T copy = x;  // it may be one of ours
+    memory_.grow(count, sizeof(T), alignof(T));
+    for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T(copy);
+    memory_.size = count;
+  }
+  void assign(std::size_t count, const T& x) {
+    const T copy = x;
+    memory_.size = 0;
+    resize(count, copy);
+  }
+  /// The elements of [first, last), which are none of this array's.
+  template <class It>
+  requires(!std::is_arithmetic_v<It>) void assign(It first, It last) {
+    memory_.size = 0;
+    append(first, last);
+  }
+  /// [first, last) behind what is there; they are none of this array's.
+  template <class It>
+  void append(It first, It last) {
+    for (; first != last; ++first) push_back(*first);
+  }
+  T& push_back(const T& x) {
+    if (memory_.size < memory_.capacity) return *::new (static_cast<void*>(begin() + memory_.size++)) T(x);
+    const T copy = x;  // it may be one of ours, which growing moves
+    memory_.grow(memory_.size + 1, sizeof(T), alignof(T));
+    return *::new (static_cast<void*>(begin() + memory_.size++)) T(copy);
+  }
+  template <class... From>
+  T& emplace_back(From&&... from) {
+    if constexpr (std::is_constructible_v<T, From...>)
+      return push_back(T(static_cast<From&&>(from)...));
+    else
+      return push_back(T{static_cast<From&&>(from)...});
+  }
+  void pop_back() { --memory_.size; }
+  /// Takes the elements [first, last) out; those behind them move up.
+  T* erase(T* first, T* last) {
+    std::memmove(static_cast<void*>(first), static_cast<const void*>(last),
+                 std::size_t(end() - last) * sizeof(T));
+    memory_.size -= std::size_t(last - first);
+    return first;
+  }
+  T* erase(T* at) { return erase(at, at + 1); }
+  /// Puts x before `at`.
+  T* insert(T* at, const T& x) {
+    const std::size_t place = std::size_t(at - begin());
+    const T copy = x;
+    memory_.grow(memory_.size + 1, sizeof(T), alignof(T));
+    T* const here = begin() + place;
+    std::memmove(static_cast<void*>(here + 1), static_cast<const void*>(here),
+                 (memory_.size - place) * sizeof(T));
+    ++memory_.size;
+    return ::new (static_cast<void*>(here)) T(copy);
+  }
+  void shrink_to_fit() {
+    Array tight(*this);
+    memory_.swap(tight.memory_);
+  }
+  void swap(Array& other) noexcept { memory_.swap(other.memory_); }
+  friend void swap(Array& a, Array& b) noexcept { a.memory_.swap(b.memory_); }
+  friend bool operator==(const Array& a, const Array& b) { return a == std::span<const T>(b); }
+  friend bool operator==(const Array& a, std::span<const T> b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (!(a[i] == b[i])) return false;
+    return true;
+  }
+
+ private:
+  inner::ArrayMemory memory_;
+};
+
+/// Takes out what `is_out` holds of; the rest keeps its order.
+template <class T, class Is>
+void erase_if(Array<T>& list, const Is& is_out) {
+  std::size_t kept = 0;
+  for (const T& x : list)
+    if (!is_out(x)) list[kept++] = x;
+  list.resize(kept);
+}
+
+}  // namespace delassus
