@@ -34,7 +34,7 @@ TEST_CASE("every node has its place once, with positions or without, in parts th
   for (std::size_t k = 0, count = g.pairs.size(); k < count; ++k)
     g.pairs.emplace_back(g.pairs[k].first + half, g.pairs[k].second + half);
   g.n = 2 * half + 5;  // and five nodes alone
-  std::vector<Index> order = NestedDissection{}.order(graph_of(g));
+  Array<Index> order = NestedDissection{}.order(graph_of(g));
   std::sort(order.begin(), order.end());
   REQUIRE(Index(order.size()) == g.n);
   for (Index i = 0; i < g.n; ++i) REQUIRE(order[i] == i);
