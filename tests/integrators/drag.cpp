@@ -19,7 +19,7 @@ struct InAir : Particles {
   double linear = 0, quadratic = 0;  ///< N·s/m, N·s²/m²
 
   bool is_separable() const { return false; }
-  void add_forces(std::vector<Velocity>& p) const {
+  void add_forces(std::span<Velocity> p) const {
     Particles::add_forces(p);
     for (const Index b : active()) p[b] -= (linear + quadratic * velocity()[b].norm()) * velocity()[b];
   }

@@ -7,7 +7,7 @@
 
 #include <concepts>
 #include <type_traits>
-#include <vector>
+#include <span>
 
 namespace delassus {
 
@@ -18,9 +18,9 @@ struct SetProbe {
   static constexpr int width = 3;
   Array<Velocity> v_free, v_next;
   Array<Velocity>& velocity();
-  void add_forces(Array<Velocity>&) const;
-  void add_stiffness_times_velocity(Array<Velocity>&, double) const;
-  void add_mass_times_velocity(Array<Velocity>&, double) const;
+  void add_forces(std::span<Velocity>) const;
+  void add_stiffness_times_velocity(std::span<Velocity>, double) const;
+  void add_mass_times_velocity(std::span<Velocity>, double) const;
   void advance(double);
   void advance_midpoint(double);
 };
@@ -28,7 +28,7 @@ struct SetProbe {
 /// scale(h) mixes A; impulse(set, p, h) makes A (v_free − v) = p; advance(set, h) moves q and v from v_next.
 template <class I>
 concept Integrator = Plays<I, role::Integrator> &&
-    requires(const I integrator, SetProbe& set, std::vector<Vec<3>>& p, double h) {
+    requires(const I integrator, SetProbe& set, Array<Vec<3>>& p, double h) {
       { integrator.scale(h) } -> std::same_as<SystemScale>;       // A = mass M + damping D + stiffness K
       { integrator.impulse(set, p, h) } -> std::same_as<void>;    // p, N·s
       { integrator.advance(set, h) } -> std::same_as<void>;

@@ -6,7 +6,6 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace delassus {
 
@@ -23,7 +22,7 @@ struct SystemScale {
 /// v: start of the step, m/s and rad/s; v_free: after the free motion; v_next: after the corrective motion.
 template <class S>
 concept BodySet = requires(S set, const S fixed, const Anchor anchor, Index b, SystemScale scale, double h, Vec3 x,
-                           std::vector<Vec<S::width, typename S::Scalar>>& p) {
+                           std::span<Vec<S::width, typename S::Scalar>> p) {
   { fixed.blocks() } -> std::same_as<Index>;      // how many blocks there are, removed ones included
   { fixed.moves(b) } -> std::same_as<bool>;       // A⁻¹ ≠ 0: the block answers to impulses
   { set.factor(scale) } -> std::same_as<void>;    // makes A and what solves with it
