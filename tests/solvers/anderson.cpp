@@ -15,8 +15,8 @@ struct Linear {
   Vec<4> b{1, -2, 3, 0.5}, x = Vec<4>::Zero();
 
   int row_count() const { return 4; }
-  void gather(std::vector<double>& to) const { to.assign(x.data(), x.data() + 4); }
-  void scatter(const std::vector<double>& from) { x = Eigen::Map<const Vec<4>>(from.data()); }
+  void gather(Array<double>& to) const { to.assign(x.data(), x.data() + 4); }
+  void scatter(std::span<const double> from) { x = Eigen::Map<const Vec<4>>(from.data()); }
   double error() const { return (A * x + b - x).norm(); }
   /// Returns how far it moved.
   double sweep() {

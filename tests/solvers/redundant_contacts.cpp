@@ -50,7 +50,7 @@ struct Box {
   }
 
   /// v + M⁻¹ Hᵀ λ.
-  Velocity motion(Velocity v, const std::vector<Vec3>& lambda) const {
+  Velocity motion(Velocity v, std::span<const Vec3> lambda) const {
     for (std::size_t i = 0; i < H.size(); ++i)
       for (int r = 0; r < 3; ++r)
         for (std::size_t b = 0; b < 6; ++b) v[b] += inverse[b] * H[i][std::size_t(r)][b] * lambda[i][r];
