@@ -2,8 +2,8 @@
 // with their number.
 #include "scenes.hpp"
 
-#include <delassus/loop/newton_midpoint.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Friction problems from the folder DELASSUS_PROBLEMS: what a sweep costs per 3 × 3 block beside a plain loop of Eigen over the
 // same blocks, and what a solve to 1e-3, 1e-6 and 1e-8 of Siconos' error costs from λ = 0.
 #include <delassus/io/problem_file.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/law_book.hpp>
 

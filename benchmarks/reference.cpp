@@ -12,7 +12,7 @@
 #include "../examples/demonstration/wall_of_boxes.hpp"
 
 #include <delassus/compliance/lazy.hpp>
-#include <delassus/loop/reference_check.hpp>
+#include <delassus/problems/reference_check.hpp>
 
 #include <algorithm>
 #include <vector>

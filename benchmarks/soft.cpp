@@ -1,10 +1,10 @@
 // A soft beam of n × n cells in the section and three times as many along: elements, A and its factor, a
 // solve, and whole steps of a cube that lies on the ground. CPU time of one thread. Argument: n.
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/elasticity/linear.hpp>
-#include <delassus/bodies/elasticity/stable_neo_hookean.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/elasticity/linear.hpp>
+#include <delassus/fem/elasticity/stable_neo_hookean.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include <benchmark/benchmark.h>

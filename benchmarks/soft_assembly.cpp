@@ -3,9 +3,9 @@
 // A of a bent box of corotational tetrahedra, as the body set assembles it in every step, against a list of
 // triplets and Eigen's setFromTriplets, turn by turn in one run; CPU time of one thread. Arguments: cells
 // along the edges.
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/elasticity/linear.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/elasticity/linear.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include "against.hpp"

@@ -8,11 +8,11 @@
 // component that is modelled (factor, W, a free solve and a corrective one) takes on the A and H of the last
 // step. Arguments: cells along, across, up; SOFA's ms a step.
 #include <delassus/adapters/posix.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>
 #include <delassus/compliance/precomputed.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include "against.hpp"

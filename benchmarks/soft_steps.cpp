@@ -6,10 +6,10 @@
 // modelled takes (factor, W, a free and a corrective solve) on the A and H of the last step. Counters: the
 // least and the largest violation that was left, as a share of the bar's height. Arguments: cells along,
 // across, up.
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include "against.hpp"

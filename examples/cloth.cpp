@@ -1,9 +1,9 @@
 // A strip of cloth over a fixed bar, drawn at both ends: friction holds e^(mu pi) times the weaker pull.
 // prints: 5% below e\^\(mu pi\) its end moves by 0\.[0-9] mm; 5% above it runs off
-#include <delassus/bodies/cloth.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/collision/with_surfaces.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/cloth.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
 
 #include <cstdio>
 using namespace delassus;

@@ -1,7 +1,7 @@
 // A gyroscope: a wheel of 1 kg at 50 rad/s on a level arm of 0.2 m turns about the pivot and does not fall.
 // prints: precesses at 0\.87[0-9] rad/s, sinks by 0\.00[0-9]+ m
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <algorithm>
 #include <cstdio>

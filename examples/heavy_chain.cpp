@@ -1,7 +1,7 @@
 // A hundred links of 1 kg hold a load of a ton at 60 steps a second: joints do not open, and energy is kept.
 // prints: joints apart by at most [0-9.]+e-1[0-9] m, energy off by [0-9.]+e-1[0-9] of the load's
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <algorithm>
 #include <cstdio>

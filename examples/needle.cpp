@@ -1,7 +1,7 @@
 // A needle in a driven hand is pushed against a leaning plate of bone: it bends and slides.
 // prints: the hand feels 0\.07[0-9] N, the needle is bent by 7\.[45][0-9] mm
-#include <delassus/bodies/rods.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/rods.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // A soft beam is clamped at one end, sags, and carries a ball that hangs on its tip.
 // prints: tip sags by 0\.347[0-9] m, the joint carries 0\.981 N
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include <cstdio>

@@ -1,8 +1,8 @@
 // Two fingers press a soft cube with 20 N each and lift it: friction holds its 1 kg from mu = m g / (2 N) on.
 // prints: mu 5% above: lifted by 50 mm, slips by 0\.[0-9] mm; 5% below: it falls
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 /// Sheets for the tests of several rooms.
 #pragma once
 
-#include <delassus/bodies/cloth.hpp>
+#include <delassus/fem/cloth.hpp>
 
 #include "soft_scenes.hpp"
 

@@ -1,7 +1,7 @@
 /// Meshes of hexahedra for the tests of several rooms.
 #pragma once
 
-#include <delassus/bodies/hexahedral_fem.hpp>
+#include <delassus/fem/hexahedral_fem.hpp>
 
 #include "soft_scenes.hpp"
 

@@ -3,9 +3,9 @@
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "allocation_scenes.hpp"
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 TEST_CASE("a warm step with a lazy compliance allocates nothing while the contacts stay") {

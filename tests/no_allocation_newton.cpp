@@ -3,9 +3,9 @@
 #include "allocation_scenes.hpp"
 #include "solvers/knotted_rope.hpp"
 
-#include <delassus/loop/newton_midpoint.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 TEST_CASE("a warm step of a standing stack with a pendulum beside it allocates nothing under Newton's method") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}, ProximalNewton{}};

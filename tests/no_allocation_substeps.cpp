@@ -3,8 +3,8 @@
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "allocation_scenes.hpp"
 
-#include <delassus/loop/joint_by_joint.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
+#include <delassus/schemes/substeps.hpp>
 
 TEST_CASE("a warm step in parts allocates nothing, with impacts that are passed on") {
   AnimationLoop loop{World{RigidBodies{}},

@@ -3,8 +3,8 @@
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "allocation_scenes.hpp"
 
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 TEMPLATE_TEST_CASE(
     "a warm step of a swinging chain allocates nothing under an integrator that makes its whole step", "",

@@ -1,7 +1,7 @@
 /// Rods for the tests of several rooms.
 #pragma once
 
-#include <delassus/bodies/rods.hpp>
+#include <delassus/fem/rods.hpp>
 
 #include <random>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/with_surfaces.hpp>
-#include <delassus/loop/stages/detect.hpp>
+#include <delassus/step/detect.hpp>
 
 #include "catch.hpp"
 #include "soft_scenes.hpp"

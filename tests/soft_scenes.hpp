@@ -1,11 +1,11 @@
 /// Deformable bodies for the tests of several rooms: forces, static solves, beams.
 #pragma once
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/elasticity/linear.hpp>
-#include <delassus/bodies/elasticity/st_venant_kirchhoff.hpp>
-#include <delassus/bodies/elasticity/stable_neo_hookean.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/elasticity/linear.hpp>
+#include <delassus/fem/elasticity/st_venant_kirchhoff.hpp>
+#include <delassus/fem/elasticity/stable_neo_hookean.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 #include <delassus/math/rotation.hpp>
 

@@ -1,22 +1,33 @@
 /// One pass after the other, as a host calls them that interleaves its own work.
 #pragma once
 
+#include <delassus/step/plain_step.hpp>
+
+namespace stage = delassus::stage;
+
+/// From Linearize to Build: rows, W and d are there.
+template <class Step>
+void linearize_to_build(Step& step) {
+  stage::linearize(step);
+  stage::free_motion(step);
+  stage::find_islands(step);
+  stage::make_bias(step);
+  stage::build(step);
+}
+
 /// A step up to the velocities after the impulses: the bodies have not moved yet.
 template <class Loop>
 void solve_by_stages(Loop& loop, double h) {
-  loop.begin(h);
-  loop.detect();
-  loop.linearize();
-  loop.free_motion();
-  loop.find_islands();
-  loop.make_bias();
-  loop.build();
-  loop.solve();
-  loop.correct();
+  auto& step = loop.data();
+  stage::begin(step, h);
+  stage::detect(step);
+  linearize_to_build(step);
+  stage::solve(step);
+  stage::correct(step);
 }
 
 template <class Loop>
 void step_by_stages(Loop& loop, double h) {
   solve_by_stages(loop, h);
-  loop.advance();
+  stage::advance(loop.data());
 }

@@ -12,7 +12,7 @@
 #include "read_any.hpp"
 
 #include <delassus/io/problem_file.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/law_book.hpp>

@@ -1,7 +1,7 @@
 /// A friction problem as Siconos holds it, and the configurations of Siconos that are compared.
 #pragma once
 
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 
 #include <algorithm>
 #include <cstddef>

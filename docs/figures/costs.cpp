@@ -4,9 +4,9 @@
 #include <delassus/constraints/contact/pyramid.hpp>
 #include <delassus/delassus.hpp>
 #include <delassus/io/csv.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 #include <delassus/study/diagram.hpp>
 #include <delassus/study/sweep.hpp>
 #include <delassus/study/tables.hpp>

@@ -10,10 +10,10 @@
 #include "loop/squeezer.hpp"
 
 #include <delassus/io/csv.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 #include <delassus/study/diagram.hpp>
 #include <delassus/study/sweep.hpp>
 #include <delassus/study/tables.hpp>

@@ -1,8 +1,8 @@
 /// The soft bodies of the demonstration.
 #pragma once
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 
 namespace demonstration {
 

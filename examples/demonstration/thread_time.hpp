@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/core/roles.hpp>
-#include <delassus/loop/stage.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <ctime>
 #include <vector>

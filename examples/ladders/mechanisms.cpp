@@ -3,11 +3,11 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+#include <delassus/steppers/rattle.hpp>
 
 #include <numbers>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <cmath>
 

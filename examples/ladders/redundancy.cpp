@@ -2,8 +2,8 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <array>
 

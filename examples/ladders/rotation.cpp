@@ -2,7 +2,7 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 namespace ladders {
 

@@ -2,12 +2,12 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/elasticity/stable_neo_hookean.hpp>
-#include <delassus/bodies/find_rest.hpp>
-#include <delassus/bodies/hexahedral_fem.hpp>
-#include <delassus/bodies/soft_invariants.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/elasticity/stable_neo_hookean.hpp>
+#include <delassus/fem/find_rest.hpp>
+#include <delassus/fem/hexahedral_fem.hpp>
+#include <delassus/fem/soft_invariants.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include <random>

@@ -2,12 +2,12 @@
 // its tip is.
 #include "scene_study.hpp"
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/hexahedral_fem.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/hexahedral_fem.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
-#include <delassus/loop/generalized_alpha.hpp>
+#include <delassus/steppers/generalized_alpha.hpp>
 
 #include <cmath>
 

@@ -1,6 +1,8 @@
 /// Everything up to the loop and its listeners; study, io and the adapters have their own headers.
 #pragma once
 
+#include <delassus/activity/hand_picked.hpp>
+#include <delassus/activity/sleeping.hpp>
 #include <delassus/bodies/anchor_at.hpp>
 #include <delassus/bodies/invariants.hpp>
 #include <delassus/bodies/particles.hpp>
@@ -34,26 +36,24 @@
 #include <delassus/constraints/joints/universal.hpp>
 #include <delassus/constraints/joints/virtual_coupling.hpp>
 #include <delassus/constraints/joints/weld.hpp>
+#include <delassus/haptics/haptic_channel.hpp>
+#include <delassus/haptics/passivity_observer.hpp>
+#include <delassus/haptics/simulated_device.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
 #include <delassus/integrators/lie_poisson.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
 #include <delassus/listeners/convergence_record.hpp>
 #include <delassus/listeners/double_buffer.hpp>
-#include <delassus/listeners/haptics/haptic_channel.hpp>
-#include <delassus/listeners/haptics/passivity_observer.hpp>
-#include <delassus/listeners/haptics/simulated_device.hpp>
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
-#include <delassus/loop/collisions_first.hpp>
-#include <delassus/loop/hand_picked.hpp>
-#include <delassus/loop/predictive_scheme.hpp>
 #include <delassus/loop/reaction.hpp>
-#include <delassus/loop/sleeping.hpp>
-#include <delassus/loop/solve_until.hpp>
 #include <delassus/loop/why_quarantined.hpp>
+#include <delassus/schemes/collisions_first.hpp>
+#include <delassus/schemes/predictive_scheme.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
+#include <delassus/solvers/solve_until.hpp>
 #include <delassus/solvers/with_deadline.hpp>
 #include <delassus/stabilisation/baumgarte.hpp>
 #include <delassus/stabilisation/position_projection.hpp>

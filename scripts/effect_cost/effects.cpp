@@ -6,7 +6,7 @@
 #include <delassus/collision/continuous.hpp>
 #include <delassus/delassus.hpp>
 #include <delassus/io/recorder.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 #include <cstdio>

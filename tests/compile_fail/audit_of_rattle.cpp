@@ -1,6 +1,6 @@
 // expect: delassus: Audit weighs impulses by W, which NewtonMidpoint, Rattle and RungeKutta4 do without
 #include <delassus/delassus.hpp>
-#include <delassus/loop/rattle.hpp>
+#include <delassus/steppers/rattle.hpp>
 #include <delassus/study/audit.hpp>
 
 using namespace delassus;

@@ -1,6 +1,6 @@
 // expect: delassus: a sheet needs a law of two constants that turns with it; write Corotational or StVenantKirchhoff
-#include <delassus/bodies/cloth.hpp>
-#include <delassus/bodies/elasticity/linear.hpp>
+#include <delassus/fem/cloth.hpp>
+#include <delassus/fem/elasticity/linear.hpp>
 
 using namespace delassus;
 

@@ -1,6 +1,6 @@
 // expect: delassus: the direct path needs the bodies of a problem
 #include <delassus/delassus.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 
 using namespace delassus;

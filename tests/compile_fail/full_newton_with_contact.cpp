@@ -1,7 +1,7 @@
 // expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson
-#include <delassus/bodies/rods.hpp>
 #include <delassus/delassus.hpp>
-#include <delassus/loop/full_newton.hpp>
+#include <delassus/fem/rods.hpp>
+#include <delassus/steppers/full_newton.hpp>
 
 using namespace delassus;
 

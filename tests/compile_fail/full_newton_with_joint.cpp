@@ -1,7 +1,7 @@
 // expect: delassus: FullNewton moves bodies without joints; take the laws out, or use ImplicitEuler
-#include <delassus/bodies/rods.hpp>
 #include <delassus/delassus.hpp>
-#include <delassus/loop/full_newton.hpp>
+#include <delassus/fem/rods.hpp>
+#include <delassus/steppers/full_newton.hpp>
 
 using namespace delassus;
 

@@ -1,6 +1,6 @@
 // expect: delassus: GeneralizedAlpha moves bodies without joints; take the laws out, or use ImplicitMidpoint
 #include <delassus/delassus.hpp>
-#include <delassus/loop/generalized_alpha.hpp>
+#include <delassus/steppers/generalized_alpha.hpp>
 
 using namespace delassus;
 

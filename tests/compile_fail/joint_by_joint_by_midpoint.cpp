@@ -1,6 +1,6 @@
 // expect: delassus: JointByJoint moves rigid bodies and particles, by SymplecticEuler or LiePoisson
 #include <delassus/delassus.hpp>
-#include <delassus/loop/joint_by_joint.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
 
 using namespace delassus;
 

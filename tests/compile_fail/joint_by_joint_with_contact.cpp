@@ -1,6 +1,6 @@
 // expect: delassus: JointByJoint takes joints with two ends that hold exactly or by springs
 #include <delassus/delassus.hpp>
-#include <delassus/loop/joint_by_joint.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
 
 using namespace delassus;
 

@@ -1,6 +1,6 @@
 // expect: delassus: JointByJoint solves without W and without a solver
 #include <delassus/delassus.hpp>
-#include <delassus/loop/joint_by_joint.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
 
 using namespace delassus;
 

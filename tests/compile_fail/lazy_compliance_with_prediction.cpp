@@ -1,8 +1,8 @@
 // expect: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance
-#include <delassus/bodies/elasticity/linear.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/linear.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 
 using namespace delassus;
 

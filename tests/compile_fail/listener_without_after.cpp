@@ -1,4 +1,4 @@
-// expect: delassus: this listener declares a stage in `listens` for which it has no after(stage::X, loop)
+// expect: delassus: this listener declares a stage in `listens` for which it has no after(stage::X, step)
 #include <delassus/delassus.hpp>
 
 using namespace delassus;

@@ -1,6 +1,6 @@
 // expect: delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, and gaps of each step, which Substeps has not; use ImplicitMidpoint and no Substeps, or leave AtMean{} out
 #include <delassus/delassus.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
 
 using namespace delassus;
 

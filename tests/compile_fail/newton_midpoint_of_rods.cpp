@@ -1,7 +1,7 @@
 // expect: delassus: NewtonMidpoint moves rigid bodies only
-#include <delassus/bodies/rods.hpp>
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/fem/rods.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 using namespace delassus;
 

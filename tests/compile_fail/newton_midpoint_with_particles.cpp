@@ -1,6 +1,6 @@
 // expect: delassus: NewtonMidpoint moves rigid bodies only
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 using namespace delassus;
 

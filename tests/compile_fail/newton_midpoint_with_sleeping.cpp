@@ -1,6 +1,6 @@
 // expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, without W
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 using namespace delassus;
 

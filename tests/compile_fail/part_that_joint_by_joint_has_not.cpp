@@ -1,6 +1,6 @@
 // expect: delassus: this AnimationLoop has no part of this role: without constraints, and under JointByJoint, there is no solver and no compliance
 #include <delassus/delassus.hpp>
-#include <delassus/loop/joint_by_joint.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
 
 using namespace delassus;
 

@@ -1,6 +1,6 @@
 // expect: delassus: Newton's method needs the bodies of a problem
 #include <delassus/delassus.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 using namespace delassus;

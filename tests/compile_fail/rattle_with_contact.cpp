@@ -1,6 +1,6 @@
 // expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson
 #include <delassus/delassus.hpp>
-#include <delassus/loop/rattle.hpp>
+#include <delassus/steppers/rattle.hpp>
 
 using namespace delassus;
 

@@ -1,8 +1,8 @@
 // expect: delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
-#include <delassus/loop/rattle.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
+#include <delassus/steppers/rattle.hpp>
 
 using namespace delassus;
 

@@ -1,7 +1,7 @@
 // expect: delassus: NewtonMidpoint makes no problem that a reference could solve again
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/reference_check.hpp>
+#include <delassus/problems/reference_check.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 using namespace delassus;
 

@@ -1,6 +1,6 @@
 // expect: delassus: check_against_reference needs tangent(item, local) of every constraint law; add it to the law that lacks it
 #include <delassus/delassus.hpp>
-#include <delassus/loop/reference_check.hpp>
+#include <delassus/problems/reference_check.hpp>
 
 using namespace delassus;
 

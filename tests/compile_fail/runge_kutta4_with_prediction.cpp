@@ -1,6 +1,6 @@
 // expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, without W
 #include <delassus/delassus.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 using namespace delassus;
 

@@ -1,4 +1,4 @@
-// expect: delassus: this type plays role::Scheme but lacks run(loop), which calls the stages of the loop in its order
+// expect: delassus: this type plays role::Scheme but lacks run(step), which calls the stages of a step in its order
 #include <delassus/delassus.hpp>
 
 using namespace delassus;

@@ -1,6 +1,6 @@
 // expect: delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out
 #include <delassus/delassus.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
 
 using namespace delassus;
 

@@ -1,7 +1,7 @@
 // expect: delassus: UncoupledCompliance takes the mass of each node alone, which this set of bodies does not give (Rods do not); use AssembledCompliance
-#include <delassus/delassus.hpp>
-#include <delassus/bodies/rods.hpp>
 #include <delassus/compliance/uncoupled.hpp>
+#include <delassus/delassus.hpp>
+#include <delassus/fem/rods.hpp>
 
 using namespace delassus;
 

@@ -1,13 +1,13 @@
 /// A soft beam, a rigid body and rows drawn at random, for every builder of W; no loop.
 #pragma once
 
-#include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
-#include <delassus/loop/stages/correct.hpp>
+#include <delassus/step/correct.hpp>
 
 #include <Eigen/Cholesky>
 

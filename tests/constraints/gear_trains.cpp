@@ -1,6 +1,6 @@
 // Trains of gears by Störmer and Verlet's method: couplings are held at their positions, over a thousand
 // turns.
-#include <delassus/loop/rattle.hpp>
+#include <delassus/steppers/rattle.hpp>
 
 #include <delassus/delassus.hpp>
 

@@ -2,7 +2,7 @@
 // cone, and what is called converged is.
 #include "shapes.hpp"
 
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 

@@ -1,9 +1,9 @@
 // Scenes with contacts alone by Newton's method, in which bodies fall asleep.
 #include "scene.hpp"
 
+#include <delassus/activity/sleeping.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
-#include <delassus/loop/sleeping.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 using namespace delassus;

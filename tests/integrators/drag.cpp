@@ -1,10 +1,10 @@
 // Thrown and falling points in air: forces that depend on the velocity, in a body set of the test's own.
 #include <delassus/delassus.hpp>
-#include <delassus/loop/bdf2.hpp>
-#include <delassus/loop/generalized_alpha.hpp>
-#include <delassus/loop/newmark.hpp>
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/bdf2.hpp>
+#include <delassus/steppers/generalized_alpha.hpp>
+#include <delassus/steppers/newmark.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "catch.hpp"
 #include "convergence_order.hpp"

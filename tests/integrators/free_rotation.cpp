@@ -1,7 +1,7 @@
 // A rigid body that turns freely: every integrator drifts by the midpoint rule, so one set of claims serves
 // all.
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <algorithm>
 #include <array>

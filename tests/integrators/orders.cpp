@@ -1,12 +1,12 @@
 // The order of every integrator on a smooth force, where it is a row of the table of docs/equations.md;
 // joints and free rotation of those that have no test of their own for it.
-#include <delassus/loop/bdf2.hpp>
-#include <delassus/loop/generalized_alpha.hpp>
-#include <delassus/loop/newmark.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
+#include <delassus/steppers/bdf2.hpp>
+#include <delassus/steppers/generalized_alpha.hpp>
+#include <delassus/steppers/newmark.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "catch.hpp"
 #include "convergence_order.hpp"

@@ -1,7 +1,7 @@
 #include "scenes.hpp"
 
 #include <delassus/io/checkpoint.hpp>
-#include <delassus/loop/joint_by_joint.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
 
 #include <cstdio>
 #include <filesystem>

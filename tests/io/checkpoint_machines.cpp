@@ -1,6 +1,6 @@
 /// The mechanisms of examples/, stopped and taken up again. The scenes are those of the programs of the same names.
-#include <delassus/loop/newton_midpoint.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include "same_bits.hpp"
 

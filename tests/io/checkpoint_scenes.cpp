@@ -1,8 +1,8 @@
 /// Ragdolls, surfaces and soft bodies of examples/, stopped and taken up again. The scenes are those of the programs.
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/collision/with_filter.hpp>
 #include <delassus/collision/with_meshes.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 

@@ -4,7 +4,7 @@
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/loop/animation_loop.hpp>
-#include <delassus/loop/full_newton.hpp>
+#include <delassus/steppers/full_newton.hpp>
 
 #include "catch.hpp"
 #include "cloth_scenes.hpp"

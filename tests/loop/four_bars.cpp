@@ -1,5 +1,5 @@
 // Loops of hinges that lie on one line twice a turn, by the midpoint rule and Newton's method.
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include "loop/smooth_scenes.hpp"
 

@@ -1,7 +1,7 @@
 // Full Newton on bodies at rest, and on sets of which one body is no number.
 #include <delassus/bodies/world.hpp>
 #include <delassus/loop/animation_loop.hpp>
-#include <delassus/loop/full_newton.hpp>
+#include <delassus/steppers/full_newton.hpp>
 
 #include "catch.hpp"
 #include "rod_scenes.hpp"

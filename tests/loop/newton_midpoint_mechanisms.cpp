@@ -1,6 +1,6 @@
 // The midpoint rule by Newton's method on mechanisms: a closed loop with a dependent row, and what all joints
 // keep.
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include "convergence_order.hpp"
 #include "loop/chains.hpp"

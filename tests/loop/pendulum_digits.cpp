@@ -1,6 +1,6 @@
 // Pendulums of points against the digits of their closed forms and references, by the classical Runge-Kutta
 // method.
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "loop/chains.hpp"
 #include "loop/smooth_scenes.hpp"

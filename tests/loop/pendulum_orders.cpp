@@ -1,6 +1,6 @@
 // AC-08 as a constraint, by the integrators that make one solve a step and by the midpoint rule: orders and
 // constants.
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include "convergence_order.hpp"
 #include "loop/smooth_scenes.hpp"

@@ -3,7 +3,7 @@
 
 #include <delassus/delassus.hpp>
 #include <delassus/io/checkpoint.hpp>
-#include <delassus/loop/reference_check.hpp>
+#include <delassus/problems/reference_check.hpp>
 
 #include "catch.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "catch.hpp"
 #include "rod_scenes.hpp"
+#include "stages.hpp"
 
 namespace rod_joints_tests {
 
@@ -57,12 +58,8 @@ TEST_CASE("W of a rod's joints is H A^-1 H^T of a dense A, and the corrective mo
   const Vec3 between = 0.5 * Vec3(rods.position(rods.node(rod, 5)) + rods.position(rods.node(rod, 6)));
   loop.add(BallJoint::Item{rods.anchor_at(rod, between), world_anchor(between)});
   for (int n = 0; n < 10; ++n) loop.step(0.01);
-  loop.begin(0.01);
-  loop.linearize();
-  loop.free_motion();
-  loop.find_islands();
-  loop.make_bias();
-  loop.build();
+  stage::begin(loop.data(), 0.01);
+  linearize_to_build(loop.data());
   const auto problem = loop.problem();
   const auto& pool = problem.rows.template pool<0>();
   const auto& set = std::get<0>(pool.sets);

@@ -1,10 +1,10 @@
 // Rods in contact, and their checkpoints.
-#include <delassus/bodies/find_rest.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
+#include <delassus/fem/find_rest.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/io/checkpoint.hpp>
 #include <delassus/loop/animation_loop.hpp>

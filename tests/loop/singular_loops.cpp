@@ -2,7 +2,7 @@
 #include "../../examples/ladders/plane_loop.hpp"
 
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
 
 #include <algorithm>
 #include <cmath>

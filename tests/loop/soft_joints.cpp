@@ -9,6 +9,7 @@
 
 #include "catch.hpp"
 #include "soft_scenes.hpp"
+#include "stages.hpp"
 
 namespace soft_joints_tests {
 
@@ -124,12 +125,8 @@ TEST_CASE("W of soft and rigid bodies is symmetric, positive, and H A^-1 H^T of 
   for (int n = 0; n < 20; ++n) s.loop.step(0.01);
   // A is that of a step's start: the stages up to W, then A⁻¹ column by column, a solve for every unit
   // impulse.
-  s.loop.begin(0.01);
-  s.loop.linearize();
-  s.loop.free_motion();
-  s.loop.find_islands();
-  s.loop.make_bias();
-  s.loop.build();
+  stage::begin(s.loop.data(), 0.01);
+  linearize_to_build(s.loop.data());
   const auto problem = s.loop.problem();
   const Index nodes = s.soft.blocks();
   const Dense W = dense(problem), H = dense_jacobian(problem, nodes);

@@ -1,11 +1,11 @@
 // Orders on a soft bar that swings far: elements that turn, and waves that a step resolves.
-#include <delassus/bodies/elasticity/st_venant_kirchhoff.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
+#include <delassus/fem/elasticity/st_venant_kirchhoff.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
-#include <delassus/loop/bdf2.hpp>
-#include <delassus/loop/full_newton.hpp>
-#include <delassus/loop/generalized_alpha.hpp>
-#include <delassus/loop/newmark.hpp>
+#include <delassus/steppers/bdf2.hpp>
+#include <delassus/steppers/full_newton.hpp>
+#include <delassus/steppers/generalized_alpha.hpp>
+#include <delassus/steppers/newmark.hpp>
 
 #include "convergence_order.hpp"
 #include "scenes.hpp"

@@ -1,10 +1,10 @@
 // Tetrahedra with nodes on their edges in a whole loop: contact of their surface, joints.
-#include <delassus/bodies/quadratic_tetrahedral_fem.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/with_surfaces.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/fem/quadratic_tetrahedral_fem.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/loop/animation_loop.hpp>
 

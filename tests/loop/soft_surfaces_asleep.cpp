@@ -1,11 +1,11 @@
 // The surface of a deformable body among bodies that sleep.
+#include <delassus/activity/sleeping.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/with_surfaces.hpp>
 #include <delassus/constraints/contact/frictionless.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/loop/animation_loop.hpp>
-#include <delassus/loop/sleeping.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 
 #include "catch.hpp"

@@ -1,8 +1,8 @@
 #include "catch.hpp"
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 namespace soft_ties_tests {

@@ -1,8 +1,8 @@
 // AC-12: Andrews' squeezing mechanism against its reference digits.
 #include "loop/squeezer.hpp"
 
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "convergence_order.hpp"
 

@@ -1,6 +1,6 @@
 // Rattle and Runge-Kutta without a constraint: discrete closed forms, stability edges, the Euler top.
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "catch.hpp"
 #include "convergence_order.hpp"

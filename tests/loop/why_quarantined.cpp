@@ -1,8 +1,8 @@
 #include "catch.hpp"
 
 #include <delassus/delassus.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/rattle.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+#include <delassus/steppers/rattle.hpp>
 
 #include <limits>
 

@@ -1,9 +1,9 @@
 #include "catch.hpp"
 
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/rods.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/rods.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 
 #include <limits>

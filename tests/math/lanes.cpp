@@ -1,6 +1,6 @@
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/inner/linear_tetrahedron.hpp>
-#include <delassus/bodies/inner/node_matrix.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/inner/linear_tetrahedron.hpp>
+#include <delassus/fem/inner/node_matrix.hpp>
 #include <delassus/math/lanes.hpp>
 
 #include "catch.hpp"

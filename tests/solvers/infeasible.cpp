@@ -1,5 +1,5 @@
 // Rows that contradict each other are told from rows that are hard to solve.
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 
 #include "scenes.hpp"

@@ -1,5 +1,5 @@
 // Where two contacts push against each other and move nothing, and yet cannot both stick.
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/inner/leap.hpp>
 #include <delassus/solvers/law_book.hpp>

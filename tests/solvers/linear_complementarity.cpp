@@ -3,8 +3,8 @@
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/frictionless.hpp>
-#include <delassus/loop/problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/problem.hpp>
 
 #include "catch.hpp"
 

@@ -1,5 +1,5 @@
 // Where many λ make one motion, which one is chosen.
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/minimum_norm.hpp>
 

@@ -1,5 +1,5 @@
 // The path of smoothed laws where there are no bodies: W alone.
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 
 #include "catch.hpp"
 #include "path_tests.hpp"

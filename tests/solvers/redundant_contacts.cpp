@@ -1,5 +1,5 @@
 // The same contact given k times: λ is no longer unique, the motion that it makes is.
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 
 #include "catch.hpp"

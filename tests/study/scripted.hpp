@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/core/clock.hpp>
-#include <delassus/loop/step_report.hpp>
+#include <delassus/step/step_report.hpp>
 #include <delassus/study/sweep.hpp>
 
 #include <cmath>

@@ -1,4 +1,5 @@
 /// Around detection: meshes, compounds, filters; who sleeps or is switched off; who listens.
+#include <delassus/activity/sleeping.hpp>
 #include <delassus/collision/with_compounds.hpp>
 #include <delassus/collision/with_filter.hpp>
 #include <delassus/collision/with_meshes.hpp>
@@ -7,7 +8,6 @@
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/listeners/convergence_record.hpp>
 #include <delassus/listeners/double_buffer.hpp>
-#include <delassus/loop/sleeping.hpp>
 
 #include <cstring>
 

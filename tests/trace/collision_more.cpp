@@ -1,6 +1,4 @@
 /// Around detection: surfaces of soft bodies, fast bodies, seams, another broad phase; restitution in sleep.
-#include <delassus/bodies/cloth.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
 #include <delassus/collision/continuous.hpp>
 #include <delassus/collision/seamless.hpp>
 #include <delassus/collision/sweep_and_prune.hpp>
@@ -8,6 +6,8 @@
 #include <delassus/collision/with_surfaces.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
+#include <delassus/fem/cloth.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 
 #include "scenes.hpp"

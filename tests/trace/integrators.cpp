@@ -5,12 +5,12 @@
 #include <delassus/constraints/joints/distance_joint.hpp>
 #include <delassus/constraints/joints/hinge.hpp>
 #include <delassus/integrators/lie_poisson.hpp>
-#include <delassus/loop/bdf2.hpp>
-#include <delassus/loop/generalized_alpha.hpp>
-#include <delassus/loop/newmark.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
+#include <delassus/steppers/bdf2.hpp>
+#include <delassus/steppers/generalized_alpha.hpp>
+#include <delassus/steppers/newmark.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "scenes.hpp"
 #include "trace.hpp"

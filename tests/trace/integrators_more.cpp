@@ -1,18 +1,18 @@
 /// Soft bodies and rods solved to the end of each step, mechanisms with hinges, and whole steps in parts.
 #include <delassus/bodies/anchor_at.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/rods.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
 #include <delassus/constraints/joints/coupling.hpp>
 #include <delassus/constraints/joints/hinge.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/rods.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
-#include <delassus/loop/bdf2.hpp>
-#include <delassus/loop/full_newton.hpp>
-#include <delassus/loop/newton_midpoint.hpp>
-#include <delassus/loop/rattle.hpp>
-#include <delassus/loop/runge_kutta4.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/substeps.hpp>
+#include <delassus/steppers/bdf2.hpp>
+#include <delassus/steppers/full_newton.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+#include <delassus/steppers/rattle.hpp>
+#include <delassus/steppers/runge_kutta4.hpp>
 
 #include "scenes.hpp"
 #include "trace.hpp"

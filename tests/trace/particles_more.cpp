@@ -5,7 +5,7 @@
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/joints/distance_joint.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
-#include <delassus/loop/predictive_scheme.hpp>
+#include <delassus/schemes/predictive_scheme.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 
 #include "scenes.hpp"

@@ -2,7 +2,7 @@
 /// solve.
 #pragma once
 
-#include <delassus/loop/problem.hpp>
+#include <delassus/solvers/problem.hpp>
 
 #include <cmath>
 #include <functional>

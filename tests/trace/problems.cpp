@@ -1,12 +1,12 @@
 /// Friction problems without a loop: towers, clusters, more contacts than a box needs, by each solver that
 /// takes a matrix.
 #include <delassus/core/clock.hpp>
-#include <delassus/loop/friction_problem.hpp>
-#include <delassus/loop/solve_until.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/minimum_norm.hpp>
 #include <delassus/solvers/path_newton.hpp>
+#include <delassus/solvers/solve_until.hpp>
 
 #include <array>
 #include <random>

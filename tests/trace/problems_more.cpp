@@ -2,7 +2,7 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/proximal_newton.hpp>

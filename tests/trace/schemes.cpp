@@ -3,10 +3,10 @@
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
-#include <delassus/loop/collisions_first.hpp>
-#include <delassus/loop/joint_by_joint.hpp>
-#include <delassus/loop/predictive_scheme.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/collisions_first.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
+#include <delassus/schemes/predictive_scheme.hpp>
+#include <delassus/schemes/substeps.hpp>
 
 #include "scenes.hpp"
 #include "trace.hpp"

@@ -9,8 +9,8 @@
 #include <delassus/constraints/joints/hinge.hpp>
 #include <delassus/constraints/joints/limit.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
-#include <delassus/loop/collisions_first.hpp>
-#include <delassus/loop/substeps.hpp>
+#include <delassus/schemes/collisions_first.hpp>
+#include <delassus/schemes/substeps.hpp>
 #include <delassus/stabilisation/position_projection.hpp>
 
 #include "scenes.hpp"

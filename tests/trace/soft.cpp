@@ -1,10 +1,10 @@
 /// A soft beam and a rod by implicit Euler, with contacts and joints on them.
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/rods.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/rods.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 

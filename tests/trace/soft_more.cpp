@@ -1,14 +1,14 @@
 /// Soft bodies with other builders of W, other elements, a sheet, and the midpoint rule.
-#include <delassus/bodies/cloth.hpp>
-#include <delassus/bodies/elasticity/corotational.hpp>
-#include <delassus/bodies/elasticity/stable_neo_hookean.hpp>
-#include <delassus/bodies/hexahedral_fem.hpp>
-#include <delassus/bodies/tetrahedral_fem.hpp>
 #include <delassus/compliance/lazy.hpp>
 #include <delassus/compliance/precomputed.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/fem/cloth.hpp>
+#include <delassus/fem/elasticity/corotational.hpp>
+#include <delassus/fem/elasticity/stable_neo_hookean.hpp>
+#include <delassus/fem/hexahedral_fem.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
 #include <delassus/geometry/box_mesh.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>

@@ -1,9 +1,9 @@
 /// What outlives a step of a loop, written down and put into another: all that knows the insides of a loop.
 #pragma once
 
+#include <delassus/activity/hand_picked.hpp>
+#include <delassus/activity/inner/dormant.hpp>
 #include <delassus/loop/animation_loop.hpp>
-#include <delassus/loop/dormant.hpp>
-#include <delassus/loop/hand_picked.hpp>
 
 #include <array>
 #include <cstddef>
@@ -258,6 +258,11 @@ class Memory {
   }
   template <class E>
   void part(Array<E>& list) {
+    text_.size(list);
+    for (E& e : list) part(e);
+  }
+  template <class E>
+  void part(std::vector<E>& list) {
     text_.size(list);
     for (E& e : list) part(e);
   }

@@ -2,7 +2,7 @@
 //   step_cost_visits <pendulum|pendulums> <visits> <steps>
 #include "library_pendulums.hpp"
 
-#include <delassus/loop/joint_by_joint.hpp>
+#include <delassus/schemes/joint_by_joint.hpp>
 
 #include <cstdlib>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include <delassus/adapters/hdf5_file.hpp>
 #include <delassus/core/expect.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 /// The box around everything a scene moves.
 #pragma once
 
-#include <delassus/geometry/support.hpp>
 #include <delassus/bodies/world.hpp>
+#include <delassus/geometry/support.hpp>
 #include <delassus/rows/alive.hpp>
 
 #include <Eigen/Geometry>

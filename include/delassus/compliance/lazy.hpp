@@ -1,6 +1,7 @@
 /// The Delassus operator of soft bodies by a factor that is kept while it serves.
 #pragma once
 
+#include <delassus/compliance/inner/refine.hpp>
 #include <delassus/compliance/inner/turned_operator.hpp>
 #include <delassus/core/expect.hpp>
 
@@ -16,6 +17,9 @@ namespace delassus {
 template <class S>
 struct BasicLazyCompliance {
   using plays = role::Compliance;
+  static constexpr bool refines = true;
+  template <class Base>
+  using stages = inner::RefinedStages<Base>;
   double violation = 1e-5;   ///< m, rad
   double tolerance = 1e-6;   ///< |p − A Δv| ≤ tolerance |p|
   int max_iterations = 8;    ///< of conjugate gradients; with 0 A is factored in every step

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/compliance/inner/compliance_file.hpp>
+#include <delassus/compliance/inner/refine.hpp>
 #include <delassus/compliance/inner/turned_operator.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
@@ -55,6 +56,9 @@ class FactorAtRest {
 template <class S>
 struct BasicPrecomputedCompliance {
   using plays = role::Compliance;
+  static constexpr bool refines = true;
+  template <class Base>
+  using stages = inner::RefinedStages<Base>;
   double violation = 1e-5;  ///< m, rad
   double tolerance = 1e-6;  ///< |p − A Δv| ≤ tolerance |p|
   int max_passes = 30;

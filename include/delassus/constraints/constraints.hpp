@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/pool.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/rows/row_system.hpp>
 
 #include <tuple>
 #include <type_traits>
@@ -77,5 +78,21 @@ class Constraints {
 
 template <class... Laws>
 Constraints(Laws...) -> Constraints<Laws...>;
+
+/// f(p, pool) for every pool of items that a host adds and that stay from step to step.
+void each_kept_pool(auto& laws, auto&& f) {
+  for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.slots; }) f(p, pool);
+  });
+}
+
+/// f(p, pool) for every pool of items that collision detection makes anew in each step.
+void each_contact_pool(auto& laws, auto&& f) {
+  for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) f(p, pool);
+  });
+}
 
 }  // namespace delassus

@@ -62,6 +62,32 @@ concept ConvexContact = requires(const L law, const typename L::Parameters p, Lo
   { law.convex_tangent(p, local, 0.0) } -> std::same_as<Mat<L::rows, L::rows>>;
 };
 
+/// What a law changes in a step, `using overrides = Overrides<NewtonImpact>;`: each overrides stages by name, as a policy
+/// does by its own `stages<Base>`, once however many laws name it.
+template <class...>
+struct Overrides {};
+
+struct NewtonImpact;
+
+namespace inner {
+
+template <class Override, class... O>
+consteval bool names_override(Overrides<O...>) {
+  return (std::is_same_v<Override, O> || ...);
+}
+
+template <class L>
+struct overrides_of {
+  using type = Overrides<>;
+};
+template <class L>
+  requires requires { typename L::overrides; }
+struct overrides_of<L> {
+  using type = typename L::overrides;
+};
+
+}  // namespace inner
+
 /// A law whose items are made by collision detection.
 template <class L>
 concept ContactLaw = requires { requires L::is_contact; };

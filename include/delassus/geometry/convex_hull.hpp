@@ -6,8 +6,8 @@
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
-#include <delassus/math/two_lanes.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/math/two_lanes.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,7 @@
 /// The implicit midpoint rule, one Newton step, constraints linearised at the guess q + h v/2.
 #pragma once
 
+#include <delassus/integrators/inner/midpoint_stages.hpp>
 #include <delassus/integrators/integrator.hpp>
 
 namespace delassus {
@@ -13,7 +14,11 @@ struct ImplicitMidpoint {
   using plays = role::Integrator;
   using each_block_alone = ImplicitMidpoint;
   static constexpr double theta = 0.5;
-  static constexpr bool linearises_at_midpoint = true;
+  template <class Base>
+  using stages = inner::MidpointStages<Base>;
+  template <class P>
+    requires(P::Laws::pool_count > 0)
+  using State = inner::MidpointState<P>;
 
   SystemScale scale(double h) const { return {.mass = 1, .damping = h / 2, .stiffness = h * h / 4}; }
   void impulse(const auto& set, auto& p, double h) const {

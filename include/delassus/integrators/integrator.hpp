@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/body_set.hpp>
+#include <delassus/step/theta.hpp>
 
 #include <concepts>
 #include <type_traits>
@@ -37,14 +38,6 @@ concept Integrator = Plays<I, role::Integrator> &&
 /// p ← h p: forces become impulses.
 void times(auto& p, double h) {
   for (auto& x : p) x *= typename std::remove_cvref_t<decltype(x)>::Scalar(h);
-}
-
-/// The share θ of the new velocity in the mean that moves q; bilateral rows hold for that mean. A static constant of
-/// the integrator: one that whoever makes the loop chooses is its own affair.
-template <class I>
-constexpr double theta() {
-  if constexpr (requires { std::bool_constant<(I::theta > 0)>{}; }) return I::theta;
-  else return 1;
 }
 
 }  // namespace delassus

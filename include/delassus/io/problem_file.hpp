@@ -3,7 +3,7 @@
 
 #include <delassus/io/inner/text.hpp>
 #include <delassus/io/inner/text_reader.hpp>
-#include <delassus/loop/friction_problem.hpp>
+#include <delassus/problems/friction_problem.hpp>
 
 #include <charconv>
 #include <limits>

@@ -5,8 +5,8 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/io/recording.hpp>
 #include <delassus/listeners/stopwatch.hpp>
-#include <delassus/loop/stage.hpp>
 #include <delassus/rows/alive.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <algorithm>
 #include <array>
@@ -44,8 +44,7 @@ class Recorder {
 
  private:
   void begin(const auto& loop) {
-    using Loop = std::remove_cvref_t<decltype(loop)>;
-    if constexpr (Loop::visits_joints) {
+    if constexpr (requires { loop.template part<role::Scheme>().tolerance; }) {
       recording_.steps.tolerance = loop.template part<role::Scheme>().tolerance;
     } else if constexpr (requires { loop.island_reports(); }) {  // else there is no solver to ask
       if constexpr (requires { loop.template part<role::Solver>().tolerance; })

@@ -3,9 +3,9 @@
 
 #include <delassus/core/index.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/loop/stage.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/measure.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/listeners/triple_buffer.hpp>
-#include <delassus/loop/channels.hpp>
-#include <delassus/loop/stage.hpp>
+#include <delassus/step/channels.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <algorithm>
 #include <atomic>

@@ -4,7 +4,7 @@
 #include <delassus/core/clock.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/loop/stage.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <algorithm>
 #include <chrono>

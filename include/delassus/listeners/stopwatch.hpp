@@ -3,7 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/loop/stage.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,24 +1,26 @@
 /// One mistake in a loop's argument list, one sentence.
 #pragma once
 
+#include <delassus/activity/all_active.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/collider.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/integrators/integrator.hpp>
-#include <delassus/loop/activity.hpp>
-#include <delassus/loop/channels.hpp>
 #include <delassus/loop/inner/step_checks.hpp>
-#include <delassus/loop/policies.hpp>
-#include <delassus/loop/scheme.hpp>
-#include <delassus/loop/stage.hpp>
-#include <delassus/loop/workspace.hpp>
+#include <delassus/loop/order_of_overrides.hpp>
+#include <delassus/loop/pick.hpp>
 #include <delassus/rows/body_set.hpp>
 #include <delassus/rows/writer.hpp>
+#include <delassus/schemes/plain_order.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/law_book.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
+#include <delassus/step/channels.hpp>
+#include <delassus/loop/held_policies.hpp>
+#include <delassus/step/row_types.hpp>
+#include <delassus/step/stage.hpp>
 
 #include <concepts>
 #include <span>
@@ -247,29 +249,19 @@ consteval bool scheme_runs() {
     { scheme.run(loop) } -> std::same_as<void>;
   };
   static_assert(runs,
-                "delassus: this type plays role::Scheme but lacks run(loop), which calls the stages of the loop in its "
+                "delassus: this type plays role::Scheme but lacks run(step), which calls the stages of a step in its "
                 "order and returns void; add it");
   return runs;
 }
 
-/// A listener that hears a stage between Begin and Step.
-template <class P>
-inline constexpr bool hears_within = false;
-template <class P>
-  requires requires { typename P::listens; }
-inline constexpr bool hears_within<P> = P::listens::within;
-
-/// A listener that wants to be told of every sweep of the solver.
-template <class P>
-inline constexpr bool observes_sweeps = requires { requires P::every_sweep; };
-
-template <class Listener, class Loop, class Stage>
-consteval bool hears() {
-  constexpr bool all = requires(Listener& l, const Loop& loop) { l.after(Stage{}, loop); };
-  static_assert(all,
-                "delassus: this listener declares a stage in `listens` for which it has no after(stage::X, loop); write "
-                "it, or take the stage out of the list");
-  return all;
+/// Every publisher is asked whether it can, and says what it lacks.
+template <class Parts, class... Policies>
+consteval bool publishers_are_sound() {
+  const auto one = []<class P>(std::type_identity<P>) {
+    if constexpr (Publisher<P>) return P::template can_publish<typename problem_of<Parts>::type>();
+    else return true;
+  };
+  return (one(std::type_identity<Policies>{}) && ...);
 }
 
 template <class Parts, class... Policies>
@@ -284,6 +276,8 @@ consteval bool loop_is_sound() {
   else if constexpr (!whole_step_fits<Parts, Policies...>()) return false;
   else if constexpr (!visits_fit<Parts, Policies...>()) return false;
   else if constexpr (!mean_springs_fit<Parts>()) return false;
+  else if constexpr (!refinement_fits<Parts>()) return false;
+  else if constexpr (!restitution_acts<typename Parts::Laws>()) return false;
   else if constexpr (!substeps_fit<typename Parts::Scheme, typename Parts::Activity>()) return false;
   else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;
   else return collision_fits<typename Parts::Laws, typename Parts::Collision>();

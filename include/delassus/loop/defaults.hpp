@@ -1,6 +1,7 @@
 /// One default per role: what a loop uses where its argument list is silent.
 #pragma once
 
+#include <delassus/activity/all_active.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/native.hpp>
@@ -8,22 +9,31 @@
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
-#include <delassus/loop/activity.hpp>
-#include <delassus/loop/policies.hpp>
-#include <delassus/loop/scheme.hpp>
+#include <delassus/loop/pick.hpp>
+#include <delassus/schemes/plain_order.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/stabilisation/baumgarte.hpp>
+#include <delassus/step/notify.hpp>
+#include <delassus/loop/held_policies.hpp>
 
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
-namespace delassus::inner {
+namespace delassus {
+namespace inner {
 
+/// Whether a scheme solves by rows and W: one that does not says `makes_problem = false`.
+template <class Scheme>
+inline constexpr bool makes_problem = !requires { requires !Scheme::makes_problem; };
+
+}  // namespace inner
+
+/// The types of a loop by role: what is named, or the default.
 template <class... Policies>
 struct Parts {
   template <class Role, class Default>
-  using the = typename pick<Role, Default, Policies...>::type;
+  using the = typename inner::pick<Role, Default, Policies...>::type;
 
   using World = the<role::World, delassus::World<RigidBodies>>;
   using Laws = the<role::Constraints, Constraints<>>;
@@ -34,7 +44,12 @@ struct Parts {
   using Stabilisation = the<role::Stabilisation, Baumgarte>;
   using Scheme = the<role::Scheme, PlainOrder>;
   using Activity = the<role::Activity, AllActive>;
+
+  static constexpr bool hears_within = (inner::hears_within<Policies> || ...);
+  static constexpr bool observes_sweeps = (inner::observes_sweeps<Policies> || ...);
 };
+
+namespace inner {
 
 /// The tuple of the defaults a loop really uses: nothing for a role that is named or not needed.
 template <class... Policies>
@@ -43,7 +58,7 @@ struct DefaultsFor {
   template <class Role, class Default, bool is_needed = true>
   using one = std::conditional_t<is_needed && count_of<Role, Policies...> == 0, std::tuple<Default>, std::tuple<>>;
   static constexpr bool constrained = P::Laws::pool_count > 0;
-  static constexpr bool has_W = constrained && !visits_joints<typename P::Scheme>;
+  static constexpr bool has_W = constrained && makes_problem<typename P::Scheme>;
 
   using type = decltype(std::tuple_cat(
       std::declval<one<role::World, typename P::World>>(), std::declval<one<role::Constraints, typename P::Laws>>(),
@@ -68,4 +83,5 @@ template <class P> struct part_type<P, role::Stabilisation> { using type = typen
 template <class P> struct part_type<P, role::Scheme> { using type = typename P::Scheme; };
 template <class P> struct part_type<P, role::Activity> { using type = typename P::Activity; };
 
-}  // namespace delassus::inner
+}  // namespace inner
+}  // namespace delassus

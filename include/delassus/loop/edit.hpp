@@ -6,9 +6,8 @@
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/body_set.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/step/drop_constraints.hpp>
 
-#include <array>
-#include <cstddef>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -50,62 +49,6 @@ void adopt(const World& world, Pool& pool) {
     each_end(item, [&](Anchor& end) {
       world.visit(end.set, [&](const auto& set, auto) { end.owner = set.owner(); });
     });
-}
-
-/// Takes out every constraint one of whose bodies is gone: a host may remove bodies through their set.
-template <class World, class Laws>
-void drop_stale(const World& world, Laws& laws) {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    auto& pool = laws.template pool<p>();
-    if constexpr (requires { pool.slots; })
-      for (Index i = 0; i < pool.count(); ++i) {
-        bool is_stale = false;
-        each_end(pool.item(i), [&](const Anchor& end) { is_stale = is_stale || !world.is_current(end); });
-        if (is_stale) pool.slots.give_back(pool.slots.active()[i--]);
-      }
-  });
-}
-
-/// The same, where bodies may have gone since the last call: `seen` is what the sets were then.
-template <class World, class Laws>
-void drop_stale(const World& world, Laws& laws, std::array<Census, std::size_t(World::set_count)>& seen) {
-  bool may_be_stale = false;
-  world.each([&](const auto& set, auto s) {
-    if constexpr (requires { set.census(); }) {
-      const Census now = set.census();
-      may_be_stale = may_be_stale || now != seen[s];
-      seen[s] = now;
-    } else {
-      may_be_stale = true;
-    }
-  });
-  if (may_be_stale) [[unlikely]]
-    drop_stale(world, laws);
-}
-
-/// After the solve: who broke. Its handle, its impulse and its rows stay until the next step begins.
-template <class Laws>
-void note_broken(Laws& laws, double h) {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    auto& pool = laws.template pool<p>();
-    if constexpr (requires { pool.broken.size(); })
-      for (const Index k : pool.slots.active())
-        if (pool.law.breaks(pool.items[k], pool.impulse[k], h))
-          pool.broken.push_back({k, pool.slots.generation(k), pool.owner});
-  });
-}
-
-/// Takes out what broke in the step before.
-template <class Laws>
-void drop_broken(Laws& laws) {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    auto& pool = laws.template pool<p>();
-    if constexpr (requires { pool.broken.size(); }) {
-      for (const auto& joint : pool.broken)
-        if (pool.slots.is_current(joint.index, joint.generation)) pool.slots.give_back(joint.index);
-      pool.broken.clear();
-    }
-  });
 }
 
 /// Takes a body out, with every constraint that holds it.

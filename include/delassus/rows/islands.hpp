@@ -133,4 +133,16 @@ class Islands {
   std::array<Array<Index>, pools> lowest_, items_, start_;
 };
 
+namespace inner {
+
+/// f(p, i) for every item of an island.
+template <int pools, class F>
+void each_item(const Islands<pools>& islands, Index island, F&& f) {
+  for_each_index<pools>([&](auto p) {
+    for (const Index i : islands.items(p, island)) f(p, i);
+  });
+}
+
+}  // namespace inner
+
 }  // namespace delassus

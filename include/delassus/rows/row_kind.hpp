@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace delassus {
@@ -23,4 +24,14 @@ constexpr std::array<RowKind, Law::rows> row_kinds() {
   }
 }
 
+namespace inner {
+
+template <std::size_t rows>
+constexpr bool are_equalities(const std::array<RowKind, rows>& kinds) {
+  for (const RowKind kind : kinds)
+    if (kind != RowKind::equality) return false;
+  return true;
+}
+
+}  // namespace inner
 }  // namespace delassus

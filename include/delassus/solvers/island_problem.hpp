@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/local.hpp>
-#include <delassus/solvers/impulses.hpp>
 #include <delassus/solvers/inner/share_of_measure.hpp>
 #include <delassus/solvers/measure.hpp>
 

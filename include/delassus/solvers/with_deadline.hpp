@@ -6,7 +6,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
-#include <delassus/solvers/impulses.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/solvers/inner/timed_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/stabilisation/inner/project_position.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <algorithm>
@@ -12,7 +13,11 @@ namespace delassus {
 /// the positions by h w, on the same W and with the friction rows locked at μ = 0.
 struct PositionProjection {
   using plays = role::Stabilisation;
-  static constexpr bool projects_position = true;
+  template <class Base>
+  using stages = inner::ProjectionStages<Base>;
+  template <class P>
+    requires(P::Laws::pool_count > 0)
+  using State = inner::ProjectionState<P>;
   double rate = 0.2;     ///< share of the violation per step, in (0, 1]
   double max_speed = 1;  ///< m/s, of overlaps; joints are closed at any speed
 

@@ -9,8 +9,7 @@ namespace delassus {
 
 /// equality(φ, h): the bias of a joint's row, m/s. penetration(φ, h), φ < 0: the bias of a contact that overlaps,
 /// ≤ 0. A policy that says softness(h) makes violated contact rows yield by that share of their own W_kk; one that
-/// says `projects_position` and has push(φ, h) of overlaps, φ < 0, and close(φ, h) of joints corrects positions after the
-/// step and leaves velocities alone.
+/// corrects positions and leaves velocities alone overrides Advance, see `PositionProjection`.
 template <class S>
 concept Stabilisation = Plays<S, role::Stabilisation> && requires(const S policy, double phi, double h) {
   { policy.equality(phi, h) } -> std::same_as<double>;

@@ -25,7 +25,11 @@ template <class S = inner::Absent>
 struct WithCompliance {
   using plays = role::Stabilisation;
   static constexpr unsigned layers = inner::layers_of<S> | inner::layer::compliance;
-  static constexpr bool projects_position = requires { requires S::projects_position; };
+  // Of a stabilisation that overrides stages, see `PositionProjection`.
+  template <class Base, class Inside = S>
+  using stages = typename Inside::template stages<Base>;
+  template <class P, class Inside = S>
+  using State = typename Inside::template State<P>;
   S stabilisation{};
   double least = 0;  ///< C, m/N
 

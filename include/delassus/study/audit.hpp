@@ -4,10 +4,10 @@
 #include <delassus/bodies/bounds.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/loop/stage.hpp>
 #include <delassus/rows/alive.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/solve_report.hpp>
+#include <delassus/step/stage.hpp>
 #include <delassus/study/audit_report.hpp>
 #include <delassus/study/code_of.hpp>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <delassus/bodies/invariants.hpp>
-#include <delassus/loop/step_report.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/step/step_report.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -46,6 +46,7 @@ struct Contact {
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
   static constexpr bool is_contact = true;
+  using overrides = typename inner::overrides_of<Law>::type;
 
   Law law{};
 
@@ -126,6 +127,11 @@ struct Contact {
     requires requires { local().is_sliding(item.parameters, lambda); }
   {
     return local().is_sliding(item.parameters, lambda);
+  }
+  /// Friction and restitution of a pair of materials, as far as the law has them.
+  void set_pair(typename Law::Parameters& parameters, const auto& pair) const {
+    if constexpr (requires { local().set_friction(parameters, 0.0); }) local().set_friction(parameters, pair.friction);
+    if constexpr (requires { law.set_restitution(parameters, 0.0); }) law.set_restitution(parameters, pair.restitution);
   }
   /// e of this contact, where the law has one.
   double restitution(const Item& item) const

@@ -2,18 +2,20 @@
 #pragma once
 
 #include <delassus/constraints/law.hpp>
+#include <delassus/constraints/newton_impact.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/wrapping.hpp>
 
 namespace delassus {
 
-/// u_n⁺ ≥ −e u_n⁻ for a contact that closes within the step, u_n⁻ at its start. The stabilisation reads `restitution`
-/// and makes the bias; an energy guard per island keeps the impulses from adding energy (`guard_energy`).
+/// u_n⁺ ≥ −e u_n⁻ for a contact that closes within the step, u_n⁻ at its start. `NewtonImpact` makes the
+/// bias, and keeps the impulses of each island from adding energy (`guard_energy`).
 template <class Law = inner::Absent>
 struct Restitution {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
+  using overrides = Overrides<NewtonImpact>;
 
   Law law{};
   double restitution = 0;  ///< e in [0, 1], where neither the pair nor the materials say otherwise

@@ -1,7 +1,9 @@
 /// Restitution whose impacts go from contact to contact, as in Newton's cradle.
 #pragma once
 
+#include <delassus/constraints/contact/sequential_impacts.hpp>
 #include <delassus/constraints/law.hpp>
+#include <delassus/constraints/newton_impact.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/wrapping.hpp>
 
@@ -19,7 +21,7 @@ struct SequentialRestitution {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
-  static constexpr bool passes_impacts_on = true;
+  using overrides = Overrides<SequentialImpacts, NewtonImpact>;
 
   Law law{};
   double restitution = 0;  ///< e in [0, 1], where neither the pair nor the materials say otherwise

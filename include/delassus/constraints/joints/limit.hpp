@@ -2,6 +2,8 @@
 #pragma once
 
 #include <delassus/constraints/joints/coordinate.hpp>
+#include <delassus/constraints/law.hpp>
+#include <delassus/constraints/newton_impact.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 
@@ -25,6 +27,7 @@ template <class Coordinate = inner::Absent>
 struct Limit : OnAxis<Coordinate> {
   static constexpr int rows = 2;
   static constexpr std::array<RowKind, 2> kinds{RowKind::lower, RowKind::upper};
+  using overrides = Overrides<NewtonImpact>;
 
   struct Item {
     Anchor a, b;

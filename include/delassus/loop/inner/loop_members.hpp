@@ -7,29 +7,24 @@
 namespace delassus {
 
 template <class... Policies>
-AnimationLoop<Policies...>::AnimationLoop(Policies... policies)
-    : policies_{std::move(policies)...}, work_{laws()}, channels_{policies_} {
-  if constexpr (sound) check_policies();
+AnimationLoop<Policies...>::AnimationLoop(Policies... policies) : Data(typename Data::Parts::Held(std::move(policies)...)) {
+  if constexpr (is_sound) check_policies();
 }
 
 template <class... Policies>
 void AnimationLoop<Policies...>::memory(auto& archive) {
-  archive(world(), h_, last_h_, start_, steps_);
-  if constexpr (requires { work_.whole_step.memory(archive); }) work_.whole_step.memory(archive);
-  if constexpr (requires { work_.parts.memory(archive); }) work_.parts.memory(archive);
-  for_each_index<Laws::pool_count>([&](auto p) {
-    auto& pool = laws().template pool<p>();
-    if constexpr (requires { pool.slots; }) {
-      archive(pool);
-      if constexpr (std::remove_reference_t<decltype(archive)>::reads) inner::adopt(world(), pool);
-    }
+  archive(world(), this->h, this->last_h, this->start, this->steps);
+  this->states.template memory<false>(archive);
+  each_kept_pool(laws(), [&](auto, auto& pool) {
+    archive(pool);
+    if constexpr (std::remove_reference_t<decltype(archive)>::reads) inner::adopt(world(), pool);
   });
   if constexpr (has_constraints) {
-    archive(work_.contacts, work_.materials);
-    if constexpr (Work::has_dormant) archive(work_.activity);
-    if constexpr (requires { work_.solver.memory(archive); }) work_.solver.memory(archive);
+    archive(this->contact_book, this->material_pairs);
+    this->states.template memory<true>(archive);  // it names constraints
+    if constexpr (requires { this->solver_workspace.memory(archive); }) this->solver_workspace.memory(archive);
     if constexpr (Laws::has_contacts) {
-      auto& collision = part<role::Collision>();
+      auto& collision = Data::collision();
       if constexpr (requires { collision.memory(archive); }) collision.memory(archive);
       else if constexpr (requires { collision.engine.memory(archive); }) collision.engine.memory(archive);
     }
@@ -42,21 +37,18 @@ void AnimationLoop<Policies...>::check_policies() const {
   const auto check = [](const auto& part) {
     if constexpr (requires { part.check(); }) part.check();
   };
-  std::apply([&](const auto&... part) { (check(part), ...); }, policies_);
-  std::apply([&](const auto&... part) { (check(part), ...); }, defaults_);
+  this->policies.each_with_defaults(check);
   for_each_index<Laws::pool_count>([&](auto p) { check(laws().template pool<p>().law); });
 }
 
 template <class... Policies>
 StepReport AnimationLoop<Policies...>::step(double h) {
-  if constexpr (sound)
-    if constexpr (inner::scheme_runs<typename Parts::Scheme, AnimationLoop>()) {
+  if constexpr (is_sound)
+    if constexpr (inner::scheme_runs<typename Data::Parts::Scheme, Data>()) {
       check_policies();  // their numbers may have been edited since
-      begin(h);
-      part<role::Scheme>().run(*this);
-      tell<stage::Step>();
+      take_step(data(), h);
     }
-  return report_;
+  return report();
 }
 
 template <class... Policies>

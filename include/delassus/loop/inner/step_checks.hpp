@@ -1,17 +1,21 @@
 /// Whether the parts of a loop agree on how a step is made: at once, in parts, or stage by stage.
 #pragma once
 
+#include <delassus/activity/all_active.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/joints/bilateral.hpp>
-#include <delassus/loop/activity.hpp>
-#include <delassus/loop/channels.hpp>
-#include <delassus/loop/policies.hpp>
-#include <delassus/loop/scheme.hpp>
-#include <delassus/loop/stages/bias.hpp>
-#include <delassus/loop/stages/move_freely.hpp>
-#include <delassus/loop/workspace.hpp>
+#include <delassus/constraints/law.hpp>
+#include <delassus/loop/defaults.hpp>
+#include <delassus/loop/order_of_overrides.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/schemes/plain_order.hpp>
+#include <delassus/step/bias.hpp>
+#include <delassus/step/channels.hpp>
+#include <delassus/step/move_freely.hpp>
+#include <delassus/step/plain_step.hpp>
+#include <delassus/loop/held_policies.hpp>
+#include <delassus/step/theta.hpp>
 
 #include <type_traits>
 
@@ -33,7 +37,7 @@ inline constexpr bool takes_whole_steps = requires { requires Scheme::takes_whol
 template <class Parts, class... Policies>
 consteval bool whole_step_fits() {
   using I = typename Parts::Integrator;
-  if constexpr (!solves_whole_step<I, (Parts::Laws::pool_count > 0)>) {
+  if constexpr (!MovesAtOnce<I>) {
     return true;
   } else {
     constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
@@ -62,7 +66,7 @@ consteval bool whole_step_fits() {
 /// A step in parts has one detection: who sleeps or wakes between them would be missing in it.
 template <class Scheme, class Activity>
 consteval bool substeps_fit() {
-  constexpr bool fit = !(requires { requires Scheme::divides_step; } && has_dormant<Activity>);
+  constexpr bool fit = !(requires { requires Scheme::divides_step; } && OverridesStages<Activity>);
   static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
   return fit;
 }
@@ -70,7 +74,7 @@ consteval bool substeps_fit() {
 /// Joint by joint there is neither W nor a problem, and every body answers alone.
 template <class Parts, class... Policies>
 consteval bool visits_fit() {
-  if constexpr (!visits_joints<typename Parts::Scheme> || Parts::Laws::pool_count == 0) {
+  if constexpr (makes_problem<typename Parts::Scheme> || Parts::Laws::pool_count == 0) {
     return true;
   } else {
     using I = typename Parts::Integrator;
@@ -91,7 +95,7 @@ consteval bool visits_fit() {
     constexpr bool is_plain =
         count_of<role::Solver, Policies...> == 0 && count_of<role::Compliance, Policies...> == 0 &&
         std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...) &&
-        !(requires { requires Parts::Stabilisation::projects_position; });
+        !OverridesStages<typename Parts::Stabilisation>;
     if constexpr (are_joints && answer_alone)
       static_assert(is_plain,
                     "delassus: JointByJoint solves without W and without a solver; take out the solver, the compliance, "
@@ -111,6 +115,35 @@ consteval bool mean_springs_fit() {
   static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, "
                      "and gaps of each step, which Substeps has not; use ImplicitMidpoint and no Substeps, or leave AtMean{} out");
   return fit;
+}
+
+/// Solves that are repeated until W is near enough know nothing of what the impulses did before, or of bounces.
+template <class Parts>
+consteval bool refinement_fits() {
+  constexpr bool is_refined = requires { requires Parts::Compliance::refines; };
+  constexpr bool fit = !is_refined || Parts::Laws::pool_count == 0 ||
+                       !(OverridesStages<typename Parts::Scheme> || names_override<NewtonImpact>(typename order_of_overrides<Parts>::type{}));
+  static_assert(fit,
+                "delassus: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with "
+                "restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance");
+  return fit;
+}
+
+/// A law whose items bounce names what makes them bounce.
+template <class Law>
+consteval bool restitution_acts_of() {
+  constexpr bool bounces = requires(const Law& law, const typename Law::Item& item) { law.restitution(item); };
+  constexpr bool acts = !bounces || names_override<NewtonImpact>(typename overrides_of<Law>::type{});
+  static_assert(acts,
+                "delassus: a law with restitution(item) names what makes it bounce; add `using overrides = "
+                "Overrides<NewtonImpact>;` and include delassus/constraints/newton_impact.hpp");
+  return acts;
+}
+template <class Laws>
+consteval bool restitution_acts() {
+  return []<class... L>(const Constraints<L...>*) {
+    return (restitution_acts_of<L>() && ...);
+  }(static_cast<const Laws*>(nullptr));
 }
 
 }  // namespace delassus::inner

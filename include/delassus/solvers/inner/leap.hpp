@@ -3,7 +3,7 @@
 
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
-#include <delassus/solvers/impulses.hpp>
+#include <delassus/rows/impulses.hpp>
 
 #include <cmath>
 #include <tuple>

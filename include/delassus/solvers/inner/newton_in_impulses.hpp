@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/core/roles.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/criteria.hpp>
-#include <delassus/solvers/impulses.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>

@@ -1,8 +1,8 @@
 /// Newton's method in the velocities of the bodies, as a stage in a chain of sweeps.
 #pragma once
 
+#include <delassus/rows/impulses.hpp>
 #include <delassus/rows/row_system.hpp>
-#include <delassus/solvers/impulses.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
 #include <delassus/solvers/inner/proximal_point.hpp>
 

@@ -1,8 +1,8 @@
 /// Sweeps on a dense W, and Newton's method where contacts jam.
 #pragma once
 
+#include <delassus/rows/impulses.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/impulses.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
 #include <delassus/solvers/inner/newton_in_impulses.hpp>
 #include <delassus/solvers/solve_report.hpp>

@@ -1,0 +1,13 @@
+/// Which islands take part in a step.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+
+namespace delassus {
+
+/// All of them, always: no list, no test.
+struct AllActive {
+  using plays = role::Activity;
+};
+
+}  // namespace delassus

@@ -1,0 +1,105 @@
+/// A part of the world that the host switches off and on.
+#pragma once
+
+#include <delassus/activity/inner/dormant.hpp>
+#include <delassus/activity/inner/dormant_stages.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
+#include <delassus/step/contact_book.hpp>
+
+#include <algorithm>
+#include <span>
+
+namespace delassus {
+
+template <class World, class Laws>
+class SwitchedOff;
+
+/// `loop.switch_off(body)` takes a body out of the steps, `loop.switch_on(body)` puts it back with the velocity it had. Off, it
+/// stays where it is, costs nothing, and is an immovable obstacle to those who are on; constraints all of whose ends are
+/// off or fixed have no rows.
+struct HandPicked {
+  using plays = role::Activity;
+  static constexpr bool switches_bodies = true;
+
+  template <class Base>
+  using stages = inner::DormantStages<Base>;
+  template <class P>
+    requires(P::Laws::pool_count > 0)
+  using State = SwitchedOff<typename P::World, typename P::Laws>;
+};
+
+/// Who is off, and how fast it was.
+template <class World, class Laws>
+class SwitchedOff {
+ public:
+  const Dormant<World, Laws>& dormant() const { return dormant_; }
+
+  void wake_all(World& world, Laws& laws) {
+    while (!dormant_.bodies().empty()) wake(world, laws, dormant_.bodies().back().set, dormant_.bodies().back().block);
+  }
+
+  /// Switches one body on.
+  void wake(World& world, Laws& laws, Index set, Index block) {
+    const Index group = dormant_.group_of(set, block);
+    if (group < 0) return;
+    dormant_.wake(world, laws, [&](Index g) { return g == group; });
+    world.each([&](auto& bodies, auto s) {
+      if (s != set || !bodies.is_alive(block)) return;
+      using Velocity = typename std::remove_reference_t<decltype(bodies)>::Velocity;
+      bodies.hold(block, false);
+      bodies.velocity()[block] = velocity_[group].template head<Velocity::RowsAtCompileTime>().template cast<typename Velocity::Scalar>();
+    });
+  }
+
+  /// Switches one body off; nothing for one that is off or does not move by itself.
+  template <class Set>
+  void lull(World& world, Laws& laws, Set& set, Index s, Index block) {
+    if (dormant_.group_of(s, block) >= 0 || !set.moves(block)) return;
+    const Index group = dormant_.new_group();
+    velocity_.resize(group + 1);
+    velocity_[group].setZero();
+    velocity_[group].template head<Set::width>() = set.velocity()[block].template cast<double>();
+    dormant_.add(set, s, block, group);
+    set.hold(block, true);
+    for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, group); });
+  }
+
+  // --- what the stages call ----------------------------------------------------------------------------------------
+
+  void begin(World& world, Laws& laws, double) {
+    // A body taken out while it was off leaves the list.
+    for (std::size_t k = 0; k < dormant_.bodies().size();) {
+      const auto body = dormant_.bodies()[k];
+      bool is_there = false;
+      world.each([&](const auto& set, auto s) {
+        if (s == body.set) is_there = Dormant<World, Laws>::is_same(set, body);
+      });
+      if (is_there) ++k;
+      else dormant_.wake(world, laws, [&](Index g) { return g == body.group; });
+    }
+  }
+  bool add_obstacles(const World& world, ContactBook& book) const {
+    for (const auto& body : dormant_.bodies())
+      world.each([&](const auto& set, auto s) {
+        if (s == body.set && set.has_collider(body.block)) book.add(set, s, body.block, false);
+      });
+    return true;
+  }
+  bool wake_touched(World&, Laws&, const ContactBook&, double) const { return false; }
+  void drop_points(ContactBook&) const {}
+  template <class Rows, int pools>
+  void watch(const HandPicked&, World&, const Rows&, const Islands<pools>&, std::span<const SolveReport>, double) const {}
+  template <int pools>
+  void settle(const HandPicked&, World&, Laws&, const Islands<pools>&) const {}
+
+  void memory(auto& archive) { archive(dormant_, velocity_); }
+
+ private:
+  Dormant<World, Laws> dormant_;
+  Array<Vec<6>> velocity_;  ///< by group: m/s, rad/s
+};
+
+}  // namespace delassus

@@ -1,0 +1,290 @@
+/// Islands at rest sleep, and wake when something touches them.
+#pragma once
+
+#include <delassus/activity/inner/dormant.hpp>
+#include <delassus/activity/inner/dormant_stages.hpp>
+#include <delassus/activity/inner/supports.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/core/bits.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/roles.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
+#include <delassus/step/contact_book.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
+
+namespace delassus {
+
+template <class World, class Laws>
+class Sleepers;
+
+/// An island falls asleep when for `after` seconds on end each of its bodies was slower than `speed` and `angular_speed`
+/// and was not in free fall, its solve met the tolerance, and no moving kinematic body touched it. Asleep it has no rows, no
+/// pairs and no velocity, and its contacts are not listed; its joints keep their last impulse. It wakes
+///
+///   when an awake body touches it or will within the step, in time for that step;
+///   when the host gives one of its bodies a force, a velocity or another place, or changes the gravity;
+///   when a body it lies on or near, fixed or kinematic, is moved, added or taken out;
+///   when one of its own bodies or joints is taken out, or gets a new joint.
+///
+/// An edit of a law's own numbers or of materials wakes nobody: call `loop.wake_all()`.
+struct Sleeping {
+  using plays = role::Activity;
+  double speed = 5e-3;          ///< m/s
+  double angular_speed = 5e-3;  ///< rad/s
+  double after = 0.5;           ///< s
+
+  template <class Base>
+  using stages = inner::DormantStages<Base>;
+  template <class P>
+    requires(P::Laws::pool_count > 0)
+  using State = Sleepers<typename P::World, typename P::Laws>;
+
+  void check() const {
+    DELASSUS_EXPECT(speed >= 0 && std::isfinite(speed), "Sleeping: speed " + inner::text(speed) + " m/s must be finite and >= 0");
+    DELASSUS_EXPECT(angular_speed >= 0 && std::isfinite(angular_speed),
+                    "Sleeping: angular_speed " + inner::text(angular_speed) + " rad/s must be finite and >= 0");
+    DELASSUS_EXPECT(after > 0 && std::isfinite(after), "Sleeping: after " + inner::text(after) + " s must be finite and > 0");
+  }
+};
+
+/// Who sleeps, and since when the others are quiet.
+template <class World, class Laws>
+class Sleepers {
+  using Supports = inner::Supports<World, Laws>;
+
+ public:
+  const Dormant<World, Laws>& dormant() const { return dormant_; }
+
+  void wake_all(World& world, Laws& laws) {
+    dormant_.wake(world, laws, [](Index) { return true; });
+  }
+  void wake(World& world, Laws& laws, Index set, Index block) {
+    const Index group = dormant_.group_of(set, block);
+    if (group >= 0) dormant_.wake(world, laws, [&](Index g) { return g == group; });
+  }
+
+  // --- what the stages call ----------------------------------------------------------------------------------------
+
+  /// Begin: whatever is not as it was when its group fell asleep wakes that group.
+  void begin(World& world, Laws& laws, double h) {
+    called_.assign(std::size_t(called_.size()), 0);
+    called_any_ = false;
+    supports_.look_at_gravity(world, [&](Index set) {
+      for (const auto& body : dormant_.bodies())
+        if (body.set == set) call(body.group);
+    });
+    supports_.look(world, h, [&](const Aabb& near) {
+      for (const auto& body : dormant_.bodies())
+        if (is_empty(near) || is_empty(body.box) || !is_apart(near, body.box)) call(body.group);
+    });
+    if (dormant_.bodies().empty()) return;
+    for (const auto& body : dormant_.bodies())
+      world.each([&](const auto& set, auto s) {
+        if (s == body.set && (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body))) call(body.group);
+      });
+    look_at_items(laws);
+    answer(world, laws);
+  }
+
+  /// Detect: sleepers near an awake body are obstacles. False when nobody who can move is awake.
+  bool add_obstacles(const World& world, ContactBook& book) {
+    Aabb near;
+    for (const Collider& c : book.colliders) {
+      if (!c.is_movable || c.shape.kind == ShapeKind::half_space) continue;
+      const Aabb box = tight_box(c.shape, c.pose);
+      const double reach = 0.5 * box.sizes().maxCoeff();
+      near.extend(Aabb(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach)));
+    }
+    if (is_empty(near)) return false;
+    for (const auto& body : dormant_.bodies())
+      if (!is_empty(body.box) && !is_apart(body.box, near))
+        world.each([&](const auto& set, auto s) {
+          if (s == body.set) book.add(set, s, body.block, false);
+        });
+    return true;
+  }
+
+  /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
+  bool wake_touched(World& world, Laws& laws, const ContactBook& book, double h) {
+    const double fall = h * h * strongest_gravity(world);
+    for (const ContactPoint& p : book.points) {
+      const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
+      const Index group = std::max(group_of(a), group_of(b));
+      if (group < 0) continue;
+      const Vec3 va = a.velocity + a.angular_velocity.cross(p.point_a - a.pose.position);
+      const Vec3 vb = b.velocity + b.angular_velocity.cross(p.point_b - b.pose.position);
+      if (p.gap + h * (vb - va).dot(p.normal) <= fall) call(group);
+    }
+    return answer(world, laws);
+  }
+
+  /// Contact points of sleepers that are not reached make no rows.
+  void drop_points(ContactBook& book) const {
+    std::erase_if(book.points, [&](const ContactPoint& p) {
+      return group_of(book.colliders[p.a]) >= 0 || group_of(book.colliders[p.b]) >= 0;
+    });
+  }
+
+  /// Correct: how long each awake body has been quiet, and the least of each island.
+  template <class Rows, int pools>
+  void watch(const Sleeping& limits, World& world, const Rows& rows, const Islands<pools>& islands,
+             std::span<const SolveReport> reports, double h) {
+    island_quiet_.assign(islands.count(), std::numeric_limits<double>::infinity());
+    for (Index k = 0; k < islands.count(); ++k)
+      if (worse(reports[k].status, Status::stalled) != Status::stalled) island_quiet_[k] = 0;
+    Index first = 0;
+    world.each([&](auto& set, auto s) {
+      auto& quiet = quiet_[s];
+      quiet.resize(set.blocks(), 0);
+      const double gravity = Supports::gravity_of(set).norm();
+      bool may_sleep = true;
+      if constexpr (requires { set.may_sleep(); }) may_sleep = set.may_sleep();
+      for (const Index b : set.active()) {
+        if (!set.moves(b)) continue;
+        // Nearly all of gravity must be held; without gravity, what acts must need longer than `after` to reach `speed`.
+        const double most = h * (gravity > 0 ? 0.1 * gravity : limits.speed / limits.after);
+        const bool is_quiet = may_sleep && is_slow(set, b, limits) &&
+                              (set.v_next[b] - set.velocity()[b]).template head<3>().template cast<double>().norm() <= most;
+        quiet[b] = is_quiet ? quiet[b] + h : 0;
+        const Index island = islands.island_of(first + b);
+        if (island >= 0) island_quiet_[island] = std::min(island_quiet_[island], quiet[b]);
+      }
+      first += set.blocks();
+    });
+    keep_awake_where_driven(world, rows, islands);
+  }
+
+  /// Advance: islands that were quiet long enough fall asleep, and so do single bodies that nothing pulls.
+  template <int pools>
+  void settle(const Sleeping& limits, World& world, Laws& laws, const Islands<pools>& islands) {
+    Array<Index>& group = island_group_;
+    group.assign(islands.count(), -1);
+    Index first = 0;
+    bool any = false;
+    world.each([&](auto& set, auto s) {
+      falling_asleep_.clear();
+      for (const Index b : set.active()) {
+        if (!set.moves(b)) continue;
+        const Index k = islands.island_of(first + b);
+        if ((k >= 0 ? island_quiet_[k] : quiet_[s][b]) >= limits.after) falling_asleep_.push_back(b);
+      }
+      for (const Index b : falling_asleep_) {
+        const Index k = islands.island_of(first + b);
+        Index g = k >= 0 ? group[k] : -1;
+        if (g < 0) g = dormant_.new_group();
+        if (k >= 0) group[k] = g;
+        dormant_.add(set, s, b, g);
+        quiet_[s][b] = 0;
+        any = true;
+      }
+      first += set.blocks();
+    });
+    if (!any) return;
+    for (const Index g : group)
+      if (g >= 0)
+        for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, g); });
+  }
+
+  void memory(auto& archive) { archive(dormant_, quiet_, supports_); }
+
+ private:
+  Index group_of(const Collider& c) const {
+    return dormant_.group_of(Index(c.key >> 28), Index(c.key & ((1u << 28) - 1)));
+  }
+
+  void call(Index group) {
+    if (group < 0) return;
+    if (Index(called_.size()) <= group) called_.resize(group + 1, 0);
+    called_[group] = 1;
+    called_any_ = true;
+  }
+  bool answer(World& world, Laws& laws) {
+    if (!called_any_) return false;
+    dormant_.wake(world, laws, [&](Index g) { return g < Index(called_.size()) && called_[g] != 0; });
+    std::fill(called_.begin(), called_.end(), 0);
+    called_any_ = false;
+    return true;
+  }
+
+  template <class Set, class Body>
+  static bool is_stirred(const Set& set, const Body& body) {
+    const Pose now = set.pose(body.block);
+    return !is_null(set.velocity()[body.block]) || !is_null(set.load(body.block)) ||
+           !is_equal(now.position, body.pose.position) || !is_equal(now.rotation, body.pose.rotation);
+  }
+  /// Whether all bits are the same, or all but those of signs zero; without a branch for each number there are vectors
+  /// of them.
+  template <class M>
+  static bool is_equal(const M& a, const M& b) {
+    Bits<M> apart = 0;
+    for (int k = 0; k < int(M::SizeAtCompileTime); ++k)
+      apart |= inner::bits_as<Bits<M>>(a.data()[k]) ^ inner::bits_as<Bits<M>>(b.data()[k]);
+    return apart == 0;
+  }
+  template <class M>
+  static bool is_null(const M& a) {
+    Bits<M> set = 0;
+    for (int k = 0; k < int(M::SizeAtCompileTime); ++k) set |= inner::bits_as<Bits<M>>(a.data()[k]);
+    return Bits<M>(set << 1) == 0;
+  }
+  template <class M>
+  using Bits = std::conditional_t<sizeof(typename M::Scalar) == 8, std::uint64_t, std::uint32_t>;
+
+  static double strongest_gravity(const World& world) {
+    double most = 0;
+    world.each([&](const auto& set, auto) { most = std::max(most, Supports::gravity_of(set).norm()); });
+    return most;
+  }
+
+  void look_at_items(const Laws& laws) {
+    for (const auto& item : dormant_.items())
+      each_kept_pool(laws, [&](auto p, const auto& pool) {
+        if (item.pool == p && !pool.slots.is_current(item.place, item.generation)) call(item.group);
+      });
+    each_kept_pool(laws, [&](auto, const auto& pool) {
+      for (Index i = 0; i < pool.count(); ++i)
+        each_end(pool.item(i), [&](const Anchor& end) { call(dormant_.group_of(end.set, end.block)); });
+    });
+  }
+
+  template <class Set>
+  static bool is_slow(const Set& set, Index b, const Sleeping& limits) {
+    const auto v = set.v_next[b].template cast<double>().eval();
+    bool is_slow = v.template head<3>().norm() <= limits.speed;
+    if constexpr (Set::width == 6) is_slow = is_slow && v.template tail<3>().norm() <= limits.angular_speed;
+    return is_slow;
+  }
+
+  /// An island that a moving kinematic body touches stays awake.
+  template <class Rows, int pools>
+  void keep_awake_where_driven(const World& world, const Rows& rows, const Islands<pools>& islands) {
+    for (Index k = 0; k < islands.count(); ++k)
+      for_each_index<pools>([&](auto p) {
+        const auto& pool = rows.template pool<p>();
+        for (const Index i : islands.items(p, k))
+          world.each([&](const auto& set, auto s) {
+            const auto& blocks = std::get<s>(pool.sets);
+            for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+              if (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]])) island_quiet_[k] = 0;
+          });
+      });
+  }
+
+  Dormant<World, Laws> dormant_;
+  std::array<Array<double>, World::set_count> quiet_;  ///< s
+  Supports supports_;
+  Array<double> island_quiet_;
+  Array<Index> island_group_, falling_asleep_;
+  Array<char> called_;
+  bool called_any_ = false;
+};
+
+}  // namespace delassus

@@ -1,0 +1,68 @@
+/// Refine: what an inexact W missed of the motion goes into d, and the rows are solved again.
+#pragma once
+
+#include <delassus/compliance/add_impulses.hpp>
+#include <delassus/core/status.hpp>
+#include <delassus/rows/rate.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace delassus {
+
+/// An operator that is no more than near W, and knows when it is near enough.
+template <class W>
+concept RefinedOperator = requires(W op, double miss) {
+  { op.goes_on(miss) } -> std::same_as<bool>;
+};
+
+/// With Δv = A⁻¹ Hᵀ λ: d ← d₀ + H Δv − W̃ λ. True when that changed d by more than the operator allows, so
+/// that λ is to be found again.
+template <class Step>
+bool refine(Step& step) {
+  auto& world = step.world();
+  auto& rows = step.rows;
+  auto& W = step.W;
+  using Rows = typename Step::Rows;
+  using T = typename Rows::Scalar;
+  world.each([&](auto& set, auto s) {
+    for (auto& v : set.v_next) v.setZero();
+    add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(step.scratch));
+  });
+  if (W.renew(world, rows)) step.book.prepare(W, rows, step.h);
+  double miss = 0;
+  for_each_index<Rows::pool_count>([&](auto p) {
+    auto& pool = rows.template pool<p>();
+    auto& missed = W.template missed<p>();
+    for (Index i = 0; i < pool.items(); ++i) {
+      const auto whole = inner::rate(
+          pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
+      const auto change = (whole - inner::response<p>(W, rows, i) - missed[i]).eval();
+      missed[i] += change;
+      pool.d[i] += change;
+      const T size = change.cwiseAbs().maxCoeff();
+      if (!(double(size) <= miss)) miss = double(size);  // and what is not a number
+    }
+  });
+  return W.goes_on(step.h * miss);
+}
+
+namespace inner {
+
+/// What an operator that is no more than near W changes: its solves are repeated until they are near enough.
+template <class Base>
+struct RefinedStages : Base {
+  static void free_motion(auto& step) {
+    step.W.begin(step.compliance());
+    Base::free_motion(step);
+  }
+  static void solve_islands(auto& step, auto& observer) {
+    do Base::solve_islands(step, observer);
+    while (refine(step));
+    step.compliance().report = step.W.report();
+    if (!step.W.is_settled()) step.summary.status = worse(step.summary.status, Status::max_iterations);
+  }
+};
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,151 @@
+/// Impacts that go from contact to contact before the step: for `SequentialRestitution`.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/contact.hpp>
+#include <delassus/constraints/newton_impact.hpp>
+#include <delassus/math/twist.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/rate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+namespace delassus {
+
+struct SequentialImpacts;
+
+namespace inner {
+
+/// Contacts of this law are hit one after the other.
+template <class L>
+inline constexpr bool hits_in_turn = []<class... O>(Overrides<O...>) {
+  return (std::is_same_v<O, SequentialImpacts> || ...);
+}(typename overrides_of<L>::type{});
+
+/// One contact, hit by itself: its own W from the masses, u⁺ = −e u⁻ by the law it has.
+template <int p, class World, class Laws, class Rows>
+class ImpactRows {
+ public:
+  using T = typename Rows::Scalar;
+  static constexpr int R = Rows::template rows_of<p>;
+
+  ImpactRows(World& world, const Laws& laws, Rows& rows, Index i)
+      : world_(world), laws_(laws), rows_(rows), i_(i) {}
+
+  Vec<R, T> velocity() const {
+    return rate(
+        rows_.template pool<p>(), i_, world_, [](const auto& set) -> const auto& { return set.velocity(); });
+  }
+  /// v ← v + M⁻¹ Hᵀ λ; returns λ.
+  Vec<R, T> hit(const Vec<R, T>& u) {
+    const auto& pool = laws_.template pool<p>();
+    const auto& item = pool.item(i_);
+    using Law = std::remove_cvref_t<decltype(pool.law)>;
+    Local<R, T> c;
+    c.W.setZero();
+    c.lambda.setZero();
+    c.d = u;
+    c.d[0] += T(restitution_of(pool.law, item)) * u[0];
+    each([&](const auto& set, Index b, const auto& H) { c.W.noalias() += H * answer(set, b, H); });
+    typename Law::template Memory<T> memory{};
+    pool.law.prepare(c.W, memory);
+    pool.law.project(item, c, memory);
+    each([&](auto& set, Index b, const auto& H) {
+      set.velocity()[b].noalias() += answer(set, b, H) * c.lambda;
+    });
+    return c.lambda;
+  }
+
+ private:
+  template <class F>
+  void each(F&& f) {
+    world_.each([&](auto& set, auto s) {
+      const auto& blocks = std::get<s>(rows_.template pool<p>().sets);
+      for (Index e = blocks.offset[i_]; e < blocks.offset[i_ + 1]; ++e)
+        if (set.moves(blocks.block[e])) f(set, blocks.block[e], blocks.H[e]);
+    });
+  }
+  template <class Set, class H>
+  static auto answer(const Set& set, Index b, const H& h) {
+    if constexpr (requires { set.template solve_mass<R>(b, h.transpose()); })
+      return set.template solve_mass<R>(b, h.transpose());
+    else
+      return set.template solve_block<R>(b, h.transpose());
+  }
+
+  World& world_;
+  const Laws& laws_;
+  Rows& rows_;
+  Index i_;
+};
+
+}  // namespace inner
+
+/// Contacts that close within the step, of laws that pass impacts on, are hit one after the other until none
+/// closes. v is changed at the start of the step; `impulses` gets what each contact got, N·s in the world.
+template <class World, class Laws, class Rows>
+void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec3>& impulses,
+                     std::size_t contacts, double h) {
+  impulses.assign(contacts, Vec3::Zero());
+  double fastest = 0;  // what closes below its rounding does not: a stack at rest has no impacts
+  world.each([&](auto& set, auto) {
+    set.factor({.mass = 1});
+    if constexpr (requires { set.gravity; }) fastest = std::max(fastest, h * set.gravity.norm());
+    for (const Index b : set.active())
+      fastest = std::max(fastest, double(linear_part(set.velocity()[b]).norm()));
+  });
+  const auto round = [&] {
+    bool any = false;
+    for_each_index<Laws::pool_count>([&](auto p) {
+      const auto& pool = laws.template pool<p>();
+      using Law = std::remove_cvref_t<decltype(pool.law)>;
+      if constexpr (inner::hits_in_turn<Law>)
+        for (Index i = 0; i < pool.count(); ++i) {
+          if (!(inner::restitution_of(pool.law, pool.item(i)) > 0)) continue;
+          inner::ImpactRows<p, World, Laws, Rows> impact(world, laws, rows, i);
+          const auto u = impact.velocity();
+          const double closing = -double(u[0]), gap = double(rows.template pool<p>().phi[i][0]);
+          if (!(closing > 1e-12 * fastest) || !(gap < h * closing)) continue;
+          const auto lambda = impact.hit(u);
+          constexpr int R = Rows::template rows_of<p>;
+          impulses[std::size_t(pool.item(i).result)] += inner::world_impulse<R>(pool.item(i).frame, lambda);
+          any = true;
+        }
+    });
+    return any;
+  };
+  int most = 0;
+  for_each_index<Laws::pool_count>([&](auto p) {
+    if constexpr (inner::hits_in_turn<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>)
+      most = std::max(most, laws.template pool<p>().law.law.most_rounds);
+  });
+  for (int k = 0; k < most && round(); ++k) {
+  }
+}
+
+/// What `SequentialRestitution` changes: impacts come before the free motion, and their impulses into the list of contacts.
+struct SequentialImpacts {
+  template <class P>
+  struct State {
+    std::vector<Vec3> impulses;  ///< of the contacts, N·s
+  };
+
+  template <class Base>
+  struct stages : Base {
+    static void free_motion(auto& step) {
+      pass_on_impacts(step.world(), step.laws(), step.rows, step.template state<SequentialImpacts>().impulses,
+                      step.contact_book.results.size(), step.h);
+      Base::free_motion(step);
+    }
+    static void keep_impulses(auto& step) {
+      Base::keep_impulses(step);  // impacts are no start for the next step
+      const auto& impulses = step.template state<SequentialImpacts>().impulses;
+      for (std::size_t i = 0; i < impulses.size(); ++i) step.contact_book.results[i].impulse += impulses[i];
+    }
+  };
+};
+
+}  // namespace delassus

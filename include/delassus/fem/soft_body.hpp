@@ -1,0 +1,73 @@
+/// What a user says of a new deformable body, and the checks that refuse what cannot be one.
+#pragma once
+
+#include <delassus/fem/elasticity/material.hpp>
+#include <delassus/geometry/tetrahedral_mesh.hpp>
+#include <delassus/math/fits.hpp>
+#include <delassus/math/rotation.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace delassus {
+
+/// A deformable body as it is added: a mesh at rest, put in its place. SI units.
+///
+/// `contact_radius` > 0 (m) makes every node of the surface a sphere for collision; at 0 nothing collides.
+/// Nodes are in a group of their own and leave it out, so that the spheres of one body do not meet each
+/// other.
+template <ElasticMaterial M, class Mesh = TetrahedralMesh>
+struct SoftBody {
+  Mesh mesh{};
+  M elasticity{};
+  double density = 1000;  ///< kg/m³
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  double contact_radius = 0;
+  Index material = 0;
+  std::uint32_t group = 2;
+  std::uint32_t collides_with = ~2u;
+};
+
+namespace inner {
+
+template <class T, ElasticMaterial M, class Mesh>
+void check_soft_body(const SoftBody<M, Mesh>& body, const std::string& who) {
+  check_mesh(body.mesh, who);
+  check_material(body.elasticity, who);
+  DELASSUS_EXPECT(std::isfinite(body.density) && body.density > 0,
+                  who + ": density " + text(body.density) + " kg/m³ must be finite and > 0");
+  DELASSUS_EXPECT(is_finite(body.position) && is_finite(body.velocity),
+                  who + ": position or velocity is not finite");
+  DELASSUS_EXPECT(fits<T>(body.velocity), who + ": velocity " + beyond<T>(body.velocity, "m/s"));
+  DELASSUS_EXPECT(std::abs(body.orientation.coeffs().norm() - 1) < 1e-6,
+                  who + ": orientation is not a unit quaternion");
+  DELASSUS_EXPECT(std::isfinite(body.contact_radius) && body.contact_radius >= 0,
+                  who + ": contact_radius " + text(body.contact_radius) + " m must be finite and >= 0");
+  DELASSUS_EXPECT(body.contact_radius == 0 || (body.group & body.collides_with) == 0,
+                  who + ": its nodes would collide with each other; leave its group out of collides_with");
+  for (Index e = 0; e < Index(body.mesh.cells().size()); ++e) {
+    const double mass = body.density * volume(body.mesh, e);
+    DELASSUS_EXPECT(has_inverse<T>(mass), who + ": the mass of " + Mesh::cell + " #" + std::to_string(e) +
+                                              ", " + without_inverse<T>(text(mass), "kg"));
+  }
+}
+
+template <class Mesh>
+double least_volume(const Mesh& mesh, Index e) {
+  return volume(mesh, e);
+}
+
+/// Refuses a sound mesh whose elements have no volume left where it was put.
+template <class Mesh>
+void check_placed(const Mesh& mesh, const Vec3& position, const std::string& who) {
+  for (Index e = 0; e < Index(mesh.cells().size()); ++e)
+    DELASSUS_EXPECT(least_volume(mesh, e) > 0, who + ": at " + text(position) + " m rounding leaves " +
+                                                   Mesh::cell + " #" + std::to_string(e) +
+                                                   " no volume; put the body nearer to the origin");
+}
+
+}  // namespace inner
+}  // namespace delassus

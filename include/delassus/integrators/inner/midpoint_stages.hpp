@@ -1,0 +1,148 @@
+/// What the midpoint rule changes in a step: rows of the mid-configuration, and joints whose velocity fades.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/rows/impulses.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/rows/rate.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/row_system.hpp>
+#include <delassus/step/linearize.hpp>
+#include <delassus/step/theta.hpp>
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace delassus {
+namespace inner {
+
+/// H v of item i where a step starts; zero where it holds a body that is led, whose v is the mean of the step to come.
+template <int R, class T, int... w, class World>
+Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& world) {
+  bool is_led = false;
+  world.each([&](const auto& set, auto s) {
+    const auto& blocks = std::get<s>(pool.sets);
+    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+      is_led = is_led || (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]]));
+  });
+  if (is_led) return Vec<R, T>::Zero();
+  return rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
+}
+
+/// A tenth of u, H v at the start, less where the rows of the middle have s, H v too, that is smaller: min(1, s²/u²) of it.
+/// Rows that depend on each other in the middle, and not at the start, could follow the rest of u by enormous impulses alone.
+template <class V>
+V fading(const V& u, const V& s) {
+  using T = typename V::Scalar;
+  const T at_start = u.squaredNorm(), in_middle = s.squaredNorm();
+  return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
+}
+
+}  // namespace inner
+
+/// H at the guess q ⊕ h v/2 of the mid-configuration, φ and λ where the step starts. Contacts keep the rows of the start:
+/// their points are those of the start, and a point that stays while its body moves would turn the body. `rows` has the
+/// rows of the start and leaves those of all others in `at_start`.
+template <class World, class Laws, class Rows>
+void linearize_at_midpoint(World& world, const Laws& laws, Rows& rows, Rows& at_start, double h) {
+  std::swap(rows, at_start);
+  world.each([&](auto& set, auto) { set.shift(h / 2); });
+  linearize(std::as_const(world), laws, rows);
+  world.each([&](auto& set, auto) { set.restore(); });
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto &middle = rows.template pool<p>(), &start = at_start.template pool<p>();
+    if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) {
+      std::swap(middle, start);
+    } else {
+      std::swap(middle.phi, start.phi);
+      std::swap(middle.lambda, start.lambda);
+    }
+  });
+}
+
+/// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there without a tenth
+/// of what it has across the joints at the start (`inner::fading`), which is of order h² and for which only the rows of
+/// the start will do: d ← d − `fade`. Where that gives energy it is withheld, see `withhold_fade`.
+template <class World, class Laws, class Rows>
+void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& at_start, double theta, Impulses<Rows>& fade) {
+  using T = typename Rows::Scalar;
+  fade.resize_like(rows);
+  for_each_index<Laws::pool_count>([&](auto p) {
+    using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
+    constexpr auto kinds = row_kinds<Law>();
+    auto& pool = rows.template pool<p>();
+    for (Index i = 0; i < pool.items(); ++i) {
+      auto& own = std::get<p>(fade.pools)[i];
+      own.setZero();
+      if constexpr (ContactLaw<Law>) continue;
+      const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
+      const auto fades = inner::fading(inner::rate_at_start(at_start.template pool<p>(), i, world), u);
+      for (int k = 0; k < Law::rows; ++k) {
+        if (kinds[k] != RowKind::equality || pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) continue;
+        own[k] = T((1 - theta) / theta) * fades[k];
+        pool.d[i][k] -= own[k];
+      }
+    }
+  });
+}
+
+/// Joints of the midpoint rule hold H (v + v_next) = f, f what fades across them, and so do the work
+/// E = ½ Σ λ·f. A fade is there to take energy. Where bodies turn at ω and α on arms of r, f = h² α ω r/10 and
+/// W λ = h (ω² + α) r, so that E of either sign,
+///
+///   E/(½ λ·W λ) = h α ω/(ω² + α)/10 ≤ h √α/20,
+///
+/// is below a hundredth while h √α < 0.2. It is above where rows of the middle depend on each other: where they
+/// see across a chain drawn straight the other way round than those of the start, f makes grow what it should
+/// take. There f is put back into d, and the joints do no work. True: the island has to be solved again.
+template <class Rows, class Operator, int pools>
+bool withhold_fade(Rows& rows, const Operator& W, const Islands<pools>& islands, Index island,
+                   Impulses<Rows>& fade) {
+  double work = 0, effort = 0;
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    work += 0.5 * double(rows.template pool<p>().lambda[i].dot(std::get<p>(fade.pools)[i]));
+  });
+  if (!(work > 0)) return false;
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    const auto& pool = rows.template pool<p>();
+    effort += 0.5 * double(pool.lambda[i].dot(W.template residual<p>(rows, i) - pool.d[i]));
+  });
+  if (!(work > 0.01 * effort)) return false;
+  inner::each_item(islands, island, [&](auto p, Index i) {
+    rows.template pool<p>().d[i] += std::get<p>(fade.pools)[i];
+    std::get<p>(fade.pools)[i].setZero();
+  });
+  return true;
+}
+
+namespace inner {
+
+template <class P>
+struct MidpointState {
+  typename P::Rows at_start;       ///< the rows of the start, where the step has others
+  Impulses<typename P::Rows> fade;  ///< what fades of the velocity across the joints
+};
+
+template <class Base>
+struct MidpointStages : Base {
+  static void linearize(auto& step) {
+    Base::linearize(step);
+    linearize_at_midpoint(step.world(), step.laws(), step.rows, own(step).at_start, step.h);
+  }
+  static void make_bias(auto& step) {
+    Base::make_bias(step);
+    using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
+    fade_joints(std::as_const(step).world(), step.laws(), step.rows, own(step).at_start, theta<Integrator>(), own(step).fade);
+  }
+  static void solve_island(auto& step, Index island, auto& observer) {
+    Base::solve_island(step, island, observer);
+    if (withhold_fade(step.rows, step.W, step.islands, island, own(step).fade)) Base::solve_island(step, island, observer);
+  }
+
+ private:
+  static auto& own(auto& step) { return step.template state<role::Integrator>(); }
+};
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,73 @@
+/// The policies of a loop, those that its arguments leave out included.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace delassus::inner {
+
+template <class Role, class... Policies>
+inline constexpr int count_of = (0 + ... + int(Plays<Policies, Role>));
+
+/// Whether the tuple has an element of this type.
+template <class P, class Tuple>
+inline constexpr bool holds_type = false;
+template <class P, class... Parts>
+inline constexpr bool holds_type<P, std::tuple<Parts...>> = (std::is_same_v<P, Parts> || ...);
+
+/// In place of a part that is not there: the sentence has been said.
+template <class P>
+P& no_part();
+
+/// The arguments of a loop, and in `Defaults`, a tuple, what they leave out.
+template <class Defaults, class... Policies>
+class HeldPolicies {
+ public:
+  explicit HeldPolicies(Policies... policies) : given_{std::move(policies)...} {}
+
+  template <class P>
+  static constexpr bool has = (std::is_same_v<P, Policies> || ...);
+
+  /// The one of this role, whose type is `Part`.
+  template <class Role, class Part, class Self>
+  static auto& part(Self& self) {
+    if constexpr (count_of<Role, Policies...> > 0) {
+      return std::get<Part>(self.given_);
+    } else {
+      constexpr bool is_default = holds_type<Part, Defaults>;
+      static_assert(is_default,
+                    "delassus: this AnimationLoop has no part of this role: without constraints, and under JointByJoint, there is no "
+                    "solver and no compliance; do not ask for it, or take another scheme");
+      if constexpr (is_default) return std::get<Part>(self.defaults_);
+      else return no_part<Part>();
+    }
+  }
+  /// The one of this type among the arguments.
+  template <class P, class Self>
+  static auto& get(Self& self) {
+    static_assert(has<P>,
+                  "delassus: this AnimationLoop has no part of this type; name it among the arguments, or ask for the part "
+                  "of a role, loop.part<role::Solver>(), which finds the defaults too");
+    if constexpr (has<P>) return std::get<P>(self.given_);
+    else return no_part<P>();
+  }
+  /// f(policy) for every argument, in their order.
+  template <class F>
+  void each(F&& f) {
+    std::apply([&](auto&... policy) { (f(policy), ...); }, given_);
+  }
+  void each_with_defaults(auto&& f) const {
+    std::apply([&](const auto&... policy) { (f(policy), ...); }, given_);
+    std::apply([&](const auto&... policy) { (f(policy), ...); }, defaults_);
+  }
+  const std::tuple<Policies...>& given() const { return given_; }
+
+ private:
+  std::tuple<Policies...> given_;
+  [[no_unique_address]] Defaults defaults_{};
+};
+
+}  // namespace delassus::inner

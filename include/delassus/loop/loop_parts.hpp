@@ -1,0 +1,60 @@
+/// The types of a loop: its parts by role, and what they make of the step.
+#pragma once
+
+#include <delassus/loop/checks.hpp>
+#include <delassus/loop/defaults.hpp>
+#include <delassus/loop/order_of_overrides.hpp>
+#include <delassus/step/channels.hpp>
+#include <delassus/step/plain_step.hpp>
+#include <delassus/loop/held_policies.hpp>
+#include <delassus/step/row_types.hpp>
+
+#include <tuple>
+#include <type_traits>
+
+namespace delassus {
+
+/// Parts that fit together.
+template <class... Policies>
+struct SoundParts : Parts<Policies...> {
+  using Base = Parts<Policies...>;
+  template <class Role>
+  using of = typename inner::part_type<Base, Role>::type;
+  using Scratch = typename inner::widths_of<typename Base::World>::Scratch;
+  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Policies...>::type, Policies...>;
+  using Rows = typename inner::rows_of<typename Base::World, typename Base::Laws>::type;
+  using Operator = typename Base::Compliance::template Operator<Rows>;
+  using Stages = typename inner::stages_of<Base>::type;
+  using States = typename inner::states_of<SoundParts, Base>::type;
+  static constexpr bool has_rows = Base::Laws::pool_count > 0;
+  static constexpr bool has_problem = has_rows && inner::makes_problem<typename Base::Scheme> && !MovesAtOnce<typename Base::Integrator>;
+  using Channels = typename inner::channels_of<typename inner::problem_of<Base>::type, Policies...>::type;
+};
+
+/// Parts that do not: the sentence has been said, and the loop never steps.
+template <class... Policies>
+struct UnsoundParts : Parts<Policies...> {
+  using Base = Parts<Policies...>;
+  template <class Role>
+  using of = typename inner::part_type<Base, Role>::type;
+  using Scratch = std::tuple<>;
+  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Policies...>::type, Policies...>;
+  using Rows = void;
+  using Operator = void;
+  using Stages = StagesWithoutConstraints;
+  using States = inner::States<UnsoundParts>;
+  static constexpr bool has_rows = false, has_problem = false;
+  using Channels = inner::Channels<void>;
+};
+
+namespace inner {
+
+template <class... Policies>
+struct loop_parts {
+  static constexpr bool are_sound = loop_is_sound<Parts<Policies...>, Policies...>();
+  using type = typename std::conditional_t<are_sound, std::type_identity<SoundParts<Policies...>>,
+                                  std::type_identity<UnsoundParts<Policies...>>>::type;
+};
+
+}  // namespace inner
+}  // namespace delassus

@@ -1,0 +1,85 @@
+/// Predict: the impulses of the last step act before the solve, which then finds what is to be changed.
+#pragma once
+
+#include <delassus/compliance/add_impulses.hpp>
+#include <delassus/rows/impulses.hpp>
+#include <delassus/rows/rate.hpp>
+
+#include <tuple>
+
+namespace delassus {
+
+/// With λ₀ the warm start, p = A⁻¹ Hᵀ λ₀ and W̃ what the builder made of W:
+///
+///   v_free ← v_free + p,   d ← d + H p − W̃ λ₀,
+///
+/// so that the solve of d + W̃ λ finds the total λ, and W̃ has a say in the change λ − λ₀ only. `predicted` takes λ₀.
+template <class World, class Rows, class Operator, class Scratch, class Kept>
+void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& predicted) {
+  W.reset(rows);
+  predicted.resize_like(rows);
+  for_each_index<Rows::pool_count>([&](auto p) {
+    for (Index i = 0; i < rows.template pool<p>().items(); ++i)
+      std::get<p>(predicted.pools)[i] = inner::response<p>(W, rows, i);
+  });
+  world.each([&](auto& set, auto s) {
+    for (auto& v : set.v_next) v.setZero();
+    add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
+    for (std::size_t b = 0; b < set.v_free.size(); ++b) set.v_free[b] += set.v_next[b];
+  });
+  for_each_index<Rows::pool_count>([&](auto p) {
+    auto& pool = rows.template pool<p>();
+    for (Index i = 0; i < pool.items(); ++i) {
+      auto& response = std::get<p>(predicted.pools)[i];
+      pool.d[i] += inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; }) - response;
+      response = pool.lambda[i];
+    }
+  });
+}
+
+/// λ ← λ − λ₀ for the corrective motion; `predicted` keeps the total.
+template <class Rows, class Kept>
+void take_change(Rows& rows, Kept& predicted) {
+  for_each_index<Rows::pool_count>([&](auto p) {
+    auto& lambda = rows.template pool<p>().lambda;
+    auto& kept = std::get<p>(predicted.pools);
+    for (std::size_t i = 0; i < lambda.size(); ++i) {
+      const auto change = (lambda[i] - kept[i]).eval();
+      kept[i] = lambda[i];
+      lambda[i] = change;
+    }
+  });
+}
+
+/// λ ← the total again.
+template <class Rows, class Kept>
+void give_back_total(Rows& rows, const Kept& predicted) {
+  for_each_index<Rows::pool_count>(
+      [&](auto p) { rows.template pool<p>().lambda = std::get<p>(predicted.pools); });
+}
+
+namespace inner {
+
+template <class P>
+struct PredictedState {
+  Impulses<typename P::Rows> predicted;
+};
+
+template <class Base>
+struct PredictiveStages : Base {
+  static void solve(auto& step) {
+    predict(step.world(), step.rows, step.W, step.scratch, predicted(step));
+    Base::solve(step);
+  }
+  static void correct(auto& step) {
+    take_change(step.rows, predicted(step));
+    Base::correct(step);
+    give_back_total(step.rows, predicted(step));
+  }
+
+ private:
+  static auto& predicted(auto& step) { return step.template state<role::Scheme>().predicted; }
+};
+
+}  // namespace inner
+}  // namespace delassus

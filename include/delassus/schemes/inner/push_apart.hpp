@@ -1,0 +1,78 @@
+/// Penalty contacts as forces of the free motion.
+#pragma once
+
+#include <delassus/rows/row_system.hpp>
+#include <delassus/step/detect.hpp>
+
+#include <cmath>
+
+namespace delassus {
+namespace inner {
+
+/// f(set, block, J) for the blocks behind a contact point, J = frame · (velocity of the point) as a rows × w matrix.
+template <int rows, class World, class F>
+void each_block_at(World& world, const Anchor& anchor, const Vec3& point, const Mat3& frame, F&& f) {
+  world.each([&](auto& set, auto s) {
+    if (s != anchor.set) return;
+    for (int k = 0; k < set.anchor_blocks(anchor); ++k) {
+      using Set = std::remove_reference_t<decltype(set)>;
+      Mat<rows, Set::width> J;
+      for (int r = 0; r < rows; ++r)
+        J.row(r) = set.along(anchor, k, point, frame.row(r).transpose()).template cast<double>().transpose();
+      f(set, set.anchor_block(anchor, k), J);
+    }
+  });
+}
+
+}  // namespace inner
+
+/// Every contact of a `Penalty` law gives its bodies ±f for this step and leaves the pool: it has no row. The impulse h f
+/// stands in the list of contacts.
+template <class World, class Laws>
+void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
+  for_each_index<Laws::pool_count>([&](auto p) {
+    auto& pool = laws.template pool<p>();
+    if constexpr (requires { pool.law.law.stiffness; pool.items.clear(); }) {
+      constexpr int rows = std::remove_cvref_t<decltype(pool.law)>::rows;
+      constexpr bool is_force = rows == 1 || (rows == 3 && requires { pool.items[0].parameters.friction; });
+      static_assert(is_force,
+                    "delassus: CollisionsFirst makes a Penalty contact a force with the friction of Coulomb, or with none; take "
+                    "Coulomb in place of RollingCoulomb or Pyramid, or the default scheme");
+      if constexpr (is_force) for (const auto& item : pool.items) {
+        const Vec3 point = item.record.point();
+        Vec<rows> u = Vec<rows>::Zero();
+        for (const double side : {-1.0, 1.0})
+          inner::each_block_at<rows>(world, side < 0 ? item.record.a : item.record.b, point, item.frame,
+                                     [&](auto& set, Index b, const auto& J) {
+                                       u += side * J * set.velocity()[b].template cast<double>();
+                                     });
+        // w = t · J A⁻¹ Jᵀ t along the slip t.
+        Vec<rows> t = u;
+        t[0] = 0;
+        const double slip = t.norm();
+        double w = 0;
+        if (slip > 0)
+          for (const Anchor* end : {&item.record.a, &item.record.b})
+            inner::each_block_at<rows>(world, *end, point, item.frame, [&](auto& set, Index b, const auto& J) {
+              using T = typename std::remove_reference_t<decltype(set)>::Scalar;
+              const auto along = (J.transpose() * (t / slip)).eval();
+              if (set.moves(b)) w += along.dot(set.template solve_block<1>(b, along.template cast<T>()).template cast<double>());
+            });
+        const Vec<rows> f = pool.law.law.force(item.parameters, item.record.gap, u, w, h);
+        const Vec3 force = item.frame.template topRows<rows>().transpose() * f;
+        for (const double side : {-1.0, 1.0})
+          inner::each_block_at<rows>(world, side < 0 ? item.record.a : item.record.b, point, item.frame,
+                                     [&](auto& set, Index b, const auto& J) {
+                                       if (!set.moves(b)) return;
+                                       if constexpr (requires { set.apply_force(set.handle(b), force, point); })
+                                         set.apply_force(set.handle(b), side * force, point);
+                                       else set.apply_force(set.handle(b), side * Vec3(J.transpose() * f));
+                                     });
+        book.results[item.result].impulse = h * force;
+      }
+      pool.items.clear();
+    }
+  });
+}
+
+}  // namespace delassus

@@ -1,0 +1,20 @@
+/// The order of the stages.
+#pragma once
+
+#include <delassus/core/roles.hpp>
+#include <delassus/step/plain_step.hpp>
+
+namespace delassus {
+
+/// Detect, linearise, move freely, and solve: the plain order. A scheme calls the stages of a step in its own order.
+struct PlainOrder {
+  using plays = role::Scheme;
+  static constexpr bool takes_whole_steps = true;
+
+  void run(auto& step) const {
+    stage::detect(step);
+    stage::move(step);
+  }
+};
+
+}  // namespace delassus

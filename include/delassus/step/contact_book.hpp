@@ -1,0 +1,117 @@
+/// The contacts of a loop: what collision detection found, and the impulses.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/summary.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/math/twist.hpp>
+#include <delassus/rows/anchor.hpp>
+#include <delassus/rows/contact_record.hpp>
+#include <delassus/step/contact_memory.hpp>
+
+#include <span>
+#include <vector>
+
+namespace delassus {
+
+/// A contact as a host reads it after the step: `impulse` (N·s, world) is what body B received from A.
+struct ContactResult {
+  ContactRecord record;
+  Vec3 impulse = Vec3::Zero();
+  bool starts_cold = false;  ///< the impulse is no start for the next step
+  bool is_sliding = false;   ///< the friction impulse is as large as the cone allows
+};
+
+/// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.
+class ContactBook {
+ public:
+  std::vector<Collider> colliders;
+  std::vector<ContactPoint> points;
+  Array<ContactResult> results;  ///< in the order of `points`: by pair, then by feature
+
+  /// One collider for every body with a shape.
+  template <class World>
+  void gather(const World& world) {
+    colliders.clear();
+    anchors_.clear();
+    materials_.clear();
+    world.each([&](const auto& set, auto s) {
+      for (const Index b : set.active())
+        if (set.has_collider(b)) add(set, s, b, collider_moves(set, b));
+    });
+  }
+
+  /// Body b of set s as a collider; one that is not movable meets only those that are.
+  template <class Set>
+  void add(const Set& set, Index s, Index b, bool is_movable) {
+    Collider c;
+    c.shape = set.shape(b);
+    c.pose = set.pose(b);
+    const auto& v = set.velocity()[b];
+    c.velocity = linear_part(v).template cast<double>();
+    if constexpr (Set::width == 6) c.angular_velocity = angular_part(v).template cast<double>();
+    else c.angular_velocity.setZero();
+    c.is_movable = is_movable;
+    c.group = set.group(b);
+    c.collides_with = set.collides_with(b);
+    c.key = collider_key(s, b);
+    colliders.push_back(c);
+    anchors_.push_back({.set = s, .block = b});
+    materials_.push_back(set.material(b));
+  }
+
+  /// Turns points into records.
+  void record() {
+    results.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const ContactPoint& p = points[i];
+      results[i].impulse.setZero();
+      results[i].starts_cold = false;
+      results[i].record = {.a = anchors_[p.a],
+                           .b = anchors_[p.b],
+                           .point_a = p.point_a,
+                           .point_b = p.point_b,
+                           .normal = p.normal,
+                           .gap = p.gap,
+                           .pair = p.pair,
+                           .feature = p.feature,
+                           .material_a = materials_[p.a],
+                           .material_b = materials_[p.b]};
+    }
+  }
+
+  /// The impulse that result `i` had last step, by the id of its contact, or the nearest unclaimed one of its pair within
+  /// what both can have moved in a step of h (s) and 2e-2 of the smaller one's size. Zero when there is none.
+  Vec3 remembered(Index i, double h) {
+    const ContactRecord& record = results[i].record;
+    return memory_.take(record.pair, record.feature, record.point(), [&] {
+      const Collider &a = colliders[points[i].a], &b = colliders[points[i].b];
+      return 0.02 * inner::pair_scale(a.shape, b.shape) + h * (inner::top_speed(a) + inner::top_speed(b));
+    });
+  }
+
+  /// Keeps this step's impulses for the next one.
+  void remember() {
+    const std::span<ContactMemory::Entry> entries = memory_.renew(results.size());
+    for (std::size_t i = 0; i < results.size(); ++i)
+      entries[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
+                    results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
+    memory_.sort();
+  }
+  void memory(auto& archive) { archive(memory_); }
+
+ private:
+  /// Of a collider that more than its own block moves, the set says so.
+  template <class Set>
+  static bool collider_moves(const Set& set, Index b) {
+    if constexpr (requires { set.collider_moves(b); }) return set.collider_moves(b);
+    else return set.moves(b);
+  }
+
+  Array<Anchor> anchors_;
+  Array<Index> materials_;
+  ContactMemory memory_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,72 @@
+/// Corrective motion: the impulses act on the bodies.
+#pragma once
+
+#include <delassus/compliance/add_impulses.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace delassus {
+
+namespace inner {
+
+/// What is left of v_free + A⁻¹ Hᵀ λ below the rounding of its terms is no velocity: a body whose impulses cancel its
+/// motion stands still to the last bit, wherever it is. Component by component, each against the largest of v_free.
+template <class V>
+void drop_rounding(V& v_next, const V& v_free) {
+  using T = typename V::Scalar;
+  constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
+  const T least = rounding * v_free.template head<3>().cwiseAbs().maxCoeff();
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(v_next[k]) <= least) v_next[k] = T(0);
+}
+
+}  // namespace inner
+
+/// v_next = v_free + A⁻¹ Hᵀ λ. The velocities of an island with one that is not finite, or whose solver met what is no
+/// number, are all made so: `advance` leaves such bodies where they were, and no other island notices.
+template <class World, class Rows, class Operator, class Scratch, int pools>
+void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, const Islands<pools>& islands,
+             std::span<const SolveReport> reports, Array<char>& is_sick) {
+  is_sick.assign(islands.count(), 0);
+  Index first = 0;
+  bool any = false;
+  for (std::size_t k = 0; k < std::min(reports.size(), is_sick.size()); ++k)
+    if (reports[k].status == Status::quarantined) {
+      is_sick[k] = 1;
+      any = true;
+    }
+  world.each([&](auto& set, auto s) {
+    for (const Index b : set.active()) set.v_next[b] = set.v_free[b];
+    add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
+    for (const Index b : set.active()) {
+      const Index island = islands.island_of(first + b);
+      if (island < 0) continue;
+      if (is_finite(set.v_next[b])) {
+        inner::drop_rounding(set.v_next[b], set.v_free[b]);
+        continue;
+      }
+      is_sick[island] = 1;
+      any = true;
+    }
+    first += set.blocks();
+  });
+  if (!any) return;
+  first = 0;
+  world.each([&](auto& set, auto) {
+    using T = typename std::remove_reference_t<decltype(set)>::Scalar;
+    for (const Index b : set.active()) {
+      const Index island = islands.island_of(first + b);
+      if (island >= 0 && is_sick[island]) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
+    }
+    first += set.blocks();
+  });
+}
+
+}  // namespace delassus

@@ -1,0 +1,63 @@
+/// Detect: what collision detection found goes into the pools of the contact laws.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/contact.hpp>
+#include <delassus/constraints/contact/materials.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/step/contact_book.hpp>
+#include <delassus/step/step_report.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace delassus {
+
+/// Refuses a body whose material nobody added. Materials may come after the bodies: a step is the first to know.
+template <class World>
+void check_materials(const World& world, const Materials& materials) {
+  const Index count = materials.count();
+  world.each([&](const auto& set, auto) {
+    if (set.keeps_to_materials(count)) return;
+    for (Index b = 0; b < set.blocks(); ++b)
+      DELASSUS_EXPECT(!set.is_alive(b) || materials.contains(set.material(b)),
+                      set.who(b) + ": material " + std::to_string(set.material(b)) + " is not among the " +
+                          std::to_string(count) + " of the loop; give it what loop.materials().add({...}) returns, or none");
+  });
+}
+
+/// Gives each record to the first contact law that takes its materials; returns how many nobody took.
+template <class Laws>
+Index route_contacts(Laws& laws, const ContactBook& book, const Materials& materials) {
+  each_contact_pool(laws, [](auto, auto& pool) { pool.items.clear(); });
+  Index unclaimed = 0;
+  for (Index r = 0; r < Index(book.results.size()); ++r) {
+    const ContactRecord& record = book.results[r].record;
+    bool is_taken = false;
+    each_contact_pool(laws, [&](auto, auto& pool) {
+      if (is_taken || !pool.law.takes(record.material_a, record.material_b)) return;
+      is_taken = true;
+      auto parameters = pool.law.law.parameters();
+      if (!materials.empty())
+        if (const auto pair = materials.between(record.material_a, record.material_b)) pool.law.set_pair(parameters, *pair);
+      pool.items.push_back({record, contact_frame(record.normal), parameters, r});
+    });
+    unclaimed += is_taken ? 0 : 1;
+  }
+  return unclaimed;
+}
+
+/// What a step says of its contacts.
+inline void report_contacts(const CollisionReport& found, std::span<const ContactPoint> points, Index unclaimed, StepReport& step) {
+  if (unclaimed > 0) step.status = worse(step.status, Status::unclaimed_contact);
+  step.contacts = Index(points.size());
+  step.pairs = found.pairs;
+  step.queries = found.queries;
+  step.rejects = found.rejects;
+  for (const ContactPoint& p : points) step.max_penetration = std::max(step.max_penetration, -p.gap);
+}
+
+}  // namespace delassus

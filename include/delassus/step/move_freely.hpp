@@ -1,0 +1,104 @@
+/// FreeMotion, and with it Advance where there are no constraints, in one pass: each body alone.
+#pragma once
+
+#include <delassus/rows/body_set.hpp>
+#include <delassus/step/free_motion.hpp>
+
+#include <array>
+#include <concepts>
+#include <tuple>
+
+namespace delassus {
+
+/// One block of a set, shown to an integrator as if it were the whole set.
+template <class Blocks, class Velocity>
+struct OneBlock {
+  Blocks& blocks;
+  Index b;
+  Velocity v_next;
+
+  void add_forces(std::array<Velocity, 1>& p) const { blocks.add_force(b, p[0]); }
+  void add_mass_times_velocity(std::array<Velocity, 1>& p, double s) const {
+    blocks.add_mass_times_velocity(b, p[0], s);
+  }
+  void advance(double h) { blocks.advance(b, v_next, h, 0); }
+  void advance_midpoint(double h) { blocks.advance(b, v_next, h, 0.5); }
+  void advance_by_turns(double h)
+    requires requires { blocks.advance(b, v_next, h, ByTurns{}); }
+  {
+    blocks.advance(b, v_next, h, ByTurns{});
+  }
+};
+
+/// An integrator that treats every block by itself says so by its own name, so that one derived from it has to say it anew:
+/// `using each_block_alone = SymplecticEuler;`.
+template <class I>
+concept EachBlockAlone = std::same_as<typename I::each_block_alone, I>;
+
+/// A set that can do a step block by block; is_separable(): no force couples its blocks now.
+template <class S>
+concept StepsByBlock = requires(S set, const S fixed, SystemScale scale) {
+  { fixed.is_separable() } -> std::same_as<bool>;
+  { set.by_block(scale) } -> std::same_as<typename S::Blocks>;
+};
+
+namespace inner {
+
+template <class World>
+inline constexpr bool steps_by_block = false;
+template <template <class...> class World, StepsByBlock... Sets>
+inline constexpr bool steps_by_block<World<Sets...>> = true;
+
+/// Calls f(block, b), block.v_next = v + A⁻¹ p, for every block of a set.
+template <class Set, class I, class F>
+void each_kicked(Set& set, const I& integrator, double h, F&& f) {
+  using Velocity = typename Set::Velocity;
+  auto blocks = set.by_block(integrator.scale(h));
+  for (const Index b : set.active()) {
+    OneBlock<decltype(blocks), Velocity> block{blocks, b, {}};
+    if (!blocks.moves(b)) [[unlikely]] {
+      block.v_next = blocks.velocity(b);
+    } else {
+      std::array<Velocity, 1> p;
+      p[0].setConstant(typename Velocity::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
+      integrator.impulse(block, p, h);
+      block.v_next = blocks.velocity(b) + blocks.solve(b, p[0]);
+    }
+    f(block, b);
+  }
+}
+
+}  // namespace inner
+
+/// v_next = v + A⁻¹ p and q, v from it, without arrays in between: what `free_motion` and `advance` do, to
+/// the bit but for the sign of a zero.
+template <class Set, class I>
+void move_freely(Set& set, const I& integrator, double h) {
+  inner::each_kicked(set, integrator, h, [&](auto& block, Index) { integrator.advance(block, h); });
+}
+
+/// v_free and v_next = v + A⁻¹ p: the first half of it.
+template <class Set, class I>
+void kick(Set& set, const I& integrator, double h) {
+  inner::each_kicked(set, integrator, h,
+                     [&](auto& block, Index b) { set.v_free[b] = set.v_next[b] = block.v_next; });
+}
+
+/// FreeMotion to Advance of a whole step at once.
+template <class Step>
+  requires requires(Step& step) { step.end_clock(); }
+void move_freely(Step& step) {
+  step.world().each([&](auto& set, auto s) {
+    if (set.is_separable()) {
+      move_freely(set, step.integrator(), step.h);
+    } else {
+      free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);
+      set.v_next = set.v_free;
+      step.integrator().advance(set, step.h);
+    }
+    step.summary.quarantined += set.held();
+  });
+  step.end_clock();
+}
+
+}  // namespace delassus

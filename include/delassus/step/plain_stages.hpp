@@ -1,0 +1,131 @@
+/// The ten stages of a plain step with constraints, and those parts of them that may be overridden alone.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/step/bias.hpp>
+#include <delassus/step/correct.hpp>
+#include <delassus/step/detect.hpp>
+#include <delassus/step/drop_constraints.hpp>
+#include <delassus/step/find_islands.hpp>
+#include <delassus/step/free_motion.hpp>
+#include <delassus/step/linearize.hpp>
+#include <delassus/step/notify.hpp>
+#include <delassus/step/solve.hpp>
+#include <delassus/step/theta.hpp>
+#include <delassus/step/warm_start.hpp>
+
+#include <algorithm>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+namespace delassus {
+
+/// A policy that changes a stage overrides it by name: its `stages<Base>` derives from Base, whose function of that name
+/// it calls or replaces. `step` is the StepData of the loop. A stage asks for its parts by `Stages`, so that those of
+/// policies are called.
+struct PlainStages {
+  static void begin(auto& step, double h) {
+    if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts)
+      check_materials(std::as_const(step).world(), step.material_pairs);
+    step.begin_clock(h);
+    // Before all else: Detect and Linearize ask how fast kinematic bodies go.
+    step.world().each([&](auto& set, auto) { set.begin_step(h); });
+    step.book.attach(step.laws());
+    inner::drop_broken(step.laws());
+    inner::drop_stale(std::as_const(step).world(), step.laws(), step.census);
+  }
+
+  static void detect(auto& step) {
+    using Step = std::remove_reference_t<decltype(step)>;
+    if constexpr (Step::Laws::has_contacts) {
+      step.contact_book.gather(std::as_const(step).world());
+      if constexpr (requires { Step::Parts::Collision::asks_for_joints; })
+        step.collision().refresh(std::as_const(step).world(), [&](const auto& f) { step.each_joint(f); });
+      inner::show_world(step.collision(), std::as_const(step).world());
+      const CollisionReport found = Step::Stages::find_contacts(step);
+      step.contact_book.record();
+      inner::place_ends(step.collision(), step.contact_book.results);
+      const Index unclaimed = route_contacts(step.laws(), step.contact_book, step.material_pairs);
+      report_contacts(found, step.contact_book.points, unclaimed, step.summary);
+    }
+  }
+  /// Contact points of the colliders that were gathered.
+  static CollisionReport find_contacts(auto& step) {
+    auto& book = step.contact_book;
+    return step.collision().detect(std::span<const Collider>(book.colliders), step.h, book.points);
+  }
+
+  static void linearize(auto& step) {
+    follow(std::as_const(step).world(), step.laws());
+    delassus::linearize(std::as_const(step).world(), step.laws(), step.rows);
+    warm_start(step.laws(), step.rows, step.contact_book, step.h, step.last_h);
+    step.summary.rows = step.rows.row_count();
+    step.summary.max_joint_violation = std::max(step.summary.max_joint_violation, worst_equality(step.laws(), step.rows));
+  }
+
+  static void free_motion(auto& step) {
+    step.world().each([&](auto& set, auto s) {
+      delassus::free_motion(set, inner::inverse_of<s>(step.W, set, 0), step.integrator(), std::get<s>(step.scratch), step.h);
+    });
+  }
+
+  static void find_islands(auto& step) {
+    delassus::find_islands(step.world(), step.rows, step.islands);
+    step.summary.islands = step.islands.count();
+  }
+
+  static void make_bias(auto& step) {
+    using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
+    delassus::make_bias(std::as_const(step).world(), step.laws(), step.rows, step.stabilisation(), step.h, theta<Integrator>());
+  }
+
+  static void build(auto& step) {
+    step.W.build(std::as_const(step).world(), step.rows);
+    step.book.prepare(step.W, step.rows, step.h);
+  }
+
+  static void solve(auto& step) {
+    using Stages = typename std::remove_reference_t<decltype(step)>::Stages;
+    inner::with_observer(step, [&](auto& observer) { Stages::solve_islands(step, observer); });
+    summarise(step.reports, step.summary);
+    Stages::keep_impulses(step);
+  }
+  /// Every island, one after the other.
+  static void solve_islands(auto& step, auto& observer) {
+    using Stages = typename std::remove_reference_t<decltype(step)>::Stages;
+    step.W.reset(step.rows);
+    if constexpr (requires { step.solver_workspace.reset(step.rows); }) step.solver_workspace.reset(step.rows);
+    step.reports.resize(step.islands.count());
+    for (Index k = 0; k < step.islands.count(); ++k) {
+      observer.begin_island(k);
+      Stages::solve_island(step, k, observer);
+    }
+  }
+  static void solve_island(auto& step, Index island, auto& observer) {
+    step.reports[island] = delassus::solve_island(step.book, step.rows, step.W, step.islands, island, step.solver(),
+                                                  step.solver_workspace, step.h, observer);
+  }
+  /// Impulses go to the items and to the contacts, and are kept for the next step.
+  static void keep_impulses(auto& step) {
+    delassus::keep_impulses(step.laws(), step.rows, step.contact_book);
+    inner::note_broken(step.laws(), step.h);
+    forget_lost_islands(step.laws(), step.rows, step.W, step.contact_book, step.islands, step.reports);
+    step.contact_book.remember();
+  }
+
+  static void correct(auto& step) {
+    delassus::correct(step.world(), step.rows, step.W, step.scratch, step.islands, step.reports, step.is_sick);
+  }
+
+  static void advance(auto& step) {
+    step.world().each([&](auto& set, auto) {
+      step.integrator().advance(set, step.h);
+      step.summary.quarantined += set.held();
+    });
+    step.end_clock();
+  }
+};
+
+}  // namespace delassus

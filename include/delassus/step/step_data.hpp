@@ -1,0 +1,218 @@
+/// What a step reads and writes: the policies, the arrays of the plain stages, and what a host or a listener may ask.
+#pragma once
+
+#include <delassus/bodies/world.hpp>
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/materials.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/handle.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/problem.hpp>
+#include <delassus/solvers/solve_report.hpp>
+#include <delassus/step/channels.hpp>
+#include <delassus/step/contact_book.hpp>
+#include <delassus/step/each_constraint.hpp>
+#include <delassus/step/move_freely.hpp>
+#include <delassus/step/step_report.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+namespace delassus {
+
+/// The arrays of a loop with constraints. `reset` keeps their capacity, so that a warm step allocates nothing.
+template <class P>
+struct RowData {
+  using Rows = typename P::Rows;
+  using Operator = typename P::Operator;
+
+  Rows rows;
+  Islands<P::Laws::pool_count> islands;
+  Operator W;
+  LawBook<typename P::Laws, typename P::World::Scalar> book;
+  typename P::Solver::template Workspace<Rows> solver_workspace;
+  Array<SolveReport> reports;  ///< of the islands, in their order
+  Array<char> is_sick;         ///< islands with a velocity that is not finite
+  std::array<Census, std::size_t(P::World::set_count)> census;
+  ContactBook contact_book;
+  Materials material_pairs;
+};
+
+/// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
+struct NoRowData {};
+
+namespace inner {
+
+template <class P>
+using RowDataOf = typename std::conditional_t<P::has_rows, std::type_identity<RowData<P>>, std::type_identity<NoRowData>>::type;
+
+}  // namespace inner
+
+/// The plain stages write the members; what else a policy keeps is its `State`. P has the types of the parts of the loop,
+/// see `Parts`. A scheme gets it as it is, a listener const.
+template <class P>
+struct StepData : inner::RowDataOf<P> {
+  using Parts = P;
+  using WorldType = typename P::World;
+  using Laws = typename P::Laws;
+  using Stages = typename P::Stages;
+  using Scalar = typename WorldType::Scalar;
+  static constexpr bool has_constraints = Laws::pool_count > 0;
+  /// Rows and W of the last step are there to be asked for.
+  static constexpr bool has_problem = P::has_problem;
+  /// No constraint, nobody who listens between Begin and Step, and parts that treat each block by itself.
+  static constexpr bool moves_freely = !has_constraints && EachBlockAlone<typename P::Integrator> && !P::hears_within &&
+                                       inner::steps_by_block<WorldType>;
+  static constexpr bool observes_sweeps = P::observes_sweeps;
+  /// A policy of the list, by type.
+  template <class Policy>
+  static constexpr bool has = P::Held::template has<Policy>;
+  template <class Key>
+  static constexpr bool has_state = P::States::template has<Key>;
+
+  explicit StepData(typename P::Held given) : policies(std::move(given)), channels(policies.given()) {}
+
+  typename P::Held policies;
+  [[no_unique_address]] typename P::States states;
+  [[no_unique_address]] typename P::Channels channels;
+  typename P::Scratch scratch;  ///< impulses, one array for each set of bodies
+  StepReport summary;
+  double h = 0, last_h = 0;  ///< this step and the one before, s
+  double start = 0;          ///< the time when steps of h began, s
+  long steps = 0;            ///< since then
+
+  WorldType& world() { return part<role::World>(); }
+  const WorldType& world() const { return part<role::World>(); }
+  Laws& laws() { return part<role::Constraints>(); }
+  const Laws& laws() const { return part<role::Constraints>(); }
+  /// The policy of a role, its default included.
+  template <class Role>
+  auto& part() {
+    return P::Held::template part<Role, typename P::template of<Role>>(policies);
+  }
+  template <class Role>
+  const auto& part() const {
+    return P::Held::template part<Role, typename P::template of<Role>>(policies);
+  }
+  /// The part of this type among the arguments; `has` asks whether there is one.
+  template <class Policy>
+  auto& get() {
+    return P::Held::template get<Policy>(policies);
+  }
+  template <class Policy>
+  const auto& get() const {
+    return P::Held::template get<Policy>(policies);
+  }
+  auto& integrator() { return part<role::Integrator>(); }
+  auto& collision() { return part<role::Collision>(); }
+  auto& compliance() { return part<role::Compliance>(); }
+  auto& solver() { return part<role::Solver>(); }
+  auto& stabilisation() { return part<role::Stabilisation>(); }
+  auto& scheme() { return part<role::Scheme>(); }
+  auto& activity() { return part<role::Activity>(); }
+  /// What the policy of a role keeps, or what a law overrides does: state<role::Activity>(), state<NewtonImpact>().
+  template <class Key>
+    requires has_state<Key>
+  auto& state() {
+    return states.template of<Key>();
+  }
+  template <class Key>
+    requires has_state<Key>
+  const auto& state() const {
+    return states.template of<Key>();
+  }
+  /// Where a listener that publishes meets other threads. It stays where it is when the loop moves.
+  template <class Listener>
+  auto& channel() const
+    requires(has<Listener> && Publisher<Listener>)
+  {
+    return channels.template of<Listener>();
+  }
+
+  const StepReport& report() const { return summary; }
+  double time() const { return start + double(steps) * h; }
+  /// h of the present step, or of the last one, s.
+  double step_size() const { return h; }
+  /// The contacts of the last step with their impulses, sorted by pair and feature.
+  std::span<const ContactResult> contacts() const
+    requires(Laws::has_contacts)
+  {
+    return this->contact_book.results;
+  }
+  /// Solve reports of the islands of the last step.
+  std::span<const SolveReport> island_reports() const
+    requires(has_constraints)
+  {
+    return this->reports;
+  }
+  /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
+  template <class F>
+  void each_constraint(F&& f) const {
+    if constexpr (has_problem) inner::each_constraint(*this, laws(), h, f);
+  }
+  /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
+  template <class F>
+  void each_joint(F&& f) const {
+    inner::each_joint(laws(), f);
+  }
+  /// f(impulse) for every constraint that is no contact, N·s of the last step.
+  template <class F>
+  void each_impulse(F&& f) const {
+    each_kept_pool(laws(), [&](auto, const auto& pool) {
+      for (const Index place : pool.slots.active()) f(pool.impulse[place]);
+    });
+  }
+
+  /// The constraint problem of the last step, whole and apart from the loop: laws, rows, W, islands.
+  template <class Self = StepData>
+  auto problem() const {
+    static_assert(Self::has_problem,
+                  "delassus: this AnimationLoop makes no constraint problem: without constraints, under JointByJoint and by "
+                  "NewtonMidpoint there is no W; use PlainOrder and ImplicitMidpoint, or take problem() out");
+    if constexpr (Self::has_problem)
+      return Problem<Laws, typename P::Rows, typename P::Operator>{laws(), this->rows, this->W, this->islands, h};
+    else
+      return inner::Absent{};
+  }
+  /// The same into one that is there: arrays that are large enough are written over, and nothing is allocated.
+  template <class To>
+  void copy_problem(To& to) const {
+    to.laws = laws();
+    to.rows = this->rows;
+    to.W.copy_matrix(this->W);
+    to.islands = this->islands;
+    to.h = h;
+  }
+  /// f(part) for the parts of that problem that hold arrays, where they are.
+  template <class F>
+  void each_problem_part(F&& f) const {
+    f(laws()), f(this->rows), f(this->W), f(this->islands);
+  }
+
+  // --- the clock ------------------------------------------------------------------------------------------------------
+
+  /// A step of h seconds begins. Throws InvalidArgument where h is not finite and > 0.
+  void begin_clock(double next_h) {
+    DELASSUS_EXPECT(std::isfinite(next_h) && next_h > 0, "step: h = " + inner::text(next_h) + " s must be finite and > 0");
+    if (next_h != h) {
+      start = time();
+      steps = 0;
+    }
+    last_h = h > 0 ? h : next_h;
+    h = next_h;
+    summary = {};
+  }
+  void end_clock() {
+    if (summary.quarantined > 0) summary.status = worse(summary.status, Status::quarantined);
+    ++steps;
+    summary.time = time();
+  }
+};
+
+}  // namespace delassus

@@ -1,0 +1,102 @@
+/// Warm start: every constraint begins with the impulse it had, scaled with the step.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/contact.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/solvers/solve_report.hpp>
+#include <delassus/step/contact_book.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+namespace delassus {
+
+/// λ ← h/h_last · λ of the last step, by contact id or by item; contacts carry theirs as a world vector, brought back
+/// into the cone of the new frame. h and h_last are this step and the last one, s.
+template <class Laws, class Rows>
+void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double h, double last_h) {
+  const double step_ratio = h / last_h;
+  using T = typename Rows::Scalar;
+  each_kept_pool(laws, [&](auto p, const auto& pool) {
+    auto& lambda = rows.template pool<p>().lambda;
+    for (Index i = 0; i < pool.count(); ++i) {
+      const Index place = pool.slots.active()[i];
+      if (pool.starts_cold[place]) lambda[i].setZero();
+      else lambda[i] = (step_ratio * pool.impulse[place]).template cast<T>();
+    }
+  });
+  each_contact_pool(laws, [&](auto p, const auto& pool) {
+    auto& lambda = rows.template pool<p>().lambda;
+    for (Index i = 0; i < pool.count(); ++i) {
+      const auto& item = pool.item(i);
+      const Vec3 impulse = step_ratio * book.remembered(item.result, h);
+      if (is_zero(impulse)) continue;
+      constexpr int along = inner::rows_along<Rows::template rows_of<p>>;
+      lambda[i].template head<along>() = (item.frame.template topRows<along>() * impulse).template cast<T>();
+      if constexpr (requires { pool.law.clamp(item, lambda[i]); }) pool.law.clamp(item, lambda[i]);
+    }
+  });
+}
+
+/// Hands the impulses back: to the items of the pools, and to the contacts as world vectors.
+template <class Laws, class Rows>
+void keep_impulses(Laws& laws, const Rows& rows, ContactBook& book) {
+  each_kept_pool(laws, [&](auto p, auto& pool) {
+    const auto& lambda = rows.template pool<p>().lambda;
+    for (Index i = 0; i < pool.count(); ++i) {
+      const Index place = pool.slots.active()[i];
+      pool.impulse[place] = lambda[i].template cast<double>();
+      pool.starts_cold[place] = !is_finite(lambda[i]);
+    }
+  });
+  each_contact_pool(laws, [&](auto p, const auto& pool) {
+    const auto& lambda = rows.template pool<p>().lambda;
+    for (Index i = 0; i < pool.count(); ++i) {
+      const auto& item = pool.item(i);
+      ContactResult& result = book.results[item.result];
+      result.impulse = inner::world_impulse<Rows::template rows_of<p>>(item.frame, lambda[i]);
+      result.starts_cold = !is_finite(lambda[i]);
+      if constexpr (requires { pool.law.is_sliding(item, lambda[i]); })
+        result.is_sliding = pool.law.is_sliding(item, lambda[i]);
+    }
+  });
+}
+
+/// Impulses beyond every load are no start for the next step: those of constraints that contradict each other would grow
+/// from step to step without bound. A chain of n constraints between bodies whose compliances span r = max w/min w carries
+///
+///   w_i |λ_i| ≤ n r max |d|,   w = tr(W_ii)/rows,
+///
+/// at most; an island whose solve ended far from its laws and beyond that starts from zero.
+template <class Laws, class Rows, class Operator, int pools>
+void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, ContactBook& book, const Islands<pools>& islands,
+                         std::span<const SolveReport> reports) {
+  constexpr double far = 0.05;  // of the largest velocity of the island
+  for (Index k = 0; k < islands.count(); ++k) {
+    if (reports[k].status < Status::max_iterations || reports[k].measure.residual <= far) continue;
+    double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
+    Index count = 0;
+    for_each_index<pools>([&](auto p) {
+      const auto& pool = rows.template pool<p>();
+      for (const Index i : islands.items(p, k)) {
+        const double w = double(W.template diagonal<p>(i).trace()) / Rows::template rows_of<p>;
+        least = std::min(least, w);
+        most = std::max(most, w);
+        load = std::max(load, double(pool.d[i].norm()));
+        response = std::max(response, w * double(pool.lambda[i].norm()));
+        ++count;
+      }
+    });
+    if (response * least <= count * most * load) continue;
+    each_kept_pool(laws, [&](auto p, auto& pool) {
+      for (const Index i : islands.items(p, k)) pool.starts_cold[pool.slots.active()[i]] = 1;
+    });
+    each_contact_pool(laws, [&](auto p, const auto& pool) {
+      for (const Index i : islands.items(p, k)) book.results[pool.item(i).result].starts_cold = true;
+    });
+  }
+}
+
+}  // namespace delassus

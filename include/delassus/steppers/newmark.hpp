@@ -1,0 +1,48 @@
+/// Newmark's method.
+#pragma once
+
+#include <delassus/core/expect.hpp>
+#include <delassus/integrators/integrator.hpp>
+#include <delassus/steppers/inner/alpha_rule.hpp>
+#include <delassus/steppers/inner/whole_steps.hpp>
+
+namespace delassus {
+
+template <class World, class Laws, class Rows>
+class NewmarkStep : public StepBySets<inner::StepByAcceleration, World> {
+  static_assert(Rows::pool_count == 0,
+                "delassus: Newmark moves bodies without joints; take the laws out, or use ImplicitEuler");
+};
+
+/// x₊ = x + h v + h² ((½ − β) v̇ + β v̇₊),  v₊ = v + h ((1 − γ) v̇ + γ v̇₊), implicit, solved by Newton's method:
+/// the generalised-α method without its averages. For particles on springs and soft bodies, without joints
+/// and contacts. β = ¼, γ = ½ is the trapezoidal rule: second order, stable for every h ω, keeps the energy
+/// of linear forces; with γ > ½ first order and damped. Source: docs/references.md, [Newmark1959].
+struct Newmark {
+  using plays = role::Integrator;
+  template <class P>
+  using State = NewmarkStep<typename P::World, typename P::Laws, typename P::Rows>;
+  template <class Set>
+  static constexpr bool can_move = Set::width == 3;
+  double beta = 0.25;        ///< ≥ γ/2
+  double gamma = 0.5;        ///< ≥ ½
+  double tolerance = 1e-10;  ///< of the accelerations
+  int max_iterations = 20;   ///< factorizations; reaching it is a status
+
+  inner::AlphaRule rule(double h) const { return {0, 0, beta, gamma, h}; }
+  void check() const {
+    DELASSUS_EXPECT(gamma >= 0.5 && gamma <= 1,
+                    "Newmark: gamma " + inner::text(gamma) + " must be in [0.5, 1]");
+    DELASSUS_EXPECT(
+        beta >= gamma / 2 && beta <= 1,
+        "Newmark: beta " + inner::text(beta) + " must be in [gamma/2, 1], where it is stable for every step");
+    inner::check_newton("Newmark", tolerance, max_iterations);
+  }
+  void move(auto& step) const { inner::solve_at_once(step); }
+  SystemScale scale(double) const { return {.mass = 1}; }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
+};
+static_assert(Integrator<Newmark>);
+
+}  // namespace delassus
