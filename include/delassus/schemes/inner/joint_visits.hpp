@@ -238,9 +238,9 @@ class JointVisits<World<Sets...>, Laws> {
 void visit_joints(auto& step) {
   step.world().each([&](auto& set, auto s) {
     if (set.is_separable()) {
-      kick(set, step.integrator(), step.h);
+      delassus::kick(set, step.integrator(), step.h);
     } else {
-      free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);
+      delassus::free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);
       set.v_next = set.v_free;
     }
   });
