@@ -54,18 +54,17 @@ TEST_CASE("H of a contact is the relative velocity at its point, along normal an
   each_pair([](int a, int b, Scene& scene) {
     const Vec3 normal = scene.vector().normalized(), point = scene.vector();
     const double gap = 0.1 * scene.draw();
-    Law::Item item;
-    item.record = {.a = scene.end_at(a, point),
-                   .b = scene.end_at(b, point),
-                   .point_a = point - 0.5 * gap * normal,
-                   .point_b = point + 0.5 * gap * normal,
-                   .normal = normal,
-                   .gap = gap};
-    item.frame = contact_frame(normal);
+    const ContactRecord record{.a = scene.end_at(a, point),
+                               .b = scene.end_at(b, point),
+                               .point_a = point - 0.5 * gap * normal,
+                               .point_b = point + 0.5 * gap * normal,
+                               .normal = normal,
+                               .gap = gap};
+    const Law::Item item{&record, record.point(), gap, contact_frame(normal)};
     const Written<Law> rows({}, item, scene.world);
     CHECK(rows.phi[0] == gap);
     CHECK(difference<3>(scene, rows.H, [&] {
-            return Vec3(item.frame * (scene.world.point(item.record.b) - scene.world.point(item.record.a)));
+            return Vec3(item.frame * (scene.world.point(record.b) - scene.world.point(record.a)));
           }) <= 1e-8);
   });
 }

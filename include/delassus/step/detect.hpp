@@ -43,11 +43,19 @@ Index route_contacts(Laws& laws, const ContactBook& book, const Materials& mater
       auto parameters = pool.law.law.parameters();
       if (!materials.empty())
         if (const auto pair = materials.between(record.material_a, record.material_b)) pool.law.set_pair(parameters, *pair);
-      pool.items.push_back({record, contact_frame(record.normal), parameters, r});
+      pool.items.push_back({&record, record.point(), record.gap, contact_frame(record.normal), parameters, r});
     });
     unclaimed += is_taken ? 0 : 1;
   }
   return unclaimed;
+}
+
+/// The contacts may have moved or been copied with their loop.
+template <class Laws>
+void attach_contacts(Laws& laws, const ContactBook& book) {
+  each_contact_pool(laws, [&](auto, auto& pool) {
+    for (auto& item : pool.items) item.record = &book.results[item.result].record;
+  });
 }
 
 /// What a step says of its contacts.

@@ -33,6 +33,7 @@ struct PlainStages {
     // Before all else: Detect and Linearize ask how fast kinematic bodies go.
     step.world().each([&](auto& set, auto) { set.begin_step(h); });
     step.book.attach(step.laws());
+    attach_contacts(step.laws(), step.contact_book);
     inner::drop_broken(step.laws());
     inner::drop_stale(std::as_const(step).world(), step.laws(), step.census);
   }

@@ -171,16 +171,16 @@ class Audit {
   static void see_friction(inner::PoolUse& use, const P& pool, const Rows& rows, Index begin, Index end,
                            double w, double threshold) {
     Vec3 centre = Vec3::Zero(), sum = Vec3::Zero();
-    for (Index i = begin; i < end; ++i) centre += pool.item(i).record.point() / double(end - begin);
+    for (Index i = begin; i < end; ++i) centre += pool.item(i).point / double(end - begin);
     double moment = 0, radius = 0;
     bool slips = false;
     for (Index i = begin; i < end; ++i) {
       const auto& item = pool.item(i);
       const Vec3 tangent = item.frame.template bottomRows<2>().transpose() *
                            rows.lambda[i].template cast<double>().template segment<2>(1);
-      const Vec3 arm = item.record.point() - centre;
+      const Vec3 arm = item.point - centre;
       sum += tangent;
-      moment += arm.cross(tangent).dot(item.record.normal);
+      moment += arm.cross(tangent).dot(item.record->normal);
       radius = std::max(radius, arm.norm());
       if constexpr (requires { pool.law.is_sliding(item, rows.lambda[i]); })
         slips = slips || pool.law.is_sliding(item, rows.lambda[i]);

@@ -51,7 +51,9 @@ struct Contact {
   Law law{};
 
   struct Item {
-    ContactRecord record;
+    const ContactRecord* record = nullptr;  ///< in the loop's list of contacts, until the next Detect
+    Vec3 point = Vec3::Zero();              ///< where the rows are taken, and how far the bodies are apart: those of the
+    double gap = 0;                         ///< record, until a scheme moves them on
     Mat3 frame = Mat3::Identity();
     typename Law::Parameters parameters{};
     Index result = -1;  ///< its place in the loop's list of contacts
@@ -64,17 +66,17 @@ struct Contact {
 
   void linearize(const Item& item, const auto& world, auto row) const {
     (void)world;
-    const Vec3 point = item.record.point();
+    const Vec3& point = item.point;
     constexpr int along = inner::rows_along<rows>;
     const Mat<along, 3> axes = item.frame.template topRows<along>();
-    auto a = row.end(item.record.a, point);
+    auto a = row.end(item.record->a, point);
     a.along(axes, -1);
     if constexpr (rows > along) turn(a, item.frame, -1);
-    auto b = row.end(item.record.b, point);
+    auto b = row.end(item.record->b, point);
     b.along(axes, 1);
     if constexpr (rows > along) turn(b, item.frame, 1);
-    row.phi(0, item.record.gap);
-    if constexpr (requires { law.soften(row, item.record.gap); }) law.soften(row, item.record.gap);
+    row.phi(0, item.gap);
+    if constexpr (requires { law.soften(row, item.gap); }) law.soften(row, item.gap);
   }
 
   /// The law that is solved: restitution and penalty wrap one.

@@ -39,10 +39,10 @@ void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
                     "delassus: CollisionsFirst makes a Penalty contact a force with the friction of Coulomb, or with none; take "
                     "Coulomb in place of RollingCoulomb or Pyramid, or the default scheme");
       if constexpr (is_force) for (const auto& item : pool.items) {
-        const Vec3 point = item.record.point();
+        const Vec3& point = item.point;
         Vec<rows> u = Vec<rows>::Zero();
         for (const double side : {-1.0, 1.0})
-          inner::each_block_at<rows>(world, side < 0 ? item.record.a : item.record.b, point, item.frame,
+          inner::each_block_at<rows>(world, side < 0 ? item.record->a : item.record->b, point, item.frame,
                                      [&](auto& set, Index b, const auto& J) {
                                        u += side * J * set.velocity()[b].template cast<double>();
                                      });
@@ -52,16 +52,16 @@ void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
         const double slip = t.norm();
         double w = 0;
         if (slip > 0)
-          for (const Anchor* end : {&item.record.a, &item.record.b})
+          for (const Anchor* end : {&item.record->a, &item.record->b})
             inner::each_block_at<rows>(world, *end, point, item.frame, [&](auto& set, Index b, const auto& J) {
               using T = typename std::remove_reference_t<decltype(set)>::Scalar;
               const auto along = (J.transpose() * (t / slip)).eval();
               if (set.moves(b)) w += along.dot(set.template solve_block<1>(b, along.template cast<T>()).template cast<double>());
             });
-        const Vec<rows> f = pool.law.law.force(item.parameters, item.record.gap, u, w, h);
+        const Vec<rows> f = pool.law.law.force(item.parameters, item.gap, u, w, h);
         const Vec3 force = item.frame.template topRows<rows>().transpose() * f;
         for (const double side : {-1.0, 1.0})
-          inner::each_block_at<rows>(world, side < 0 ? item.record.a : item.record.b, point, item.frame,
+          inner::each_block_at<rows>(world, side < 0 ? item.record->a : item.record->b, point, item.frame,
                                      [&](auto& set, Index b, const auto& J) {
                                        if (!set.moves(b)) return;
                                        if constexpr (requires { set.apply_force(set.handle(b), force, point); })

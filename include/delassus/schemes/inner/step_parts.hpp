@@ -86,19 +86,17 @@ class StepParts<World<Sets...>, Constraints<L...>> {
     const World& world = step.world();
     each_contact_pool(step.laws(), [&](auto p, auto& pool) {
       for (Index i = 0; i < pool.count(); ++i) {
-        auto& record = pool.items[i].record;
-        record.gap += part * closing<p>(step, i);
+        auto& item = pool.items[i];
+        item.gap += part * closing<p>(step, i);
         Vec3 way = Vec3::Zero();
         int count = 0;
-        for (const Anchor* end : {&record.a, &record.b})
+        for (const Anchor* end : {&item.record->a, &item.record->b})
           world.visit(end->set, [&](const auto& set, auto) {
             if (!set.moves(end->block)) return;
             way += part * linear_part(set.v_next[end->block]).template cast<double>();
             ++count;
           });
-        if (count == 0) continue;
-        record.point_a += way / count;
-        record.point_b += way / count;
+        if (count > 0) item.point += way / count;
       }
     });
   }
