@@ -63,6 +63,15 @@ struct ArrayMemory {
   }
 };
 
+/// Whether copying its bytes copies a T: it has no destructor, or one that does nothing, as everything around an
+/// Eigen::AlignedBox has, and then says `using CopiedByBytes = T`.
+template <class T>
+inline constexpr bool is_copied_by_bytes = std::is_trivially_destructible_v<T>;
+template <class T>
+requires requires { typename T::CopiedByBytes; }
+inline constexpr bool is_copied_by_bytes<T> =
+    std::is_trivially_destructible_v<T> || std::is_same_v<T, typename T::CopiedByBytes>;
+
 }  // namespace inner
 
 /// What std::vector<T> is, for a T that copying its bytes copies: it is refused where T has a destructor. A
@@ -98,8 +107,8 @@ class Array {
     return *this;
   }
   [[gnu::always_inline]] ~Array() {
-    static_assert(std::is_trivially_destructible_v<T>,
-                  "delassus: Array holds types without a destructor; take std::vector");
+    static_assert(inner::is_copied_by_bytes<T>,
+                  "delassus: Array holds types without a destructor; take ArrayOrVector or std::vector");
     memory_.release(alignof(T));
   }
 
@@ -199,6 +208,10 @@ class Array {
  private:
   inner::ArrayMemory memory_;
 };
+
+/// For types that a user brings: Array where copying bytes copies them, std::vector where they own something.
+template <class T>
+using ArrayOrVector = std::conditional_t<inner::is_copied_by_bytes<T>, Array<T>, std::vector<T>>;
 
 /// Takes out what `is_out` holds of; the rest keeps its order.
 template <class T, class Is>
