@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,17 @@ template <class T>
 bool is_aligned(const Array<T>& list) {
   return reinterpret_cast<std::uintptr_t>(list.data()) % alignof(T) == 0;
 }
+
+struct Boxed {
+  using CopiedByBytes = Boxed;
+  Eigen::AlignedBox3d box;
+};
+struct Owner : Boxed {
+  std::vector<int> list;
+};
+static_assert(std::is_same_v<ArrayOrVector<Vec3>, Array<Vec3>> && std::is_same_v<ArrayOrVector<Boxed>, Array<Boxed>>);
+static_assert(std::is_same_v<ArrayOrVector<Owner>, std::vector<Owner>>);
+static_assert(std::is_same_v<ArrayOrVector<std::string>, std::vector<std::string>>);
 
 }  // namespace
 
@@ -96,6 +108,8 @@ TEST_CASE("a copy is of its own, a moved array is empty, and assigning to itself
   REQUIRE(c.size() == 3);
   b = std::move(c);
   REQUIRE(c.empty());
+  REQUIRE(b == Array<int>{1, 2, 3});
+  b = std::move(*&b);
   REQUIRE(b == Array<int>{1, 2, 3});
   b = Array<int>{};
   REQUIRE(b.empty());

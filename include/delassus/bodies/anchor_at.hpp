@@ -3,6 +3,8 @@
 
 #include <delassus/bodies/world.hpp>
 
+#include <type_traits>
+
 namespace delassus {
 
 /// The material point of a body that is at `point` (world, m) now, with a joint frame that is turned like
@@ -23,12 +25,13 @@ Anchor anchor_at(const S& set, typename S::Handle body, const Vec3& point,
 ///   q = (1 + e_z, z × e) normalised, 1 + e_z = (e_x² + e_y²)/(1 − e_z) where e points down, and (0, x) where rounding cannot tell e from −z.
 ///
 /// Eigen's FromTwoVectors would bring its singular value decomposition: 250 MB of compiler memory.
-inline Quat frame_along(const Vec3& axis) {
+template <class Scalar = double>
+Quat frame_along(const std::type_identity_t<Vec<3, Scalar>>& axis) {
   DELASSUS_EXPECT(is_finite(axis) && axis.norm() > 0, "frame_along: the axis must be finite and not zero");
-  const Vec3 e = axis / axis.norm();
-  const double flat = e[0] * e[0] + e[1] * e[1];
-  if (e[2] < 0 && flat < 1e-32) return Quat(0, 1, 0, 0);
-  return Quat(e[2] < 0 ? flat / (1 - e[2]) : 1 + e[2], -e[1], e[0], 0).normalized();
+  const Vec<3, Scalar> e = axis / axis.norm();
+  const Scalar flat = e[0] * e[0] + e[1] * e[1];
+  if (e[2] < 0 && flat < 1e-32) return Eigen::Quaternion<Scalar>(0, 1, 0, 0);
+  return Eigen::Quaternion<Scalar>(e[2] < 0 ? flat / (1 - e[2]) : 1 + e[2], -e[1], e[0], 0).normalized();
 }
 
 }  // namespace delassus

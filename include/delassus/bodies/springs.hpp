@@ -31,6 +31,8 @@ class Springs {
  public:
   using Block = Mat<3, 3, T>;
   using Velocity = Vec<3, T>;
+  using Vec3 = Vec<3, DoubleIn<T>>;
+  using Mat3 = Mat<3, 3, DoubleIn<T>>;
 
   void add(const Spring& spring, const std::string& who) {
     DELASSUS_EXPECT(std::isfinite(spring.stiffness) && spring.stiffness >= 0,

@@ -16,11 +16,12 @@ namespace delassus {
 /// leaf are its pairs looked up anew. So what rests costs one look at its box and one at each of its pairs.
 /// Boxes that do not move are in a tree of their own and are no pairs of each other. Pairs come sorted; they
 /// are those of the boxes themselves, whatever the leaves.
-class BoxTree {
+template <class Scalar>
+class BasicBoxTree {
  public:
-  double margin =
+  Scalar margin =
       0.05;         ///< a leaf is wider than its box by this share of the box's largest edge, on each side
-  double lead = 4;  ///< and longer by this many steps of its last motion
+  Scalar lead = 4;  ///< and longer by this many steps of its last motion
 
   /// Boxes that are told apart by their place in the array, all of them moving.
   void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
@@ -35,13 +36,15 @@ class BoxTree {
     recognise(tags);
     moved_.clear();
     for (Index i = 0; i < Index(boxes.size()); ++i) follow(leaf_of_[i], boxes[i], tags[i].is_movable);
-    for (inner::DynamicTree& tree : trees_) tree.balance();
+    for (Tree& tree : trees_) tree.balance();
     if (!moved_.empty()) renew_pairs();
     report(boxes, pairs);
   }
 
  private:
+  using Tree = inner::BasicDynamicTree<Scalar>;
   struct Leaf {
+    using CopiedByBytes = Leaf;
     std::uint32_t key = 0;
     bool is_movable = true, has_moved = false;
     Index node = -1;             ///< in its tree; −1 while its box is empty
@@ -94,7 +97,7 @@ class BoxTree {
     return l;
   }
 
-  inner::DynamicTree& tree_of(const Leaf& leaf) { return trees_[leaf.is_movable ? 1 : 0]; }
+  Tree& tree_of(const Leaf& leaf) { return trees_[leaf.is_movable ? 1 : 0]; }
 
   void leave(Leaf& leaf) {
     if (leaf.node < 0) return;
@@ -180,12 +183,14 @@ class BoxTree {
     if (!is_sorted) std::sort(pairs.begin() + std::ptrdiff_t(first), pairs.end());
   }
 
-  std::vector<Leaf> leaf_;
+  Array<Leaf> leaf_;
   Array<Index> leaf_of_, sorted_, free_, moved_;
   Array<std::uint64_t> kept_, fresh_, merged_;
   Array<BoxTag> places_;
-  inner::DynamicTree trees_[2];  ///< of what does not move, of what does
+  Tree trees_[2];  ///< of what does not move, of what does
 };
+
+using BoxTree = BasicBoxTree<double>;
 static_assert(BroadPhase<BoxTree> && TaggedBroadPhase<BoxTree>);
 
 }  // namespace delassus

@@ -12,8 +12,8 @@ namespace delassus {
 struct GjkEpa {
   static constexpr bool gives_least_depth = true;
 
-  SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
-                  PairCache& cache) const noexcept {
+  template <class Cache>
+  SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, Cache& cache) const noexcept {
     SignedPair r;
     if (closed_form(a, b, b_in_a, cache.guess, r)) {
       if (r.distance > margin) r.status = PairStatus::far;

@@ -43,7 +43,7 @@ struct Pool {
   using Item = typename Law::Item;
 
   Law law{};
-  Array<Item> items;
+  ArrayOrVector<Item> items;
   Array<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
   Array<char> starts_cold;   ///< that impulse is no start for the next step
   Slots slots;
@@ -128,7 +128,7 @@ struct Pool<Law> {
   using Item = typename Law::Item;
 
   Law law{};
-  Array<Item> items;
+  ArrayOrVector<Item> items;
 
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}

@@ -49,6 +49,13 @@ struct ArrayMemory {
     if (other.size > 0) std::memcpy(data, other.data, other.size * width);
     size = other.size;
   }
+  /// The other's memory in the place of this, and none for the other.
+  void take(ArrayMemory& other, std::size_t alignment) noexcept {
+    const ArrayMemory theirs = other;
+    other = {};
+    release(alignment);
+    *this = theirs;
+  }
   void swap(ArrayMemory& other) noexcept {
     const ArrayMemory mine = *this;
     *this = other;
@@ -56,11 +63,20 @@ struct ArrayMemory {
   }
 };
 
+/// Whether copying its bytes copies a T: it has no destructor, or one that does nothing, as everything around an
+/// Eigen::AlignedBox has, and then says `using CopiedByBytes = T`.
+template <class T>
+inline constexpr bool is_copied_by_bytes = std::is_trivially_destructible_v<T>;
+template <class T>
+requires requires { typename T::CopiedByBytes; }
+inline constexpr bool is_copied_by_bytes<T> =
+    std::is_trivially_destructible_v<T> || std::is_same_v<T, typename T::CopiedByBytes>;
+
 }  // namespace inner
 
 /// What std::vector<T> is, for a T that copying its bytes copies: it is refused where T has a destructor. A
-/// compiler makes some five functions of it for each T where it makes forty-five of a std::vector. References
-/// end with growth, as there.
+/// compiler makes some five functions of it for each T where it makes forty-five of a std::vector: members of one
+/// line are inlined even where nothing else is. References end with growth, as there.
 template <class T>
 class Array {
  public:
@@ -69,22 +85,20 @@ class Array {
   using iterator = T*;
   using const_iterator = const T*;
 
-  Array() = default;
-  explicit Array(std::size_t count) { resize(count); }
-  Array(std::size_t count, const T& x) { resize(count, x); }
-  Array(std::initializer_list<T> list) { assign(list.begin(), list.end()); }
+  [[gnu::always_inline]] Array() : memory_{nullptr, 0, 0} {}
+  explicit Array(std::size_t count) : Array() { resize(count); }
+  Array(std::size_t count, const T& x) : Array() { resize(count, x); }
+  Array(std::initializer_list<T> list) : Array() { assign(list.begin(), list.end()); }
   template <class It>
-  requires(!std::is_arithmetic_v<It>) Array(It first, It last) { assign(first, last); }
-  Array(const Array& other) { memory_.copy(other.memory_, sizeof(T), alignof(T)); }
-  Array(Array&& other) noexcept { memory_.swap(other.memory_); }
-  Array& operator=(const Array& other) {
+  requires(!std::is_arithmetic_v<It>) Array(It first, It last) : Array() { assign(first, last); }
+  [[gnu::always_inline]] Array(const Array& other) : Array() { memory_.copy(other.memory_, sizeof(T), alignof(T)); }
+  [[gnu::always_inline]] Array(Array&& other) noexcept : Array() { memory_.swap(other.memory_); }
+  [[gnu::always_inline]] Array& operator=(const Array& other) {
     memory_.copy(other.memory_, sizeof(T), alignof(T));
     return *this;
   }
-  Array& operator=(Array&& other) noexcept {
-    Array gone;
-    gone.memory_.swap(other.memory_);
-    memory_.swap(gone.memory_);
+  [[gnu::always_inline]] Array& operator=(Array&& other) noexcept {
+    memory_.take(other.memory_, alignof(T));
     return *this;
   }
   /// The elements of another list, which are none of this array's.
@@ -92,30 +106,30 @@ class Array {
     assign(list.begin(), list.end());
     return *this;
   }
-  ~Array() {
-    static_assert(std::is_trivially_destructible_v<T>,
-                  "delassus: Array holds types without a destructor; take std::vector");
+  [[gnu::always_inline]] ~Array() {
+    static_assert(inner::is_copied_by_bytes<T>,
+                  "delassus: Array holds types without a destructor; take ArrayOrVector or std::vector");
     memory_.release(alignof(T));
   }
 
-  T* data() { return static_cast<T*>(memory_.data); }
-  const T* data() const { return static_cast<const T*>(memory_.data); }
-  std::size_t size() const { return memory_.size; }
-  std::size_t capacity() const { return memory_.capacity; }
-  bool empty() const { return memory_.size == 0; }
-  T* begin() { return static_cast<T*>(memory_.data); }
-  T* end() { return static_cast<T*>(memory_.data) + memory_.size; }
-  const T* begin() const { return static_cast<const T*>(memory_.data); }
-  const T* end() const { return static_cast<const T*>(memory_.data) + memory_.size; }
-  T& operator[](std::size_t i) { return static_cast<T*>(memory_.data)[i]; }
-  const T& operator[](std::size_t i) const { return static_cast<const T*>(memory_.data)[i]; }
-  T& front() { return *begin(); }
-  const T& front() const { return *begin(); }
-  T& back() { return end()[-1]; }
-  const T& back() const { return end()[-1]; }
+  [[gnu::always_inline]] T* data() { return static_cast<T*>(memory_.data); }
+  [[gnu::always_inline]] const T* data() const { return static_cast<const T*>(memory_.data); }
+  [[gnu::always_inline]] std::size_t size() const { return memory_.size; }
+  [[gnu::always_inline]] std::size_t capacity() const { return memory_.capacity; }
+  [[gnu::always_inline]] bool empty() const { return memory_.size == 0; }
+  [[gnu::always_inline]] T* begin() { return static_cast<T*>(memory_.data); }
+  [[gnu::always_inline]] T* end() { return static_cast<T*>(memory_.data) + memory_.size; }
+  [[gnu::always_inline]] const T* begin() const { return static_cast<const T*>(memory_.data); }
+  [[gnu::always_inline]] const T* end() const { return static_cast<const T*>(memory_.data) + memory_.size; }
+  [[gnu::always_inline]] T& operator[](std::size_t i) { return static_cast<T*>(memory_.data)[i]; }
+  [[gnu::always_inline]] const T& operator[](std::size_t i) const { return static_cast<const T*>(memory_.data)[i]; }
+  [[gnu::always_inline]] T& front() { return *begin(); }
+  [[gnu::always_inline]] const T& front() const { return *begin(); }
+  [[gnu::always_inline]] T& back() { return end()[-1]; }
+  [[gnu::always_inline]] const T& back() const { return end()[-1]; }
 
-  void reserve(std::size_t count) { memory_.reserve(count, sizeof(T), alignof(T)); }
-  void clear() { memory_.size = 0; }
+  [[gnu::always_inline]] void reserve(std::size_t count) { memory_.reserve(count, sizeof(T), alignof(T)); }
+  [[gnu::always_inline]] void clear() { memory_.size = 0; }
   /// New elements are T().
   void resize(std::size_t count) {
     memory_.grow(count, sizeof(T), alignof(T));
@@ -157,7 +171,7 @@ class Array {
     else
       return push_back(T{static_cast<From&&>(from)...});
   }
-  void pop_back() { --memory_.size; }
+  [[gnu::always_inline]] void pop_back() { --memory_.size; }
   /// Takes the elements [first, last) out; those behind them move up.
   T* erase(T* first, T* last) {
     std::memmove(static_cast<void*>(first), static_cast<const void*>(last),
@@ -165,7 +179,7 @@ class Array {
     memory_.size -= std::size_t(last - first);
     return first;
   }
-  T* erase(T* at) { return erase(at, at + 1); }
+  [[gnu::always_inline]] T* erase(T* at) { return erase(at, at + 1); }
   /// Puts x before `at`.
   T* insert(T* at, const T& x) {
     const std::size_t place = std::size_t(at - begin());
@@ -181,9 +195,9 @@ class Array {
     Array tight(*this);
     memory_.swap(tight.memory_);
   }
-  void swap(Array& other) noexcept { memory_.swap(other.memory_); }
-  friend void swap(Array& a, Array& b) noexcept { a.memory_.swap(b.memory_); }
-  friend bool operator==(const Array& a, const Array& b) { return a == std::span<const T>(b); }
+  [[gnu::always_inline]] void swap(Array& other) noexcept { memory_.swap(other.memory_); }
+  [[gnu::always_inline]] friend void swap(Array& a, Array& b) noexcept { a.memory_.swap(b.memory_); }
+  [[gnu::always_inline]] friend bool operator==(const Array& a, const Array& b) { return a == std::span<const T>(b); }
   friend bool operator==(const Array& a, std::span<const T> b) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -194,6 +208,10 @@ class Array {
  private:
   inner::ArrayMemory memory_;
 };
+
+/// For types that a user brings: Array where copying bytes copies them, std::vector where they own something.
+template <class T>
+using ArrayOrVector = std::conditional_t<inner::is_copied_by_bytes<T>, Array<T>, std::vector<T>>;
 
 /// Takes out what `is_out` holds of; the rest keeps its order.
 template <class T, class Is>

@@ -1,6 +1,7 @@
 /// The convex hull of a point cloud: its vertices, polygonal faces and moments of volume.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/bits.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
@@ -20,12 +21,16 @@ namespace delassus {
 
 /// A convex polytope in its own frame, m. Faces are polygons, counter-clockwise seen from outside: coplanar
 /// triangles are merged, and points inside the hull, on a face or on an edge are dropped.
-class ConvexHull {
+template <class Scalar>
+class BasicConvexHull {
  public:
+  using Vector = Vec<3, Scalar>;
+  using Matrix = Mat<3, 3, Scalar>;
+
   /// Pre: at least four finite points that do not lie in one plane (thickness > 1e-6 of the extent).
-  ConvexHull() = default;  ///< nothing yet: a checkpoint fills it
-  explicit ConvexHull(std::span<const Vec3> points) {
-    const double extent = check_points(points);
+  BasicConvexHull() = default;  ///< nothing yet: a checkpoint fills it
+  explicit BasicConvexHull(std::span<const Vector> points) {
+    const Scalar extent = check_points(points);
     std::vector<inner::HullTriangle> triangles;
     DELASSUS_EXPECT(
         inner::quickhull(points, extent, triangles),
@@ -42,32 +47,32 @@ class ConvexHull {
     put_in_blocks();
   }
 
-  std::span<const Vec3> vertices() const { return vertices_; }
+  std::span<const Vector> vertices() const { return vertices_; }
   /// The vertices once more, as many at a time as there are lanes: their x, their y, their z; the last vertex
   /// fills its block.
-  std::span<const double> blocks() const { return blocks_; }
+  std::span<const Scalar> blocks() const { return blocks_; }
   Index face_count() const { return Index(normals_.size()); }
   /// Vertex indices of a face, counter-clockwise from outside, and its outward unit normal.
   std::span<const Index> face(Index f) const { return slice(face_loop_, face_start_, f); }
-  const Vec3& normal(Index f) const { return normals_[f]; }
+  const Vector& normal(Index f) const { return normals_[f]; }
   /// The faces that meet in a vertex, ascending.
   std::span<const Index> faces_around(Index v) const { return slice(around_, around_start_, v); }
 
   /// ∫ dV, m³ · the centre of volume c, m · ∫ (x − c)(x − c)ᵀ dV, m⁵.
-  double volume() const { return volume_; }
-  const Vec3& centroid() const { return centroid_; }
-  const Mat3& second_moment() const { return second_moment_; }
+  Scalar volume() const { return volume_; }
+  const Vector& centroid() const { return centroid_; }
+  const Matrix& second_moment() const { return second_moment_; }
   /// Radius of the ball about c that touches the nearest face, and of the one that holds all vertices, m.
-  double inner_radius() const { return inner_radius_; }
-  double outer_radius() const { return outer_radius_; }
+  Scalar inner_radius() const { return inner_radius_; }
+  Scalar outer_radius() const { return outer_radius_; }
 
   /// A number for all its vertices: another for every other hull, but for one chance in 2⁶⁴.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
   /// The same hull with its centre of volume at the origin.
-  ConvexHull centred() const {
-    ConvexHull moved = *this;
-    for (Vec3& v : moved.vertices_) v -= centroid_;
+  BasicConvexHull centred() const {
+    BasicConvexHull moved = *this;
+    for (Vector& v : moved.vertices_) v -= centroid_;
     moved.centroid_.setZero();
     moved.find_fingerprint();
     moved.put_in_blocks();
@@ -81,16 +86,15 @@ class ConvexHull {
   }
 
  private:
-  static std::span<const Index> slice(const std::vector<Index>& items, const std::vector<Index>& start,
-                                      Index i) {
-    return std::span(items).subspan(std::size_t(start[i]), std::size_t(start[i + 1] - start[i]));
+  static std::span<const Index> slice(const Array<Index>& items, const Array<Index>& start, Index i) {
+    return std::span<const Index>(items).subspan(std::size_t(start[i]), std::size_t(start[i + 1] - start[i]));
   }
-  static double check_points(std::span<const Vec3> points);
+  static Scalar check_points(std::span<const Vector> points);
   void find_neighbours();
   void find_moments();
   void find_fingerprint() {
     fingerprint_ = vertices_.size();
-    for (const Vec3& v : vertices_)
+    for (const Vector& v : vertices_)
       for (int k = 0; k < 3; ++k)
         fingerprint_ = ((fingerprint_ ^ inner::bits_as<std::uint64_t>(v[k])) * 0x9e3779b97f4a7c15ull) ^ fingerprint_ >> 29;
   }
@@ -103,25 +107,28 @@ class ConvexHull {
         blocks_[(3 * (i / lanes) + k) * lanes + i % lanes] = vertices_[std::min(i, count - 1)][Index(k)];
   }
 
-  std::vector<Vec3> vertices_, normals_;
-  std::vector<double> blocks_;
-  std::vector<Index> face_start_, face_loop_, around_start_, around_;
-  double volume_ = 0, inner_radius_ = 0, outer_radius_ = 0;
-  Vec3 centroid_ = Vec3::Zero();
-  Mat3 second_moment_ = Mat3::Zero();
+  Array<Vector> vertices_, normals_;
+  Array<Scalar> blocks_;
+  Array<Index> face_start_, face_loop_, around_start_, around_;
+  Scalar volume_ = 0, inner_radius_ = 0, outer_radius_ = 0;
+  Vector centroid_ = Vector::Zero();
+  Matrix second_moment_ = Matrix::Zero();
   std::uint64_t fingerprint_ = 0;
 };
 
+using ConvexHull = BasicConvexHull<double>;
+
 /// The longest edge of the cloud's box, m.
-inline double ConvexHull::check_points(std::span<const Vec3> points) {
+template <class Scalar>
+Scalar BasicConvexHull<Scalar>::check_points(std::span<const Vector> points) {
   DELASSUS_EXPECT(points.size() >= 4,
                   "a convex hull needs at least 4 points, got " + std::to_string(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     DELASSUS_EXPECT(is_finite(points[i]), "convex hull point #" + std::to_string(i) + " is not finite");
-  double extent = 0;
+  Scalar extent = 0;
   for (int k = 0; k < 3; ++k) {
-    double low = points[0][k], high = low;
-    for (const Vec3& p : points) {
+    Scalar low = points[0][k], high = low;
+    for (const Vector& p : points) {
       low = std::min(low, p[k]);
       high = std::max(high, p[k]);
     }
@@ -133,12 +140,13 @@ inline double ConvexHull::check_points(std::span<const Vec3> points) {
   return extent;
 }
 
-inline void ConvexHull::find_neighbours() {
+template <class Scalar>
+void BasicConvexHull<Scalar>::find_neighbours() {
   around_start_.assign(vertices_.size() + 1, 0);
   for (const Index v : face_loop_) ++around_start_[v + 1];
   for (std::size_t v = 0; v < vertices_.size(); ++v) around_start_[v + 1] += around_start_[v];
   around_.resize(face_loop_.size());
-  std::vector<Index> next(around_start_.begin(), around_start_.end() - 1);
+  Array<Index> next(around_start_.begin(), around_start_.end() - 1);
   for (Index f = 0; f < face_count(); ++f)
     for (const Index v : face(f)) around_[next[v]++] = f;
 }
@@ -146,17 +154,18 @@ inline void ConvexHull::find_neighbours() {
 /// Sums tetrahedra from the mean vertex m to the triangles of each face: with edges a, b, c from m,
 /// V = det(a, b, c)/6, ∫ y = V (a + b + c)/4 and ∫ y yᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c, y
 /// = x − m.
-inline void ConvexHull::find_moments() {
-  Vec3 mean = Vec3::Zero(), first = Vec3::Zero();
-  for (const Vec3& v : vertices_) mean += v / double(vertices_.size());
-  Mat3 second = Mat3::Zero();
+template <class Scalar>
+void BasicConvexHull<Scalar>::find_moments() {
+  Vector mean = Vector::Zero(), first = Vector::Zero();
+  for (const Vector& v : vertices_) mean += v / Scalar(vertices_.size());
+  Matrix second = Matrix::Zero();
   for (Index f = 0; f < face_count(); ++f) {
     const std::span<const Index> loop = face(f);
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      const Vec3 a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean,
+      const Vector a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean,
                  c = vertices_[loop[k + 1]] - mean;
-      const Vec3 s = a + b + c;
-      const double volume = a.dot(b.cross(c)) / 6;
+      const Vector s = a + b + c;
+      const Scalar volume = a.dot(b.cross(c)) / 6;
       volume_ += volume;
       first += volume / 4 * s;
       for (int i = 0; i < 3; ++i)
@@ -164,11 +173,11 @@ inline void ConvexHull::find_moments() {
           second(i, j) += volume / 20 * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
     }
   }
-  const Vec3 shift = first / volume_;
+  const Vector shift = first / volume_;
   centroid_ = mean + shift;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) second_moment_(i, j) = second(i, j) - volume_ * shift[i] * shift[j];
-  for (const Vec3& v : vertices_) outer_radius_ = std::max(outer_radius_, (v - centroid_).norm());
+  for (const Vector& v : vertices_) outer_radius_ = std::max(outer_radius_, (v - centroid_).norm());
   inner_radius_ = outer_radius_;
   for (Index f = 0; f < face_count(); ++f)
     inner_radius_ = std::min(inner_radius_, normals_[f].dot(vertices_[face(f)[0]] - centroid_));

@@ -10,7 +10,9 @@
 
 namespace delassus {
 
-class ConvexHull;
+template <class Scalar>
+class BasicConvexHull;
+using ConvexHull = BasicConvexHull<double>;
 
 namespace inner {
 

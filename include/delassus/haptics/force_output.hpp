@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
 namespace delassus {
 
@@ -31,10 +32,12 @@ struct ForceOutput {
   double share() const { return std::isinf(cutoff) ? 1 : -std::expm1(-2 * std::numbers::pi * cutoff * period); }
 
   /// One tick of one vector: `filtered` is the filter's memory.
-  Vec3 operator()(const Vec3& wanted, double limit, Vec3& filtered) const {
-    filtered = is_finite(wanted) ? Vec3(filtered + share() * (wanted - filtered)) : Vec3(Vec3::Zero());
-    const double size = filtered.norm();
-    return size > limit ? Vec3(limit / size * filtered) : filtered;
+  template <class T>
+  Vec<3, T> operator()(const std::type_identity_t<Vec<3, T>>& wanted, double limit, Vec<3, T>& filtered) const {
+    using Vector = Vec<3, T>;
+    filtered = is_finite(wanted) ? Vector(filtered + share() * (wanted - filtered)) : Vector(Vector::Zero());
+    const T size = filtered.norm();
+    return size > limit ? Vector(limit / size * filtered) : filtered;
   }
 };
 

@@ -65,6 +65,8 @@ template <class Problem>
 class ToolRows {
   using Rows = typename Problem::Rows;
   using T = typename Rows::Scalar;
+  using Vec3 = Vec<3, DoubleIn<T>>;
+  using Twist = Vec<6, DoubleIn<T>>;
   static constexpr int p = coupling_pool<Problem>;
   static constexpr int pools = Rows::pool_count;
 
@@ -105,7 +107,7 @@ class ToolRows {
     const Vec3 arm = now * arm_;
     const Vec3 turned = logarithm<double>(now * frame_ * turn_.conjugate()) - ahead_;
     const Vec3 turns_faster = device.angular_velocity - rate_;
-    Vec<6> moved, faster;
+    Twist moved, faster;
     moved << device.position + arm - point_ + turned.cross(half_stretch_), turned;
     faster << device.velocity + device.angular_velocity.cross(arm) - velocity_ + turns_faster.cross(half_stretch_),
         turns_faster;
@@ -117,14 +119,14 @@ class ToolRows {
   }
 
   /// The impulse on the device's end at the present impulses of the others, N·s and N·m·s.
-  Vec<6> impulse_on_device(const Rows& rows) const {
+  Twist impulse_on_device(const Rows& rows) const {
     Vec<6, T> lambda = -(inverse_ * d_now_);
     for_each_index<pools>([&](auto q) {
       const auto& others = rows.template pool<q>().lambda;
       for (const auto& row : std::get<q>(coupled_)) lambda -= row.Z.transpose() * others[row.item];
     });
-    Vec<6> out = -lambda.template cast<double>();
-    out.tail<3>() += half_stretch_.cross(out.head<3>());
+    Twist out = -lambda.template cast<double>();
+    out.template tail<3>() += half_stretch_.cross(out.template head<3>());
     return out;
   }
 
@@ -139,7 +141,7 @@ class ToolRows {
     rate_.setZero();
     world.visit(item.b.set, [&](const auto& set, auto) {
       if constexpr (std::remove_cvref_t<decltype(set)>::width == 6) {
-        const Vec<6> v = set.velocity()[item.b.block].template cast<double>();
+        const Twist v = set.velocity()[item.b.block].template cast<double>();
         rate_ = v.template tail<3>();
         velocity_ = v.template head<3>() + rate_.cross(turn_ * frame_.conjugate() * arm_);
       }
@@ -199,7 +201,7 @@ class ToolRows {
   Vec3 point_ = Vec3::Zero(), velocity_ = Vec3::Zero(), rate_ = Vec3::Zero(), ahead_ = Vec3::Zero();
   Quat frame_ = Quat::Identity(), turn_ = Quat::Identity();
   Vec<6, T> d_ = Vec<6, T>::Zero(), d_now_ = Vec<6, T>::Zero();
-  Vec<6> by_place_ = Vec<6>::Zero(), by_speed_ = Vec<6>::Zero();
+  Twist by_place_ = Twist::Zero(), by_speed_ = Twist::Zero();
   Mat<6, 6, T> own_block_ = Mat<6, 6, T>::Zero(), inverse_ = Mat<6, 6, T>::Zero();  ///< W_cc and W_cc⁻¹
   typename CoupledRows<Rows>::type coupled_;
   std::array<std::vector<Index>, std::size_t(pools)> place_;

@@ -16,7 +16,8 @@ namespace delassus {
 /// The lower triangle of P A Pᵀ with its fill, for an A whose pattern is symmetric: column j has the rows
 /// `row(start(j)) … row(start(j + 1) − 1)`, ascending, below the diagonal. P is by minimum degree.
 /// Buffers keep their capacity from one analysis to the next.
-class BlockPattern {
+template <class Index>
+class BasicBlockPattern {
  public:
   /// All diagonal blocks and the pairs (i, j), i ≠ j, in any order, repeats allowed.
   void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
@@ -109,5 +110,7 @@ class BlockPattern {
   std::vector<Array<Index>> lists_;
   Array<Degree> queue_;
 };
+
+using BlockPattern = BasicBlockPattern<Index>;
 
 }  // namespace delassus

@@ -20,6 +20,19 @@ using Vec3 = Vec<3>;
 using Mat3 = Mat<3, 3>;
 using Quat = Eigen::Quaternion<double>;
 
+namespace inner {
+
+template <class T>
+struct double_in {
+  using type = double;
+};
+
+}  // namespace inner
+
+/// A double that is not known before T is: what a template writes with it costs who uses the template, and not who reads it.
+template <class T>
+using DoubleIn = typename inner::double_in<T>::type;
+
 /// The k-th axis.
 template <class T = double>
 Vec<3, T> unit_axis(int k) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
 
@@ -9,7 +10,6 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -19,7 +19,7 @@ class LawBook;
 /// Calls each law with its item and its memory. `prepare` runs once a step, when W is built.
 template <class... Laws, class T>
 class LawBook<Constraints<Laws...>, T> {
-  using Memories = std::tuple<std::vector<inner::memory_of_t<Laws, T>>...>;
+  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<Laws, T>>...>;
 
  public:
   LawBook() = default;  ///< of nothing, before it is attached

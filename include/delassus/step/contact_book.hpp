@@ -24,7 +24,8 @@ struct ContactResult {
 };
 
 /// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.
-class ContactBook {
+template <class Scalar>
+class BasicContactBook {
  public:
   std::vector<Collider> colliders;
   std::vector<ContactPoint> points;
@@ -93,7 +94,7 @@ class ContactBook {
 
   /// Keeps this step's impulses for the next one.
   void remember() {
-    const std::span<ContactMemory::Entry> entries = memory_.renew(results.size());
+    const auto entries = memory_.renew(results.size());
     for (std::size_t i = 0; i < results.size(); ++i)
       entries[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
                     results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
@@ -111,7 +112,9 @@ class ContactBook {
 
   Array<Anchor> anchors_;
   Array<Index> materials_;
-  ContactMemory memory_;
+  BasicContactMemory<Scalar> memory_;
 };
+
+using ContactBook = BasicContactBook<double>;
 
 }  // namespace delassus

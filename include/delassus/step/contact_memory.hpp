@@ -16,8 +16,10 @@ namespace delassus {
 /// What is remembered of the contacts of the last step, sorted by pair and feature. A name is found by
 /// bisection; who has lost his is looked for along the longest axis of his pair, whose order is made when the
 /// first one asks: n contacts of one pair, as two soft surfaces have, cost n log n.
-class ContactMemory {
+template <class Scalar>
+class BasicContactMemory {
  public:
+  using Vec3 = Vec<3, Scalar>;
   struct Entry {
     std::uint64_t pair;
     std::uint32_t feature;
@@ -66,15 +68,15 @@ class ContactMemory {
   }
 
   /// Of what is equally near, the last by name.
-  Entry* find_near(std::uint64_t pair, const Vec3& point, double reach) {
+  Entry* find_near(std::uint64_t pair, const Vec3& point, Scalar reach) {
     order_pair(pair);
-    const auto is_lower = [&](Index i, double x) { return entries_[i].point[axis_] < x; };
+    const auto is_lower = [&](Index i, Scalar x) { return entries_[i].point[axis_] < x; };
     Index found = -1;
-    double nearest = reach * reach;
+    Scalar nearest = reach * reach;
     for (auto i = std::lower_bound(order_.begin(), order_.end(), point[axis_] - reach, is_lower);
          i != order_.end() && entries_[*i].point[axis_] <= point[axis_] + reach; ++i) {
       if (entries_[*i].is_taken) continue;
-      const double distance = (entries_[*i].point - point).squaredNorm();
+      const Scalar distance = (entries_[*i].point - point).squaredNorm();
       if (distance < nearest || (distance == nearest && *i > found)) nearest = distance, found = *i;
     }
     return found < 0 ? nullptr : &entries_[found];
@@ -99,7 +101,7 @@ class ContactMemory {
       }
     axis_ = largest_entry(Vec3(high - low));
     std::sort(order_.begin(), order_.end(), [&](Index i, Index j) {
-      const double x = entries_[i].point[axis_], y = entries_[j].point[axis_];
+      const Scalar x = entries_[i].point[axis_], y = entries_[j].point[axis_];
       return x != y ? x < y : i < j;
     });
   }
@@ -109,5 +111,7 @@ class ContactMemory {
   Index ordered_begin_ = 0, ordered_end_ = 0;  ///< that pair's entries
   int axis_ = 0;
 };
+
+using ContactMemory = BasicContactMemory<double>;
 
 }  // namespace delassus

@@ -8,12 +8,12 @@
 
 #include <cstddef>
 #include <deque>
-#include <vector>
 
 namespace delassus::inner {
 
 /// A hull is copied when its body is added and freed when it is taken out; no hull ever moves.
-class Shapes {
+template <class Hull>
+class BasicShapes {
  public:
   /// Gives block b a shape: a new block, or one that was dropped.
   void give(Index b, const Shape& shape) {
@@ -51,9 +51,11 @@ class Shapes {
   void memory(auto& archive) { archive(shape_, hulls_, hull_, free_); }
 
  private:
-  std::vector<Shape> shape_;  ///< without their hulls
-  std::deque<ConvexHull> hulls_;
+  Array<Shape> shape_;  ///< without their hulls
+  std::deque<Hull> hulls_;
   Array<Index> hull_, free_;
 };
+
+using Shapes = BasicShapes<ConvexHull>;
 
 }  // namespace delassus::inner

@@ -6,7 +6,8 @@
 namespace delassus::inner {
 
 /// Whether the ray from the origin along d passes the triangle, whose corners run counter-clockwise about d.
-inline bool is_pierced(const std::array<DifferencePoint, 3>& corner, const Vec3& d) {
+template <class Scalar>
+bool is_pierced(const std::array<DifferencePoint, 3>& corner, const Vec<3, Scalar>& d) {
   for (int k = 0; k < 3; ++k)
     if (d.dot(corner[k].w.cross(corner[(k + 1) % 3].w)) < 0) return false;
   return true;
@@ -14,14 +15,15 @@ inline bool is_pierced(const std::array<DifferencePoint, 3>& corner, const Vec3&
 
 /// Three points of A − B whose triangle the ray from the origin along `d` pierces; of several, which rounding makes of
 /// slivers, the nearest. Where rounding leaves none: the face with the least offset / (normal · d).
-inline std::array<DifferencePoint, 3> pierced_face(const Polytope& polytope, const Vec3& d) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+template <class Scalar>
+std::array<DifferencePoint, 3> pierced_face(const BasicPolytope<Scalar>& polytope, const Vec<3, Scalar>& d) {
+  constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
   int best = 0;
-  double least = infinity;
+  Scalar least = infinity;
   bool is_through = false;
   for (int f = 0; f < polytope.face_count(); ++f) {
-    const Polytope::Face& face = polytope.face(f);
-    const double slope = face.normal.dot(d);
+    const auto& face = polytope.face(f);
+    const Scalar slope = face.normal.dot(d);
     if (!(slope > 0) || face.offset == infinity) continue;
     const bool passes = is_pierced(polytope.corners(f), d);
     if (passes < is_through || (passes == is_through && face.offset / slope >= least)) continue;
@@ -34,8 +36,9 @@ inline std::array<DifferencePoint, 3> pierced_face(const Polytope& polytope, con
 
 /// Of the triangles that q makes with the sides of `portal`, keeps the one that the ray along d pierces.
 /// Sides run counter-clockwise about d. False when there is none.
-inline bool narrow(const DifferencePoint& q, const Vec3& d, std::array<DifferencePoint, 3>& portal) {
-  std::array<double, 3> side;
+template <class Scalar>
+bool narrow(const DifferencePoint& q, const Vec<3, Scalar>& d, std::array<DifferencePoint, 3>& portal) {
+  std::array<Scalar, 3> side;
   for (int k = 0; k < 3; ++k) side[k] = d.dot(q.w.cross(portal[k].w));
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;

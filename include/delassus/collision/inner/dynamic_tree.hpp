@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -36,7 +35,8 @@ inline bool is_same(const Aabb& a, const Aabb& b) {
 /// Each leaf carries a number. A leaf that moves keeps its place, and the boxes above it follow; when their
 /// surfaces have grown by half in sum, the tree is built anew by medians. A visit to k hits among n leaves is
 /// O(k + log n).
-class DynamicTree {
+template <class Scalar>
+class BasicDynamicTree {
  public:
   bool is_empty() const { return root_ < 0; }
 
@@ -122,6 +122,7 @@ class DynamicTree {
 
  private:
   struct Node {
+    using CopiedByBytes = Node;
     Aabb box;
     Index parent = -1;
     std::array<Index, 2> child{-1, -1};
@@ -188,11 +189,13 @@ class DynamicTree {
     return n;
   }
 
-  std::vector<Node> node_;
+  Array<Node> node_;
   Array<Index> free_, leaves_;
   mutable Array<Index> stack_;
   Index root_ = -1, leaf_count_ = 0;
-  double surface_ = 0, surface_when_built_ = 0;
+  Scalar surface_ = 0, surface_when_built_ = 0;
 };
+
+using DynamicTree = BasicDynamicTree<double>;
 
 }  // namespace delassus::inner

@@ -11,17 +11,20 @@ namespace delassus::inner {
 
 /// A convex polytope inside A − B. A face whose plane is useless has the offset +∞ and goes with the next
 /// point.
-class Polytope {
+template <class Scalar>
+class BasicPolytope {
  public:
+  using Vec3 = Vec<3, Scalar>;
+
   static constexpr int max_points = 240, max_faces = 2 * max_points;
   struct Face {
     std::array<std::uint8_t, 3> v;
     Vec3 normal;
-    double offset;
+    Scalar offset;
   };
 
   /// Pre: four points that span a volume.
-  explicit Polytope(const std::array<DifferencePoint, 4>& corner) : points_count_(4) {
+  explicit BasicPolytope(const std::array<DifferencePoint, 4>& corner) : points_count_(4) {
     for (int i = 0; i < 4; ++i) points_[i] = corner[i];
     const Vec3 normal = (corner[1].w - corner[0].w).cross(corner[2].w - corner[0].w);
     if (normal.dot(corner[3].w - corner[0].w) > 0) std::swap(points_[1], points_[2]);
@@ -49,7 +52,7 @@ class Polytope {
 
   /// Replaces what `q` sees, from `tolerance` above a plane on, by a fan to its horizon. False when it sees
   /// nothing.
-  bool extend(const DifferencePoint& q, double tolerance) {
+  bool extend(const DifferencePoint& q, Scalar tolerance) {
     int kept = 0, edges = 0;
     for (int f = 0; f < faces_count_; ++f) {
       const Face& face = faces_[f];
@@ -76,9 +79,9 @@ class Polytope {
     face.v = {std::uint8_t(i), std::uint8_t(j), std::uint8_t(k)};
     const Vec3 &a = points_[i].w, &b = points_[j].w, &c = points_[k].w;
     face.normal = (b - a).cross(c - a);
-    const double area2 = face.normal.norm();
+    const Scalar area2 = face.normal.norm();
     // The normal of a sliver holds no digits below this: its height is lost in the rounding of its edges.
-    const double edge2 = std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+    const Scalar edge2 = std::max((b - a).squaredNorm(), (c - a).squaredNorm());
     if (!(area2 > 1e-12 * edge2)) {
       face.offset = std::numeric_limits<double>::infinity();
       return;
@@ -103,5 +106,7 @@ class Polytope {
   std::array<std::array<std::uint8_t, 2>, 3 * max_faces / 2> edges_;
   int points_count_ = 0, faces_count_ = 0;
 };
+
+using Polytope = BasicPolytope<double>;
 
 }  // namespace delassus::inner

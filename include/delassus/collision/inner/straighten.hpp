@@ -14,10 +14,13 @@ namespace delassus::inner {
 /// Turns a certified normal to the minimum of h next to it: exactly where a face meets a point, to 1e-7 rad
 /// where there is a gap, else as Newton's method says. A distance cannot say as much: a normal that leans by
 /// θ proves only R θ²/2 less, R being the radius of A − B there.
-struct Straighten {
+template <class Scalar>
+struct BasicStraighten {
+  using Vec3 = Vec<3, Scalar>;
+
   const Shape &a, &b;
   const Pose& b_in_a;
-  double scale;
+  Scalar scale;
 
   /// `is_sharp`: beyond a gap of 5e-4 of the scale the normal is a minimum to that accuracy already.
   void operator()(SignedPair& r, bool is_sharp) const {
@@ -33,21 +36,21 @@ struct Straighten {
       if (face_a.count >= 3) take(face_a.normal, r);
       if (face_b.count >= 3) take(Vec3(-(b_in_a.rotation * face_b.normal)), r);
     }
-    if (r.normal != before) certify(a, b, b_in_a, std::numeric_limits<double>::infinity(), scale, r);
+    if (r.normal != before) certify(a, b, b_in_a, std::numeric_limits<Scalar>::infinity(), scale, r);
   }
 
  private:
-  static constexpr double nearby = 0.9998;
+  static constexpr Scalar nearby = 0.9998;
 
   Vec3 to_b(const Vec3& d) const { return b_in_a.rotation.transpose() * d; }
 
   /// −h(n), the distance that the unit vector n proves.
-  double proven(const Vec3& n) const { return -Difference{a, b, b_in_a}.reach(n); }
+  Scalar proven(const Vec3& n) const { return -Difference{a, b, b_in_a}.reach(n); }
 
   /// Takes a normal that is near and, but for rounding, proves as much.
   bool take(const Vec3& n, SignedPair& r) const {
     if (!(n.dot(r.normal) > nearby)) return false;
-    const double distance = proven(n),
+    const Scalar distance = proven(n),
                  rounding = 1e-15 * (r.point_a.norm() + r.point_b.norm() + b_in_a.position.norm());
     if (!(distance >= r.distance - rounding)) return false;
     r.normal = n;
@@ -86,9 +89,9 @@ struct Straighten {
   }
 
   /// The normal of both moved apart by `way` along n.
-  GjkResult apart(const Vec3& n, double way) const {
+  GjkResult apart(const Vec3& n, Scalar way) const {
     const Pose parted{.position = b_in_a.position + way * n, .rotation = b_in_a.rotation};
-    return gjk(Difference{a, b, parted}, n, std::numeric_limits<double>::infinity());
+    return gjk(Difference{a, b, parted}, n, std::numeric_limits<Scalar>::infinity());
   }
 
   void measure(SignedPair& r) const {
@@ -103,12 +106,14 @@ struct Straighten {
     for (int round = 0; round < 2; ++round) {
       const GjkResult q = apart(n, 1e-2 * scale - proven(n));
       if (!q.is_apart || !(q.normal.dot(r.normal) > nearby)) break;
-      const double turn2 = (q.normal - n).squaredNorm();
+      const Scalar turn2 = (q.normal - n).squaredNorm();
       n = q.normal;
       if (turn2 < 1e-14) break;
     }
     take(n, r);
   }
 };
+
+using Straighten = BasicStraighten<double>;
 
 }  // namespace delassus::inner

@@ -259,7 +259,7 @@ class ElasticBody {
   M material_{};
   std::uint32_t number_ = 0;
   Array<Index> blocks_;
-  Array<E> elements_;
+  ArrayOrVector<E> elements_;
   Array<std::array<int, E::nodes>> order_;    ///< `element_at(k)`'s corners by ascending node
   Array<std::array<Index, E::nodes>> nodes_;  ///< these nodes
   Array<double> lane_numbers_;                ///< of whole lanes of elements

@@ -9,25 +9,24 @@
 namespace delassus::inner {
 
 struct HullFaces {
-  std::vector<Vec3> vertices{}, normals{};
-  std::vector<Index> start{0}, loop{};
+  Array<Vec3> vertices{}, normals{};
+  Array<Index> start{0}, loop{};
 };
 
 /// Grows a region from the largest triangle left, over neighbours whose corners lie within `tolerance` of its
 /// plane. Returns the region of each triangle.
-inline std::vector<Index> coplanar_regions(std::span<const Vec3> points,
-                                           std::span<const HullTriangle> triangles, double tolerance,
-                                           Index& count) {
+Array<Index> coplanar_regions(const auto& points, std::span<const HullTriangle> triangles, double tolerance,
+                              Index& count) {
   struct Edge {
     Index u, v, triangle;
     bool operator<(const Edge& o) const { return std::pair(u, v) < std::pair(o.u, o.v); }
   };
-  std::vector<Edge> edges;
+  Array<Edge> edges;
   for (Index t = 0; t < Index(triangles.size()); ++t)
     for (int k = 0; k < 3; ++k) edges.push_back({triangles[t].v[k], triangles[t].v[(k + 1) % 3], t});
   std::sort(edges.begin(), edges.end());
 
-  std::vector<Index> seeds(triangles.size()), region(triangles.size(), -1), front;
+  Array<Index> seeds(triangles.size()), region(triangles.size(), -1), front;
   std::iota(seeds.begin(), seeds.end(), 0);
   std::sort(seeds.begin(), seeds.end(), [&](Index s, Index t) {
     return triangles[s].area != triangles[t].area ? triangles[s].area > triangles[t].area : s < t;
@@ -59,8 +58,8 @@ inline std::vector<Index> coplanar_regions(std::span<const Vec3> points,
 }
 
 /// Appends one face: its corners sorted by their angle around their mean, seen against the normal.
-inline void append_face(std::span<const Vec3> points, std::vector<Index>& corners, const Vec3& normal,
-                        std::span<const Index> new_index, HullFaces& faces) {
+void append_face(const auto& points, Array<Index>& corners, const Vec3& normal, std::span<const Index> new_index,
+                 HullFaces& faces) {
   Vec3 centre = Vec3::Zero();
   for (const Index v : corners) centre += points[v] / double(corners.size());
   const Vec3 x = (points[corners[0]] - centre).normalized(), y = normal.cross(x);
@@ -77,18 +76,17 @@ inline void append_face(std::span<const Vec3> points, std::vector<Index>& corner
 }
 
 /// Polygons from triangles. A vertex stays when at least three faces meet in it.
-inline HullFaces merge_coplanar(std::span<const Vec3> points, std::span<const HullTriangle> triangles,
-                                double tolerance) {
+HullFaces merge_coplanar(const auto& points, std::span<const HullTriangle> triangles, double tolerance) {
   Index count = 0;
-  const std::vector<Index> region = coplanar_regions(points, triangles, tolerance, count);
-  std::vector<std::vector<Index>> corners(count);
-  std::vector<Vec3> normals(count, Vec3::Zero());
+  const Array<Index> region = coplanar_regions(points, triangles, tolerance, count);
+  std::vector<Array<Index>> corners(count);
+  Array<Vec3> normals(count, Vec3::Zero());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    corners[region[t]].insert(corners[region[t]].end(), triangles[t].v.begin(), triangles[t].v.end());
+    corners[region[t]].append(triangles[t].v.begin(), triangles[t].v.end());
     normals[region[t]] += triangles[t].area * triangles[t].normal;
   }
-  std::vector<Index> meets(points.size(), 0), new_index(points.size(), -1);
-  for (std::vector<Index>& face : corners) {
+  Array<Index> meets(points.size(), 0), new_index(points.size(), -1);
+  for (Array<Index>& face : corners) {
     std::sort(face.begin(), face.end());
     face.erase(std::unique(face.begin(), face.end()), face.end());
     for (const Index v : face) ++meets[v];
@@ -100,7 +98,7 @@ inline HullFaces merge_coplanar(std::span<const Vec3> points, std::span<const Hu
     faces.vertices.push_back(points[v]);
   }
   for (Index f = 0; f < count; ++f) {
-    std::erase_if(corners[f], [&](Index v) { return meets[v] < 3; });
+    erase_if(corners[f], [&](Index v) { return meets[v] < 3; });
     if (corners[f].size() >= 3) append_face(points, corners[f], normals[f].normalized(), new_index, faces);
   }
   return faces;

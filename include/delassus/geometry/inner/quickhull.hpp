@@ -1,6 +1,7 @@
 /// Quickhull: the triangles of a point cloud's convex hull, the farthest outside point first.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -19,12 +20,12 @@ struct HullTriangle {
   std::array<Index, 3> v{};
   Vec3 normal = Vec3::Zero();
   double offset = 0, area = 0;
-  std::vector<Index> outside{};
+  Array<Index> outside{};
   Index farthest = -1;
   double farthest_distance = 0;
 };
 
-inline HullTriangle hull_triangle(std::span<const Vec3> points, Index a, Index b, Index c) {
+HullTriangle hull_triangle(const auto& points, Index a, Index b, Index c) {
   HullTriangle t{.v = {a, b, c}};
   t.normal = (points[b] - points[a]).cross(points[c] - points[a]);
   t.area = 0.5 * t.normal.norm();
@@ -34,8 +35,7 @@ inline HullTriangle hull_triangle(std::span<const Vec3> points, Index a, Index b
 }
 
 /// Gives point `p` to the triangle that sees it from farthest away, or to none when it lies inside all.
-inline void hand_out(std::span<const Vec3> points, Index p, double tolerance,
-                     std::span<HullTriangle> triangles) {
+void hand_out(const auto& points, Index p, double tolerance, std::span<HullTriangle> triangles) {
   HullTriangle* best = nullptr;
   double best_distance = tolerance;
   for (HullTriangle& t : triangles) {
@@ -49,7 +49,7 @@ inline void hand_out(std::span<const Vec3> points, Index p, double tolerance,
 
 /// Four points that span the cloud well, in positive orientation. False when the cloud is thinner than
 /// `thin`.
-inline bool first_tetrahedron(std::span<const Vec3> points, double thin, std::array<Index, 4>& corner) {
+bool first_tetrahedron(const auto& points, double thin, std::array<Index, 4>& corner) {
   const auto farthest = [&](const auto& measure) {
     Index best = 0;
     for (Index i = 1; i < Index(points.size()); ++i)
@@ -69,10 +69,9 @@ inline bool first_tetrahedron(std::span<const Vec3> points, double thin, std::ar
 }
 
 /// Replaces the triangles that see `p` by a fan from `p` to their horizon.
-inline void add_hull_point(std::span<const Vec3> points, Index p, double tolerance,
-                           std::vector<HullTriangle>& triangles) {
-  std::vector<std::pair<Index, Index>> edges;
-  std::vector<Index> orphans;
+void add_hull_point(const auto& points, Index p, double tolerance, std::vector<HullTriangle>& triangles) {
+  Array<std::pair<Index, Index>> edges;
+  Array<Index> orphans;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     HullTriangle& t = triangles[i];
@@ -82,7 +81,7 @@ inline void add_hull_point(std::span<const Vec3> points, Index p, double toleran
       continue;
     }
     for (int k = 0; k < 3; ++k) edges.emplace_back(t.v[k], t.v[(k + 1) % 3]);
-    orphans.insert(orphans.end(), t.outside.begin(), t.outside.end());
+    orphans.append(t.outside.begin(), t.outside.end());
   }
   triangles.resize(kept);
   std::sort(edges.begin(), edges.end());
@@ -98,7 +97,7 @@ inline void add_hull_point(std::span<const Vec3> points, Index p, double toleran
 /// The hull of `points` as triangles. False when the cloud is thinner than 1e-6 of its `extent`.
 /// A point counts as outside a plane from 1e-12 of the extent on. Source of the method:
 /// [BarberDobkinHuhdanpaa1996].
-inline bool quickhull(std::span<const Vec3> points, double extent, std::vector<HullTriangle>& triangles) {
+bool quickhull(const auto& points, double extent, std::vector<HullTriangle>& triangles) {
   std::array<Index, 4> c{};
   if (!first_tetrahedron(points, 1e-6 * extent, c)) return false;
   const double tolerance = 1e-12 * extent;
