@@ -80,7 +80,7 @@ template <class... Laws>
 Constraints(Laws...) -> Constraints<Laws...>;
 
 /// f(p, pool) for every pool of items that a host adds and that stay from step to step.
-void each_kept_pool(auto& laws, auto&& f) {
+[[gnu::always_inline]] inline void each_kept_pool(auto& laws, auto&& f) {
   for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) {
     auto& pool = laws.template pool<p>();
     if constexpr (requires { pool.slots; }) f(p, pool);
@@ -88,7 +88,7 @@ void each_kept_pool(auto& laws, auto&& f) {
 }
 
 /// f(p, pool) for every pool of items that collision detection makes anew in each step.
-void each_contact_pool(auto& laws, auto&& f) {
+[[gnu::always_inline]] inline void each_contact_pool(auto& laws, auto&& f) {
   for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) {
     auto& pool = laws.template pool<p>();
     if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) f(p, pool);

@@ -45,6 +45,8 @@ struct Parts {
   using Scheme = the<role::Scheme, PlainOrder>;
   using Activity = the<role::Activity, AllActive>;
 
+  template <class Stage>
+  static constexpr bool hears_stage = (inner::hears_stage<Policies, Stage> || ...);
   static constexpr bool hears_within = (inner::hears_within<Policies> || ...);
   static constexpr bool observes_sweeps = (inner::observes_sweeps<Policies> || ...);
 };

@@ -16,6 +16,13 @@ template <class P>
   requires requires { typename P::listens; }
 inline constexpr bool hears_within<P> = P::listens::within;
 
+/// A listener that hears this stage.
+template <class P, class Stage>
+inline constexpr bool hears_stage = false;
+template <class P, class Stage>
+  requires(Plays<P, role::Listener> && requires { typename P::listens; })
+inline constexpr bool hears_stage<P, Stage> = P::listens::template to<Stage>;
+
 /// A listener that wants to be told of every sweep of the solver.
 template <class P>
 inline constexpr bool observes_sweeps = requires { requires P::every_sweep; };
@@ -32,13 +39,13 @@ consteval bool hears() {
 /// Every listener that hears this stage, in the order of the arguments.
 template <class Stage>
 void notify(auto& step) {
-  step.policies.each([&](auto& policy) {
-    using P = std::remove_reference_t<decltype(policy)>;
-    if constexpr (Plays<P, role::Listener>) {
-      if constexpr (P::listens::template to<Stage>)
-        if constexpr (hears<P, std::remove_reference_t<decltype(step)>, Stage>()) policy.after(Stage{}, std::as_const(step));
-    }
-  });
+  using Step = std::remove_reference_t<decltype(step)>;
+  if constexpr (Step::Parts::template hears_stage<Stage>)
+    step.policies.each([&](auto& policy) {
+      using P = std::remove_reference_t<decltype(policy)>;
+      if constexpr (hears_stage<P, Stage>)
+        if constexpr (hears<P, Step, Stage>()) policy.after(Stage{}, std::as_const(step));
+    });
 }
 
 /// f(observer): the first listener that wants every sweep, or one that wants nothing.

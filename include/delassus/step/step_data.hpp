@@ -87,17 +87,17 @@ struct StepData : inner::RowDataOf<P> {
   double start = 0;          ///< the time when steps of h began, s
   long steps = 0;            ///< since then
 
-  WorldType& world() { return part<role::World>(); }
-  const WorldType& world() const { return part<role::World>(); }
-  Laws& laws() { return part<role::Constraints>(); }
-  const Laws& laws() const { return part<role::Constraints>(); }
+  [[gnu::always_inline]] WorldType& world() { return part<role::World>(); }
+  [[gnu::always_inline]] const WorldType& world() const { return part<role::World>(); }
+  [[gnu::always_inline]] Laws& laws() { return part<role::Constraints>(); }
+  [[gnu::always_inline]] const Laws& laws() const { return part<role::Constraints>(); }
   /// The policy of a role, its default included.
   template <class Role>
-  auto& part() {
+  [[gnu::always_inline]] auto& part() {
     return P::Held::template part<Role, typename P::template of<Role>>(policies);
   }
   template <class Role>
-  const auto& part() const {
+  [[gnu::always_inline]] const auto& part() const {
     return P::Held::template part<Role, typename P::template of<Role>>(policies);
   }
   /// The part of this type among the arguments; `has` asks whether there is one.
@@ -109,13 +109,13 @@ struct StepData : inner::RowDataOf<P> {
   const auto& get() const {
     return P::Held::template get<Policy>(policies);
   }
-  auto& integrator() { return part<role::Integrator>(); }
-  auto& collision() { return part<role::Collision>(); }
-  auto& compliance() { return part<role::Compliance>(); }
-  auto& solver() { return part<role::Solver>(); }
-  auto& stabilisation() { return part<role::Stabilisation>(); }
-  auto& scheme() { return part<role::Scheme>(); }
-  auto& activity() { return part<role::Activity>(); }
+  [[gnu::always_inline]] auto& integrator() { return part<role::Integrator>(); }
+  [[gnu::always_inline]] auto& collision() { return part<role::Collision>(); }
+  [[gnu::always_inline]] auto& compliance() { return part<role::Compliance>(); }
+  [[gnu::always_inline]] auto& solver() { return part<role::Solver>(); }
+  [[gnu::always_inline]] auto& stabilisation() { return part<role::Stabilisation>(); }
+  [[gnu::always_inline]] auto& scheme() { return part<role::Scheme>(); }
+  [[gnu::always_inline]] auto& activity() { return part<role::Activity>(); }
   /// What the policy of a role keeps, or what a law overrides does: state<role::Activity>(), state<NewtonImpact>().
   template <class Key>
     requires has_state<Key>
