@@ -193,16 +193,18 @@ class CollisionEngine {
                    .feature = id});
   }
 
+  /// The last points by feature; they are few.
   static void sort_last(int count, std::vector<ContactPoint>& out) {
-    std::sort(out.end() - count, out.end(),
-              [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
+    ContactPoint* const first = out.data() + out.size() - count;
+    for (int i = 1; i < count; ++i)
+      for (int k = i; k > 0 && first[k].feature < first[k - 1].feature; --k) std::swap(first[k], first[k - 1]);
   }
 
   Kernel kernel_;
   Broad broad_;
   CollisionReport report_;
   Patch patch_;
-  std::vector<Aabb> boxes_;
+  Array<Aabb> boxes_;
   Array<inner::Summary> summary_;
   Array<BoxTag> tags_;
   Array<Index> half_spaces_;

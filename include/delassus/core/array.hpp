@@ -41,6 +41,16 @@ struct ArrayMemory {
   void grow(std::size_t count, std::size_t width, std::size_t alignment) {
     if (count > capacity) reserve(count > 2 * capacity ? count : 2 * capacity, width, alignment);
   }
+  /// One more element, a copy of x, where there is no room for it. x may be one of ours.
+  [[gnu::noinline]] void* push(const void* x, std::size_t width, std::size_t alignment) {
+    const std::size_t room = size > 0 ? 2 * size : 1;
+    char* const larger = static_cast<char*>(allocate(room * width, alignment));
+    if (size > 0) std::memcpy(larger, data, size * width);
+    std::memcpy(larger + size * width, x, width);
+    release(alignment);
+    *this = {larger, size + 1, room};
+    return larger + (size - 1) * width;
+  }
   /// The bytes of another array in the place of these.
   void copy(const ArrayMemory& other, std::size_t width, std::size_t alignment) {
     if (this == &other) return;
@@ -132,13 +142,13 @@ class Array {
   [[gnu::always_inline]] void clear() { memory_.size = 0; }
   /// New elements are T().
   void resize(std::size_t count) {
-    memory_.grow(count, sizeof(T), alignof(T));
+    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignof(T));
     for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T();
     memory_.size = count;
   }
   void resize(std::size_t count, const T& x) {
     const T copy = x;  // it may be one of ours
-    memory_.grow(count, sizeof(T), alignof(T));
+    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignof(T));
     for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T(copy);
     memory_.size = count;
   }
@@ -158,18 +168,15 @@ class Array {
   void append(It first, It last) {
     for (; first != last; ++first) push_back(*first);
   }
-  T& push_back(const T& x) {
-    if (memory_.size < memory_.capacity) return *::new (static_cast<void*>(begin() + memory_.size++)) T(x);
-    const T copy = x;  // it may be one of ours, which growing moves
-    memory_.grow(memory_.size + 1, sizeof(T), alignof(T));
-    return *::new (static_cast<void*>(begin() + memory_.size++)) T(copy);
+  [[gnu::always_inline]] T& push_back(const T& x) {
+    if (memory_.size == memory_.capacity) return *static_cast<T*>(memory_.push(&x, sizeof(T), alignof(T)));
+    return *::new (static_cast<T*>(memory_.data) + memory_.size++) T(x);
   }
   template <class... From>
-  T& emplace_back(From&&... from) {
-    if constexpr (std::is_constructible_v<T, From...>)
-      return push_back(T(static_cast<From&&>(from)...));
-    else
-      return push_back(T{static_cast<From&&>(from)...});
+  [[gnu::always_inline]] T& emplace_back(From&&... from) {
+    if constexpr (!std::is_constructible_v<T, From...>) return push_back(T{static_cast<From&&>(from)...});
+    else if (memory_.size == memory_.capacity) return push_back(T(static_cast<From&&>(from)...));
+    else return *::new (static_cast<T*>(memory_.data) + memory_.size++) T(static_cast<From&&>(from)...);
   }
   [[gnu::always_inline]] void pop_back() { --memory_.size; }
   /// Takes the elements [first, last) out; those behind them move up.

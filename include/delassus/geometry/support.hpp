@@ -1,6 +1,7 @@
 /// How far a shape reaches in a direction: support points, tight boxes, sizes.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
 #include <delassus/math/pose.hpp>
@@ -15,6 +16,13 @@
 namespace delassus {
 
 using Aabb = Eigen::AlignedBox3d;
+
+namespace inner {
+
+template <>
+inline constexpr bool is_copied_by_bytes<Aabb> = true;  // its destructor does nothing
+
+}  // namespace inner
 
 /// Whether there is no point in the box, or in both: asked axis by axis, since the first one mostly tells.
 inline bool is_empty(const Aabb& a) {

@@ -27,7 +27,7 @@ struct ContactResult {
 template <class Scalar>
 class BasicContactBook {
  public:
-  std::vector<Collider> colliders;
+  Array<Collider> colliders;
   std::vector<ContactPoint> points;
   Array<ContactResult> results;  ///< in the order of `points`: by pair, then by feature
 
