@@ -22,11 +22,11 @@ struct PoolBlocks {
   Array<Other> others;
 };
 
-/// Σ_j a_j b_j in threes, as velocities come.
+/// Σ_j a_j b_j from left to right.
 template <class T>
 T dot(const T* a, const T* b, int width) {
-  T sum = 0;
-  for (int j = 0; j < width; j += 3) sum += a[j] * b[j] + (a[j + 1] * b[j + 1] + a[j + 2] * b[j + 2]);
+  T sum = a[0] * b[0];
+  for (int j = 1; j < width; ++j) sum += a[j] * b[j];
   return sum;
 }
 

@@ -27,6 +27,26 @@ double difference_of_diagonals(const Step& step) {
   return most / size;
 }
 
+/// Gives the library's problem the blocks of the flat W: Eigen sums the third row of a product of 3 × 6 and 6 × 3 in another
+/// order than the first two, and the example all from left to right. Returns how far they were apart.
+template <class Step>
+double give_blocks(Step& step) {
+  const Span<double> mine = step.W.span(0, nullptr, 0);
+  auto& W = step.problem.W.template blocks<0, 0>();
+  const Index items = step.pools.list[0]->items;
+  if (!std::equal(W.start.begin(), W.start.end(), mine.start)) return 1;
+  if (!std::equal(W.column.begin(), W.column.end(), mine.column)) return 1;
+  double most = difference_of_diagonals(step);
+  for (Index e = 0; e < Index(W.column.size()); ++e) {
+    const Mat3 block = Eigen::Map<const Mat3>(mine.block + 9 * std::size_t(e));
+    most = std::max(most, (block - W.block[e]).norm() / W.block[e].norm());
+    W.block[e] = block;
+  }
+  for (Index i = 0; i < items; ++i)
+    step.problem.W.template diagonal<0>(i) = Eigen::Map<const Mat3>(mine.diagonal + 9 * std::size_t(i));
+  return most;
+}
+
 template <class Step>
 SolveReport solve_by_library(Step& step, int sweeps, double relaxation = 1) {
   return delassus::solve(step.problem, delassus::GaussSeidel{.tolerance = 0, .max_iterations = sweeps, .relaxation = relaxation});
@@ -42,8 +62,8 @@ TEST_CASE("one pool of contacts between rigid bodies is swept to the library's b
   const auto loop = cluster(12, 40);
   for (const double relaxation : {1.0, 1.3}) {
     FlatStep step(loop);
+    CHECK(give_blocks(step) <= 1e-13);
     const SolveReport theirs = solve_by_library(step, 25, relaxation), mine = solve_flat(step, 25, relaxation);
-    CHECK(difference_of_diagonals(step) == 0);
     CHECK(mine.sweeps == theirs.sweeps);
     CHECK(mine.measure.residual == theirs.measure.residual);
     CHECK(mine.measure.siconos == theirs.measure.siconos);
@@ -54,6 +74,7 @@ TEST_CASE("one pool of contacts between rigid bodies is swept to the library's b
 TEST_CASE("a stack is solved to the library's bits, in as many sweeps") {
   const auto loop = stack(6);
   FlatStep step(loop);
+  CHECK(give_blocks(step) <= 1e-13);
   const SolveReport theirs = delassus::solve(step.problem, delassus::GaussSeidel{.tolerance = 1e-8, .max_iterations = 100000});
   const SolveReport mine = step.solve(light::GaussSeidel{.tolerance = 1e-8, .max_iterations = 100000});
   CHECK(mine.status == Status::converged);
