@@ -30,16 +30,17 @@ T dot(const T* a, const T* b, int width) {
   return sum;
 }
 
-/// The one primitive is the free velocity of an item, d_i + Σ_{j ≠ i} W_ij λ_j; the velocity of its rows follows by adding
-/// W_ii λ_i. An item with at most `most_partners` others on its bodies has blocks; one with more reads y = A⁻¹ Hᵀ λ, which
-/// `changed` keeps, if none of its bodies is coupled to others by A.
+/// The one primitive is the free velocity of an item, d_i + Σ_{j ≠ i} W_ij λ_j; the velocity of its rows
+/// follows by adding W_ii λ_i. An item with at most `most_partners` others on its bodies has blocks; one with
+/// more reads y = A⁻¹ Hᵀ λ, which `changed` keeps, if none of its bodies is coupled to others by A.
 template <class T>
 class Delassus {
  public:
   static constexpr Index all_blocks = std::numeric_limits<Index>::max();
 
   /// Pre: the rows, pools and sets stay where they are.
-  void build(const WorldView<T>& world, std::span<Pool<T>* const> pools, Rows<T>& rows, Index most_partners = all_blocks);
+  void build(const WorldView<T>& world, std::span<Pool<T>* const> pools, Rows<T>& rows,
+             Index most_partners = all_blocks);
 
   const T* diagonal(int p, Index i) const { return blocks_[p].diagonal.data() + square(p) * std::size_t(i); }
   /// The free velocity of item i of pool p, any number of rows.
@@ -96,13 +97,15 @@ class Delassus {
 };
 
 template <class T>
-void Delassus<T>::build(const WorldView<T>& world, std::span<Pool<T>* const> pools, Rows<T>& rows, Index most_partners) {
+void Delassus<T>::build(const WorldView<T>& world, std::span<Pool<T>* const> pools, Rows<T>& rows,
+                        Index most_partners) {
   world_ = &world;
   rows_ = &rows;
   pools_ = pools;
   blocks_.resize(pools.size());
   pool_of_.clear();
-  for (std::size_t p = 0; p < pools.size(); ++p) pool_of_.resize(pool_of_.size() + std::size_t(pools[p]->items), int(p));
+  for (std::size_t p = 0; p < pools.size(); ++p)
+    pool_of_.resize(pool_of_.size() + std::size_t(pools[p]->items), int(p));
   apply_inverse();
   find_meetings();
   solved_.clear();
@@ -217,8 +220,8 @@ void Delassus<T>::build_row(int p, Index i) {
     const std::size_t line = std::size_t(at.width) * set.table->blocks(set.set);
     for (const Column& c : solved_)
       if (c.set == at.set)  // zero where the two act on bodies that A does not couple
-        add_product(at, rows_of(p), columns_.data() + c.place + at.velocity - set.first_velocity, line, r.rows_of(c.item),
-                    c.item == item ? own : block_at(p, c.item));
+        add_product(at, rows_of(p), columns_.data() + c.place + at.velocity - set.first_velocity, line,
+                    r.rows_of(c.item), c.item == item ? own : block_at(p, c.item));
   }
   add_lift(p, i);
   for (const Index j : opened_) place_[j] = -1;
@@ -248,15 +251,19 @@ T* Delassus<T>::block_at(int p, Index j) {
 
 /// to += H_e G, both given as a line of numbers for each row.
 template <class T>
-void Delassus<T>::add_product(const Entry& e, int rows, const T* G, std::size_t line, int columns, T* to) const {
+void Delassus<T>::add_product(const Entry& e, int rows, const T* G, std::size_t line, int columns,
+                              T* to) const {
   const T* const H = rows_->H.data() + e.place;
   const auto add = [&](auto width) {
     for (int c = 0; c < columns; ++c)
       for (int k = 0; k < rows; ++k) to[k + rows * c] += dot(H + width * k, G + line * c, width);
   };
-  if (e.width == 6) add(std::integral_constant<int, 6>{});
-  else if (e.width == 3) add(std::integral_constant<int, 3>{});
-  else add(e.width);
+  if (e.width == 6)
+    add(std::integral_constant<int, 6>{});
+  else if (e.width == 3)
+    add(std::integral_constant<int, 3>{});
+  else
+    add(e.width);
 }
 
 template <class T>
@@ -265,8 +272,8 @@ void Delassus<T>::add_own_block(Index item, T* own) const {
   for (Index e = r.entry[item]; e < r.entry[item + 1]; ++e)
     for (Index f = r.entry[item]; f < r.entry[item + 1]; ++f)
       if (r.entries[e].block == r.entries[f].block)
-        add_product(r.entries[e], r.rows_of(item), r.G.data() + r.entries[f].place, std::size_t(r.entries[e].width),
-                    r.rows_of(item), own);
+        add_product(r.entries[e], r.rows_of(item), r.G.data() + r.entries[f].place,
+                    std::size_t(r.entries[e].width), r.rows_of(item), own);
 }
 
 /// The rows' own compliance, on the diagonal.
@@ -301,8 +308,15 @@ Span<T> Delassus<T>::span(int p, const Index* items, Index count) {
   PoolBlocks<T>& W = blocks_[p];
   const Index first = pools_[p]->first_row;
   const T* const base = W.others.empty() ? rows_->d.data() + first : W.base.data();
-  return {items,           count,           base,           W.diagonal.data(),           W.start.data(),
-          W.column.data(), W.block.data(), rows_->lambda.data() + first, keeps_velocities_ ? this : nullptr};
+  return {items,
+          count,
+          base,
+          W.diagonal.data(),
+          W.start.data(),
+          W.column.data(),
+          W.block.data(),
+          rows_->lambda.data() + first,
+          keeps_velocities_ ? this : nullptr};
 }
 
 template <class T>

@@ -17,7 +17,8 @@ struct Pools {
   std::tuple<LawPool<Laws, double>...> typed;
   std::array<Pool<double>*, sizeof...(Laws)> list;
 
-  explicit Pools(const Constraints<Laws...>& laws) : Pools(laws, std::make_index_sequence<sizeof...(Laws)>{}) {}
+  explicit Pools(const Constraints<Laws...>& laws)
+      : Pools(laws, std::make_index_sequence<sizeof...(Laws)>{}) {}
 
  private:
   template <std::size_t... p>
@@ -37,8 +38,8 @@ void stop_before_solve(Loop& loop, double h) {
   loop.build();
 }
 
-/// H, W, islands and the solve are the example's own; what Bias and FreeMotion write (d, compliance) and the first λ are the
-/// library's, since they are no part of the form that is tried.
+/// H, W, islands and the solve are the example's own; what Bias and FreeMotion write (d, compliance) and the
+/// first λ are the library's, since they are no part of the form that is tried.
 template <class Problem, class PoolList>
 struct FlatStep {
   Problem problem;  ///< the library's, with the items that the pools refer to
@@ -100,11 +101,13 @@ struct pools_of<Constraints<Laws...>> {
   using type = Pools<Laws...>;
 };
 template <class Loop>
-FlatStep(const Loop&) -> FlatStep<decltype(std::declval<const Loop&>().problem()),
-                                  typename pools_of<decltype(std::declval<const Loop&>().problem().laws)>::type>;
+FlatStep(const Loop&)
+    -> FlatStep<decltype(std::declval<const Loop&>().problem()),
+                typename pools_of<decltype(std::declval<const Loop&>().problem().laws)>::type>;
 template <class Loop>
-FlatStep(const Loop&, Index) -> FlatStep<decltype(std::declval<const Loop&>().problem()),
-                                         typename pools_of<decltype(std::declval<const Loop&>().problem().laws)>::type>;
+FlatStep(const Loop&, Index)
+    -> FlatStep<decltype(std::declval<const Loop&>().problem()),
+                typename pools_of<decltype(std::declval<const Loop&>().problem().laws)>::type>;
 
 /// λ of a problem of the library in the order of the flat rows.
 template <class Problem>

@@ -30,15 +30,19 @@ SolveReport GaussSeidel::solve(Island<T>& island) const {
   const int rows = island.row_count();
   SolveReport report{.measure = island.measure()};
   control.tell(0, report.measure);
-  if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
+  if (!std::isfinite(report.measure.residual))
+    return {.status = Status::quarantined, .measure = report.measure};
   Array<T> best;
   Measure least = report.measure;
   const auto keep = [&] {
-    if (control.has_deadline() && !(report.measure.residual > least.residual)) island.save(best), least = report.measure;
+    if (control.has_deadline() && !(report.measure.residual > least.residual))
+      island.save(best), least = report.measure;
   };
   keep();
-  while (report.sweeps < max_iterations && (report.sweeps < min_iterations || !is_done(report.measure, rows))) {
-    const int batch = control.observe ? 1 : std::min(inner::patience(report.sweeps), max_iterations - report.sweeps);
+  while (report.sweeps < max_iterations &&
+         (report.sweeps < min_iterations || !is_done(report.measure, rows))) {
+    const int batch =
+        control.observe ? 1 : std::min(inner::patience(report.sweeps), max_iterations - report.sweeps);
     for (int k = 0; k < batch && !island.is_cut(); ++k) {
       island.sweep(T(relaxation), report.sweeps >= min_iterations);
       report.sweeps += !island.is_cut();

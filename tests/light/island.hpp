@@ -19,8 +19,8 @@ class Island {
     Span<T> span;
   };
 
-  Island(std::span<Pool<T>* const> pools, Rows<T>& rows, Delassus<T>& W, const Islands<T>& islands, Index island,
-         const SolveControl& control = {})
+  Island(std::span<Pool<T>* const> pools, Rows<T>& rows, Delassus<T>& W, const Islands<T>& islands,
+         Index island, const SolveControl& control = {})
       : rows_(rows), W_(W), control_(control) {
     for (int p = 0; p < int(pools.size()); ++p) {
       const auto items = islands.items(p, island);
@@ -86,7 +86,22 @@ class Island {
     each([&](const Part& part, Index i, Index row) { assign(part, i, from.data() + row, row); });
   }
 
-  /// λ ← λ + β (λ − before), each that has moved brought back into its law's cone; `before` takes the λ that was.
+  /// Σ w (y − z)·(z − x), z the present λ: whether a sweep from y to z turns back on the way from x.
+  double curvature(const Array<T>& x, const Array<T>& y) const {
+    T sum = 0;
+    each([&](const Part& part, Index i, Index row) {
+      T along = 0;
+      for (int k = 0; k < part.pool->sweeping->rows; ++k) {
+        const T z = rows_.lambda[row + k];
+        along += (y[row + k] - z) * (z - x[row + k]);
+      }
+      sum += weight(part, i) * along;
+    });
+    return double(sum);
+  }
+
+  /// λ ← λ + β (λ − before), each that has moved brought back into its law's cone; `before` takes the λ that
+  /// was.
   void extrapolate(Array<T>& before, double beta) {
     save(last_);
     for (const Part& part : parts_) {
@@ -121,7 +136,8 @@ class Island {
     std::size_t at = 0;
     each([&](const Part& part, Index i, Index row) {
       const double root = root_of_weight(part, i);
-      for (int k = 0; k < part.pool->sweeping->rows; ++k, ++at) rows_.lambda[row + k] = root > 0 ? T(from[at] / root) : T(0);
+      for (int k = 0; k < part.pool->sweeping->rows; ++k, ++at)
+        rows_.lambda[row + k] = root > 0 ? T(from[at] / root) : T(0);
     });
     for (const Part& part : parts_) part.pool->sweeping->clamp(*part.pool, part.span);
     tell_changes();

@@ -7,7 +7,8 @@
 
 namespace light {
 
-/// Union-find over the blocks, as in `delassus::Islands`: numbered by the lowest block, items by pool and insertion.
+/// Union-find over the blocks, as in `delassus::Islands`: numbered by the lowest block, items by pool and
+/// insertion.
 template <class T>
 class Islands {
  public:
@@ -68,8 +69,10 @@ class Islands {
     count_ = 0;
     for (Index b = 0; b < Index(parent_.size()); ++b) {
       const Index r = root(b);
-      if (r != b) island_[b] = island_[r];
-      else if (island_[b] == 0) island_[b] = count_++;
+      if (r != b)
+        island_[b] = island_[r];
+      else if (island_[b] == 0)
+        island_[b] = count_++;
     }
   }
   /// By island; insertion order stays.

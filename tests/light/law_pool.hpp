@@ -84,7 +84,8 @@ struct LawLoops {
   [[gnu::always_inline]] static void add_row(Row& u, const Span<T>& s, Index first, Index end) {
     const T* w = s.block + std::size_t(R * R) * first;
     if constexpr (is_of_contacts) {
-      inner::add_row(u, end - first, reinterpret_cast<const Mat3*>(w), s.column + first, reinterpret_cast<const Vec3*>(s.lambda));
+      inner::add_row(u, end - first, reinterpret_cast<const Mat3*>(w), s.column + first,
+                     reinterpret_cast<const Vec3*>(s.lambda));
     } else {
       for (Index e = first; e < end; ++e) {
         const T* const x = s.lambda + std::size_t(R) * s.column[e];
@@ -102,13 +103,15 @@ struct LawLoops {
       const Index first = s.start[i];
       const auto* w = reinterpret_cast<const Mat3*>(s.block) + first;
       return s.base[R * std::size_t(i)] + inner::first_of_row(s.start[i + 1] - first, w, s.column + first,
-                                                              reinterpret_cast<const Vec3*>(s.lambda)) >= T(0);
+                                                              reinterpret_cast<const Vec3*>(s.lambda)) >=
+             T(0);
     }
     return false;
   }
 
   /// What meets the law while the others stand still.
-  [[gnu::always_inline]] static Row answer(Typed& self, Index i, const Row& free, const Row& lambda, const T* diagonal) {
+  [[gnu::always_inline]] static Row answer(Typed& self, Index i, const Row& free, const Row& lambda,
+                                           const T* diagonal) {
     const auto& law = self.source->law;
     const auto& item = self.source->item(i);
     auto& memory = self.memory[i];
@@ -181,7 +184,9 @@ struct LawLoops {
       return map_of(self, i, c, scale);
     }
     template <int, class L = Law>
-      requires requires(const L& law, const typename L::Item& item, const Row& x) { law.natural_squares(item, x, x, T(1)); }
+    requires requires(const L& law, const typename L::Item& item, const Row& x) {
+      law.natural_squares(item, x, x, T(1));
+    }
     Vec<2, T> natural_squares(Index i, const Local<R, T>& c, T scale) const {
       return self.source->law.natural_squares(self.source->item(i), c.lambda, c.d, scale);
     }
@@ -207,7 +212,8 @@ struct LawLoops {
 };
 
 template <class Law, class T>
-LawPool<Law, T>::LawPool(const delassus::Pool<Law>& constraints) : Pool<T>(LawLoops<Law, T>::table), source(&constraints) {
+LawPool<Law, T>::LawPool(const delassus::Pool<Law>& constraints)
+    : Pool<T>(LawLoops<Law, T>::table), source(&constraints) {
   this->items = constraints.count();
 }
 

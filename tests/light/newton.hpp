@@ -8,13 +8,13 @@
 
 namespace light {
 
-/// λ meets all laws where F = λ − Λ = 0: Λ is what meets them with w 1 in the place of each W_ii, for the present u = d + W λ.
-/// With D = diag(w_i 1) and S = −∂Λ/∂u from the laws' second table,
+/// λ meets all laws where F = λ − Λ = 0: Λ is what meets them with w 1 in the place of each W_ii, for the
+/// present u = d + W λ. With D = diag(w_i 1) and S = −∂Λ/∂u from the laws' second table,
 ///
 ///   (1 + S (W − D + ε D)) δ = −F,   λ ← λ + t δ,   t halved until Σ w |F|² falls,
 ///
-/// where ε makes the matrix regular for rows that depend on each other and leaves F as it is.
-/// Source: [QiSun1993] for the method, [AcaryBremondHuber2018] for it on contacts.
+/// where ε makes the matrix regular for rows that depend on each other and leaves F as it is; it grows where
+/// no step falls. Source: [QiSun1993] for the method, [AcaryBremondHuber2018] for it on contacts.
 struct Newton {
   double tolerance = 1e-10;
   int max_iterations = 50;
@@ -33,7 +33,7 @@ struct Newton {
     Array<double> step;
     DenseElimination matrix;
   };
-  static constexpr double epsilon = 1e-10;
+  static constexpr double least_epsilon = 1e-10, most_epsilon = 10;
 
   template <class T>
   static bool differentiates(const Island<T>& island) {
@@ -46,7 +46,7 @@ struct Newton {
   template <class T>
   double evaluate(Island<T>& island, Space<T>& s) const;
   template <class T>
-  static bool find_step(Island<T>& island, Space<T>& s);
+  static bool find_step(Island<T>& island, Space<T>& s, double epsilon);
 };
 
 template <class T>
@@ -55,10 +55,12 @@ SolveReport Newton::solve(Island<T>& island) const {
   if (!differentiates(island)) return report.status = Status::stalled, report;
   Space<T> s;
   make_room(island, s);
-  for (int k = 0; k < max_iterations && report.measure.residual > tolerance; ++k) {
+  double epsilon = 1e-6;
+  while (report.factorizations < max_iterations && report.measure.residual > tolerance &&
+         epsilon <= most_epsilon) {
     island.velocities(s.before);
     const double size = evaluate(island, s);
-    if (!find_step(island, s)) break;
+    if (!find_step(island, s, epsilon)) break;
     ++report.factorizations;
     island.save(s.lambda);
     bool falls = false;
@@ -71,8 +73,8 @@ SolveReport Newton::solve(Island<T>& island) const {
       falls = evaluate(island, s) < size;
     }
     if (!falls) island.load(s.lambda);
+    epsilon = falls ? std::max(0.1 * epsilon, least_epsilon) : 100 * epsilon;
     report.measure = island.measure();
-    if (!falls) break;
   }
   report.status = report.measure.residual <= tolerance ? Status::converged : Status::stalled;
   return report;
@@ -84,7 +86,8 @@ void Newton::make_room(Island<T>& island, Space<T>& s) {
   for (auto* x : {&s.answer, &s.trial}) x->assign(rows.lambda.size(), T(0));
   s.number.assign(rows.lambda.size(), -1);
   s.slope_at.assign(std::size_t(rows.items()) + 1, 0);
-  for (Index i = 0; i < rows.items(); ++i) s.slope_at[i + 1] = s.slope_at[i] + rows.rows_of(i) * rows.rows_of(i);
+  for (Index i = 0; i < rows.items(); ++i)
+    s.slope_at[i + 1] = s.slope_at[i] + rows.rows_of(i) * rows.rows_of(i);
   s.slope.assign(std::size_t(s.slope_at.back()), T(0));
   Index count = 0;
   island.each([&](const auto& part, Index, Index row) {
@@ -98,7 +101,8 @@ double Newton::evaluate(Island<T>& island, Space<T>& s) const {
   island.velocities(s.u);
   for (const auto& part : island.parts()) {
     const Index row = part.pool->first_row;
-    T *const answer = s.answer.data() + row, *const slope = s.slope.data() + s.slope_at[part.pool->first_item];
+    T *const answer = s.answer.data() + row, *const slope =
+                                                 s.slope.data() + s.slope_at[part.pool->first_item];
     const NewtonTable<T>& law = *part.pool->newton;
     if (is_convex)
       law.convex_tangent(*part.pool, part.span, s.u.data() + row, s.before.data() + row, answer, slope);
@@ -119,7 +123,7 @@ double Newton::evaluate(Island<T>& island, Space<T>& s) const {
 
 /// The matrix column by column, W's from its one primitive: what an impulse of one does to the velocities.
 template <class T>
-bool Newton::find_step(Island<T>& island, Space<T>& s) {
+bool Newton::find_step(Island<T>& island, Space<T>& s, double epsilon) {
   const Index n = Index(island.row_count());
   Rows<T>& rows = island.rows();
   s.matrix.resize(n);

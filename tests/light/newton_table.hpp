@@ -11,8 +11,8 @@ namespace light {
 template <class Law, class T>
 struct NewtonLoops : LawLoops<Law, T> {
   using Loops = LawLoops<Law, T>;
-  using typename Loops::Block, typename Loops::Row, typename Loops::Typed;
   using Loops::load, Loops::store, Loops::typed, Loops::weight;
+  using typename Loops::Block, typename Loops::Row, typename Loops::Typed;
   static constexpr int R = Law::rows;
 
   static Local<R, T> local(const Span<T>& s, const T* u, Index i) {
@@ -21,8 +21,10 @@ struct NewtonLoops : LawLoops<Law, T> {
   static Block slope_of(Typed& self, Index i, Local<R, T>& c) {
     const auto& law = self.source->law;
     const auto& item = self.source->item(i);
-    if constexpr (requires { law.tangent(item, c); }) return law.tangent(item, c);
-    else return law.tangent(item, c, self.memory[i]);
+    if constexpr (requires { law.tangent(item, c); })
+      return law.tangent(item, c);
+    else
+      return law.tangent(item, c, self.memory[i]);
   }
 
   static void tangent(Pool<T>& pool, const Span<T>& s, const T* u, T* lambda, T* slope) {
@@ -34,9 +36,10 @@ struct NewtonLoops : LawLoops<Law, T> {
     }
   }
 
-  static void convex_tangent(Pool<T>& pool, const Span<T>& s, const T* u, const T* before, T* lambda, T* slope) {
+  static void convex_tangent(Pool<T>& pool, const Span<T>& s, const T* u, const T* before, T* lambda,
+                             T* slope) {
     const auto& source = *typed(pool).source;
-    if constexpr (requires(Local<R, T>& c) { source.law.convex_tangent(source.item(0), c, T(0)); }) {
+    if constexpr (requires(Local<R, T> & c) { source.law.convex_tangent(source.item(0), c, T(0)); }) {
       for (Index n = 0; n < s.count; ++n) {
         const Index i = s.items[n];
         const Row last = load(before, i);

@@ -18,15 +18,15 @@ class RowEnd {
     for (int k = 0; k < count_; ++k) {
       const Index b = s.table->anchor_block(s.set, anchor, k), place = Index(rows.H.size());
       const int width = s.table->width;
-      rows.entries.push_back({s.first_block + b, s.first_velocity + width * b, place, int(anchor.set), width});
+      rows.entries.push_back(
+          {s.first_block + b, s.first_velocity + width * b, place, int(anchor.set), width});
       rows.H.resize(rows.H.size() + std::size_t(R) * width, T(0));
     }
   }
 
   /// u_k += direction · v(point).
   void along(int k, const Vec3& direction) {
-    for (int b = 0; b < count_; ++b)
-      set().table->along(set().set, anchor_, b, point_, direction, line(b, k));
+    for (int b = 0; b < count_; ++b) set().table->along(set().set, anchor_, b, point_, direction, line(b, k));
   }
   template <int n>
   void along(const Mat<n, 3>& axes, double sign) {
@@ -59,7 +59,8 @@ class RowEnd {
 template <int R, class T>
 class RowWriter {
  public:
-  RowWriter(const WorldView<T>& world, Rows<T>& rows) : world_(world), rows_(rows), first_(rows.count() - R) {}
+  RowWriter(const WorldView<T>& world, Rows<T>& rows)
+      : world_(world), rows_(rows), first_(rows.count() - R) {}
 
   RowEnd<R, T> end(const Anchor& anchor, const Vec3& point) { return {world_, rows_, anchor, point}; }
   void phi(int k, double value) { rows_.phi[first_ + k] = T(value); }

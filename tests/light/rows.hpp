@@ -8,8 +8,8 @@ namespace light {
 
 using namespace delassus;
 
-/// One block of bodies that an item acts on. Its H has a line of `width` numbers for each row of the item, from
-/// H[place] on; G = A⁻¹ Hᵀ the same, where A is block-diagonal there.
+/// One block of bodies that an item acts on. Its H has a line of `width` numbers for each row of the item,
+/// from H[place] on; G = A⁻¹ Hᵀ the same, where A is block-diagonal there.
 struct Entry {
   Index block;     ///< in the world's count
   Index velocity;  ///< of the block, in the world's count
@@ -17,8 +17,8 @@ struct Entry {
   int set, width;
 };
 
-/// Items are counted through the pools. Item i has rows row[i] … row[i + 1] − 1 and entries entry[i] … entry[i + 1] − 1.
-/// Units as in `PoolRows`.
+/// Items are counted through the pools. Item i has rows row[i] … row[i + 1] − 1 and entries entry[i] …
+/// entry[i + 1] − 1. Units as in `PoolRows`.
 template <class T>
 struct Rows {
   Array<Index> row{0}, entry{0};

@@ -9,16 +9,17 @@ namespace light {
 
 using namespace delassus;
 
-/// Every function takes the set first. Velocities are `width` numbers a block, and lie one block after the other.
+/// Every function takes the set first. Velocities are `width` numbers a block, and lie one block after the
+/// other.
 template <class T>
 struct SetTable {
   int width;
   Index (*blocks)(const void*);
   bool (*moves)(const void*, Index b);
-  bool (*is_coupled)(const void*);                                ///< A has entries between blocks
+  bool (*is_coupled)(const void*);  ///< A has entries between blocks
   void (*ties)(const void*, void* to, void (*tie)(void* to, Index a, Index b));
-  void (*solve_block)(const void*, Index b, T* x);                ///< x ← A_b⁻¹ x
-  void (*solve)(const void*, T* x);                               ///< x ← A⁻¹ x, of all blocks
+  void (*solve_block)(const void*, Index b, T* x);  ///< x ← A_b⁻¹ x
+  void (*solve)(const void*, T* x);                 ///< x ← A⁻¹ x, of all blocks
   int (*anchor_blocks)(const void*, const Anchor&);
   Index (*anchor_block)(const void*, const Anchor&, int k);
   /// A unit force at a point, or a unit moment, as a row of H of the anchor's block k: added to `row`.
@@ -59,7 +60,8 @@ struct FunctionsOf {
   }
   static int anchor_blocks(const void* set, const Anchor& a) { return of(set).anchor_blocks(a); }
   static Index anchor_block(const void* set, const Anchor& a, int k) { return of(set).anchor_block(a, k); }
-  static void along(const void* set, const Anchor& a, int k, const Vec3& point, const Vec3& direction, T* row) {
+  static void along(const void* set, const Anchor& a, int k, const Vec3& point, const Vec3& direction,
+                    T* row) {
     const V h = of(set).along(a, k, point, direction);
     for (int j = 0; j < width; ++j) row[j] += h[j];
   }
@@ -75,8 +77,9 @@ struct FunctionsOf {
     return a.frame;
   }
 
-  static constexpr SetTable<T> table{width,  &blocks,        &moves,        &is_coupled, &ties,  &solve_block, &solve,
-                                     &anchor_blocks, &anchor_block, &along,      &about, &point,       &frame};
+  static constexpr SetTable<T> table{width,        &blocks, &moves,         &is_coupled,   &ties,
+                                     &solve_block, &solve,  &anchor_blocks, &anchor_block, &along,
+                                     &about,       &point,  &frame};
 };
 
 }  // namespace light

@@ -10,7 +10,8 @@ namespace light {
 
 using namespace delassus;
 
-/// Plain functions with a context each. Without a deadline no clock is read, and a span is as long as its pool.
+/// Plain functions with a context each. Without a deadline no clock is read, and a span is as long as its
+/// pool.
 struct SolveControl {
   static constexpr Index longest_piece = 64;
 

@@ -27,8 +27,9 @@ double difference_of_diagonals(const Step& step) {
   return most / size;
 }
 
-/// Gives the library's problem the blocks of the flat W: Eigen sums the third row of a product of 3 × 6 and 6 × 3 in another
-/// order than the first two, and the example all from left to right. Returns how far they were apart.
+/// Gives the library's problem the blocks of the flat W: Eigen sums the third row of a product of 3 × 6 and 6
+/// × 3 in another order than the first two, and the example all from left to right. Returns how far they were
+/// apart.
 template <class Step>
 double give_blocks(Step& step) {
   const Span<double> mine = step.W.span(0, nullptr, 0);
@@ -49,7 +50,9 @@ double give_blocks(Step& step) {
 
 template <class Step>
 SolveReport solve_by_library(Step& step, int sweeps, double relaxation = 1) {
-  return delassus::solve(step.problem, delassus::GaussSeidel{.tolerance = 0, .max_iterations = sweeps, .relaxation = relaxation});
+  return delassus::solve(
+      step.problem,
+      delassus::GaussSeidel{.tolerance = 0, .max_iterations = sweeps, .relaxation = relaxation});
 }
 template <class Step>
 SolveReport solve_flat(Step& step, int sweeps, double relaxation = 1) {
@@ -63,7 +66,8 @@ TEST_CASE("one pool of contacts between rigid bodies is swept to the library's b
   for (const double relaxation : {1.0, 1.3}) {
     FlatStep step(loop);
     CHECK(give_blocks(step) <= 1e-13);
-    const SolveReport theirs = solve_by_library(step, 25, relaxation), mine = solve_flat(step, 25, relaxation);
+    const SolveReport theirs = solve_by_library(step, 25, relaxation),
+                      mine = solve_flat(step, 25, relaxation);
     CHECK(mine.sweeps == theirs.sweeps);
     CHECK(mine.measure.residual == theirs.measure.residual);
     CHECK(mine.measure.siconos == theirs.measure.siconos);
@@ -75,15 +79,16 @@ TEST_CASE("a stack is solved to the library's bits, in as many sweeps") {
   const auto loop = stack(6);
   FlatStep step(loop);
   CHECK(give_blocks(step) <= 1e-13);
-  const SolveReport theirs = delassus::solve(step.problem, delassus::GaussSeidel{.tolerance = 1e-8, .max_iterations = 100000});
+  const SolveReport theirs =
+      delassus::solve(step.problem, delassus::GaussSeidel{.tolerance = 1e-8, .max_iterations = 100000});
   const SolveReport mine = step.solve(light::GaussSeidel{.tolerance = 1e-8, .max_iterations = 100000});
   CHECK(mine.status == Status::converged);
   CHECK(mine.sweeps == theirs.sweeps);
   CHECK(difference(step.rows.lambda, impulses(step.problem)) == 0);
 }
 
-// Not the same bits: what other pools add to a row is summed before its own pool's share, and products with three and five rows
-// run in another order.
+// Not the same bits: what other pools add to a row is summed before its own pool's share, and products with
+// three and five rows run in another order.
 TEST_CASE("pools of one, three and five rows on bodies of three kinds are swept to the library's impulses") {
   const auto loop = mixed();
   FlatStep step(loop);

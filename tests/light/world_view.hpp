@@ -25,7 +25,8 @@ struct WorldView {
   WorldView() = default;
   template <class... Sets>
   explicit WorldView(const World<Sets...>& world) {
-    world.each([&](const auto& set, auto) { add(&set, FunctionsOf<std::remove_cvref_t<decltype(set)>>::table); });
+    world.each(
+        [&](const auto& set, auto) { add(&set, FunctionsOf<std::remove_cvref_t<decltype(set)>>::table); });
   }
   void add(const void* set, const SetTable<T>& table) {
     sets.push_back({set, &table, blocks, velocities, table.is_coupled(set)});
