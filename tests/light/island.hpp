@@ -26,13 +26,16 @@ class Island {
       const auto items = islands.items(p, island);
       if (items.empty()) continue;
       parts_.push_back({pools[p], p, W.span(p, items.data(), Index(items.size()))});
-      row_count_ += pools[p]->sweeping->rows * int(items.size());
+      for (const Index i : items)
+        for (int k = 0; k < pools[p]->sweeping->rows; ++k)
+          order_.push_back(pools[p]->first_row + pools[p]->sweeping->rows * i + k);
     }
   }
 
-  int row_count() const { return row_count_; }
+  int row_count() const { return int(order_.size()); }
   const SolveControl& control() const { return control_; }
   const Array<Part>& parts() const { return parts_; }
+  const Array<Index>& order() const { return order_; }  ///< the rows, as a sweep comes to them
   Rows<T>& rows() { return rows_; }
   Delassus<T>& compliance() { return W_; }
 
@@ -65,39 +68,23 @@ class Island {
     return sums.finish(double(std::numeric_limits<T>::epsilon()));
   }
 
-  /// f(part, item of the pool, its first row) in the order of the sweep.
-  template <class F>
-  void each(const F& f) const {
-    for (const Part& part : parts_)
-      for (Index n = 0; n < part.span.count; ++n) {
-        const Index i = part.span.items[n];
-        f(part, i, part.pool->first_row + part.pool->sweeping->rows * i);
-      }
-  }
-
   /// Flat impulses of all rows of the step, of which an island reads and writes its own.
   void save(Array<T>& to) const {
     to.resize(rows_.lambda.size());
-    each([&](const Part& part, Index, Index row) {
-      for (int k = 0; k < part.pool->sweeping->rows; ++k) to[row + k] = rows_.lambda[row + k];
-    });
+    for (const Index r : order_) to[r] = rows_.lambda[r];
   }
   void load(const Array<T>& from) {
-    each([&](const Part& part, Index i, Index row) { assign(part, i, from.data() + row, row); });
+    save(last_);
+    for (const Index r : order_) rows_.lambda[r] = from[r];
+    tell_changes();
   }
 
   /// Σ w (y − z)·(z − x), z the present λ: whether a sweep from y to z turns back on the way from x.
   double curvature(const Array<T>& x, const Array<T>& y) const {
-    T sum = 0;
-    each([&](const Part& part, Index i, Index row) {
-      T along = 0;
-      for (int k = 0; k < part.pool->sweeping->rows; ++k) {
-        const T z = rows_.lambda[row + k];
-        along += (y[row + k] - z) * (z - x[row + k]);
-      }
-      sum += weight(part, i) * along;
-    });
-    return double(sum);
+    double sum = 0;
+    for (const Index r : order_)
+      sum += double(W_.weight(r) * (y[r] - rows_.lambda[r]) * (rows_.lambda[r] - x[r]));
+    return sum;
   }
 
   /// λ ← λ + β (λ − before), each that has moved brought back into its law's cone; `before` takes the λ that
@@ -126,19 +113,15 @@ class Island {
   /// √w λ of all rows in order, so that their products are energies; and the way back, into the laws' cones.
   void gather(Array<double>& to) const {
     std::size_t at = 0;
-    each([&](const Part& part, Index i, Index row) {
-      const double root = root_of_weight(part, i);
-      for (int k = 0; k < part.pool->sweeping->rows; ++k) to[at++] = root * double(rows_.lambda[row + k]);
-    });
+    for (const Index r : order_) to[at++] = std::sqrt(double(W_.weight(r))) * double(rows_.lambda[r]);
   }
   void scatter(const Array<double>& from) {
     save(last_);
     std::size_t at = 0;
-    each([&](const Part& part, Index i, Index row) {
-      const double root = root_of_weight(part, i);
-      for (int k = 0; k < part.pool->sweeping->rows; ++k, ++at)
-        rows_.lambda[row + k] = root > 0 ? T(from[at] / root) : T(0);
-    });
+    for (const Index r : order_) {
+      const double root = std::sqrt(double(W_.weight(r))), x = from[at++];
+      rows_.lambda[r] = root > 0 ? T(x / root) : T(0);
+    }
     for (const Part& part : parts_) part.pool->sweeping->clamp(*part.pool, part.span);
     tell_changes();
   }
@@ -146,46 +129,31 @@ class Island {
   /// u = d + W λ of the island's rows, into a flat array of all rows.
   void velocities(Array<T>& u) const {
     u.resize(rows_.lambda.size());
-    each([&](const Part& part, Index i, Index row) {
-      const int R = part.pool->sweeping->rows;
-      const T* const own = W_.diagonal(part.number, i);
-      W_.free(part.number, i, u.data() + row);
-      for (int c = 0; c < R; ++c)
-        for (int k = 0; k < R; ++k) u[row + k] += own[k + R * c] * rows_.lambda[row + c];
-    });
-  }
-  double root_of_weight(const Part& part, Index i) const { return std::sqrt(double(weight(part, i))); }
-  T weight(const Part& part, Index i) const {
-    const int R = part.pool->sweeping->rows;
-    T trace = 0;
-    for (int k = 0; k < R; ++k) trace += W_.diagonal(part.number, i)[k * (R + 1)];
-    return trace / T(R);
+    for (const Part& part : parts_)
+      for (Index n = 0; n < part.span.count; ++n)
+        W_.velocity(part.number, part.span.items[n],
+                    u.data() + part.pool->first_row + part.pool->sweeping->rows * part.span.items[n]);
   }
 
  private:
-  void assign(const Part& part, Index i, const T* next, Index row) {
-    T change[6];
-    for (int k = 0; k < part.pool->sweeping->rows; ++k) {
-      change[k] = next[k] - rows_.lambda[row + k];
-      rows_.lambda[row + k] = next[k];
-    }
-    W_.changed(part.pool->first_item + i, change);
-  }
+  /// Of all impulses that are no longer `last_`.
   void tell_changes() {
-    each([&](const Part& part, Index i, Index row) {
-      T change[6];
-      for (int k = 0; k < part.pool->sweeping->rows; ++k) change[k] = rows_.lambda[row + k] - last_[row + k];
-      W_.changed(part.pool->first_item + i, change);
-    });
+    if (!W_.keeps_velocities()) return;
+    for (const Index r : order_) last_[r] = rows_.lambda[r] - last_[r];
+    for (const Part& part : parts_)
+      for (Index n = 0; n < part.span.count; ++n) {
+        const Index item = part.pool->first_item + part.span.items[n];
+        W_.changed(item, last_.data() + rows_.row[item]);
+      }
+    for (const Index r : order_) last_[r] = rows_.lambda[r] - last_[r];
   }
 
   Rows<T>& rows_;
   Delassus<T>& W_;
   SolveControl control_;
   Array<Part> parts_;
+  Array<Index> order_, moved_;
   Array<T> last_;
-  Array<Index> moved_;
-  int row_count_ = 0;
   bool is_cut_ = false;
 };
 

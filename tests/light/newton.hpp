@@ -29,32 +29,31 @@ struct Newton {
   struct Space {
     Array<T> u, before, answer, slope, lambda, trial;
     Array<Index> slope_at;  ///< by item, counted through the pools
-    Array<Index> number;    ///< by row, in the matrix
     Array<double> step;
     DenseElimination matrix;
   };
   static constexpr double least_epsilon = 1e-10, most_epsilon = 10;
 
   template <class T>
-  static bool differentiates(const Island<T>& island) {
-    for (const auto& part : island.parts())
-      if (!part.pool->newton) return false;
-    return true;
-  }
-  template <class T>
-  static void make_room(Island<T>& island, Space<T>& s);
-  template <class T>
   double evaluate(Island<T>& island, Space<T>& s) const;
+  template <class T>
+  bool descend(Island<T>& island, Space<T>& s, double size) const;
   template <class T>
   static bool find_step(Island<T>& island, Space<T>& s, double epsilon);
 };
 
 template <class T>
 SolveReport Newton::solve(Island<T>& island) const {
-  SolveReport report{.measure = island.measure(), .ended_by = "newton"};
-  if (!differentiates(island)) return report.status = Status::stalled, report;
+  SolveReport report{.status = Status::stalled, .measure = island.measure(), .ended_by = "newton"};
+  for (const auto& part : island.parts())
+    if (!part.pool->newton) return report;
+  const Rows<T>& rows = island.rows();
   Space<T> s;
-  make_room(island, s);
+  s.slope_at.assign(1, 0);
+  for (Index i = 0; i < rows.items(); ++i)
+    s.slope_at.push_back(s.slope_at.back() + rows.rows_of(i) * rows.rows_of(i));
+  s.slope.resize(std::size_t(s.slope_at.back()));
+  for (auto* x : {&s.answer, &s.trial}) x->resize(rows.lambda.size());
   double epsilon = 1e-6;
   while (report.factorizations < max_iterations && report.measure.residual > tolerance &&
          epsilon <= most_epsilon) {
@@ -62,37 +61,11 @@ SolveReport Newton::solve(Island<T>& island) const {
     const double size = evaluate(island, s);
     if (!find_step(island, s, epsilon)) break;
     ++report.factorizations;
-    island.save(s.lambda);
-    bool falls = false;
-    for (double t = 1; t > 1e-4 && !falls; t *= 0.5) {
-      island.each([&](const auto& part, Index, Index row) {
-        for (int r = 0; r < part.pool->sweeping->rows; ++r)
-          s.trial[row + r] = s.lambda[row + r] + T(t * s.step[s.number[row + r]]);
-      });
-      island.load(s.trial);
-      falls = evaluate(island, s) < size;
-    }
-    if (!falls) island.load(s.lambda);
-    epsilon = falls ? std::max(0.1 * epsilon, least_epsilon) : 100 * epsilon;
+    epsilon = descend(island, s, size) ? std::max(0.1 * epsilon, least_epsilon) : 100 * epsilon;
     report.measure = island.measure();
   }
-  report.status = report.measure.residual <= tolerance ? Status::converged : Status::stalled;
+  if (report.measure.residual <= tolerance) report.status = Status::converged;
   return report;
-}
-
-template <class T>
-void Newton::make_room(Island<T>& island, Space<T>& s) {
-  const Rows<T>& rows = island.rows();
-  for (auto* x : {&s.answer, &s.trial}) x->assign(rows.lambda.size(), T(0));
-  s.number.assign(rows.lambda.size(), -1);
-  s.slope_at.assign(std::size_t(rows.items()) + 1, 0);
-  for (Index i = 0; i < rows.items(); ++i)
-    s.slope_at[i + 1] = s.slope_at[i] + rows.rows_of(i) * rows.rows_of(i);
-  s.slope.assign(std::size_t(s.slope_at.back()), T(0));
-  Index count = 0;
-  island.each([&](const auto& part, Index, Index row) {
-    for (int k = 0; k < part.pool->sweeping->rows; ++k) s.number[row + k] = count++;
-  });
 }
 
 /// Λ and S at the present λ; √Σ w |λ − Λ|².
@@ -110,51 +83,61 @@ double Newton::evaluate(Island<T>& island, Space<T>& s) const {
       law.tangent(*part.pool, part.span, s.u.data() + row, answer, slope);
   }
   double sum = 0;
-  island.each([&](const auto& part, Index i, Index row) {
-    double square = 0;
-    for (int k = 0; k < part.pool->sweeping->rows; ++k) {
-      const double gap = double(island.rows().lambda[row + k] - s.answer[row + k]);
-      square += gap * gap;
-    }
-    sum += double(island.weight(part, i)) * square;
-  });
+  for (const Index r : island.order()) {
+    const double gap = double(island.rows().lambda[r] - s.answer[r]);
+    sum += double(island.compliance().weight(r)) * gap * gap;
+  }
   return std::sqrt(sum);
+}
+
+/// Along the step; back to where it began if F falls nowhere.
+template <class T>
+bool Newton::descend(Island<T>& island, Space<T>& s, double size) const {
+  island.save(s.lambda);
+  for (double t = 1; t > 1e-4; t *= 0.5) {
+    std::size_t n = 0;
+    for (const Index r : island.order()) s.trial[r] = s.lambda[r] + T(t * s.step[n++]);
+    island.load(s.trial);
+    if (evaluate(island, s) < size) return true;
+  }
+  island.load(s.lambda);
+  return false;
 }
 
 /// The matrix column by column, W's from its one primitive: what an impulse of one does to the velocities.
 template <class T>
 bool Newton::find_step(Island<T>& island, Space<T>& s, double epsilon) {
-  const Index n = Index(island.row_count());
   Rows<T>& rows = island.rows();
-  s.matrix.resize(n);
-  s.step.resize(std::size_t(n));
+  Delassus<T>& W = island.compliance();
   const Array<T> lambda = rows.lambda, d = rows.d;
   for (auto* x : {&rows.lambda, &rows.d}) x->assign(x->size(), T(0));
-  island.compliance().reset();
-  Array<T> column;
-  for (Index r = 0; r < Index(rows.lambda.size()); ++r) {
-    if (s.number[r] < 0) continue;
+  s.matrix.resize(Index(island.row_count()));
+  Index column = 0;
+  for (const Index r : island.order()) {
     rows.lambda[r] = T(1);
-    island.compliance().reset();
-    island.velocities(column);
+    W.reset();
+    island.velocities(s.u);
     rows.lambda[r] = T(0);
-    island.each([&](const auto& part, Index i, Index row) {
-      const int R = part.pool->sweeping->rows;
-      const T* const slope = s.slope.data() + s.slope_at[part.pool->first_item + i];
-      const bool is_own = r >= row && r < row + R;
-      if (is_own) column[r] -= T(1 - epsilon) * island.weight(part, i);
-      for (int k = 0; k < R; ++k) {
-        double sum = r == row + k ? 1 : 0;
-        for (int c = 0; c < R; ++c) sum += double(slope[k + R * c]) * double(column[row + c]);
-        s.matrix.at(s.number[row + k], s.number[r]) = sum;
+    s.u[r] -= T(1 - epsilon) * W.weight(r);
+    Index line = 0;
+    for (const auto& part : island.parts())
+      for (Index n = 0; n < part.span.count; ++n) {
+        const int R = part.pool->sweeping->rows;
+        const Index item = part.pool->first_item + part.span.items[n], first = rows.row[item];
+        const T* const slope = s.slope.data() + s.slope_at[item];
+        for (int k = 0; k < R; ++k, ++line) {
+          double sum = first + k == r ? 1 : 0;
+          for (int c = 0; c < R; ++c) sum += double(slope[k + R * c]) * double(s.u[first + c]);
+          s.matrix.at(line, column) = sum;
+        }
       }
-    });
+    ++column;
   }
   rows.lambda = lambda;
   rows.d = d;
-  island.compliance().reset();
-  for (Index r = 0; r < Index(rows.lambda.size()); ++r)
-    if (s.number[r] >= 0) s.step[s.number[r]] = double(s.answer[r] - rows.lambda[r]);
+  W.reset();
+  s.step.clear();
+  for (const Index r : island.order()) s.step.push_back(double(s.answer[r] - rows.lambda[r]));
   if (!s.matrix.factor()) return false;
   s.matrix.solve(s.step);
   return true;

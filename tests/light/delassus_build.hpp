@@ -1,0 +1,188 @@
+/// How W is built: row by row, from the entries that meet on a body, or from solves where A couples bodies.
+#pragma once
+
+#include "delassus_operator.hpp"
+
+namespace light {
+
+template <class T>
+void Delassus<T>::build(const WorldView<T>& world, std::span<Pool<T>* const> pools, Rows<T>& rows,
+                        Index most_partners) {
+  world_ = &world;
+  rows_ = &rows;
+  pools_ = pools;
+  apply_inverse();
+  find_meetings();
+  solved_.clear();
+  columns_.clear();
+  for (int s = 0; s < int(world.sets.size()); ++s)
+    if (world.sets[s].is_coupled) solve_columns(s);
+  choose(most_partners);
+  pool_of_.clear();
+  for (int p = 0; p < int(pools.size()); ++p)
+    pool_of_.resize(pool_of_.size() + std::size_t(pools[p]->items), p);
+  place_.assign(std::size_t(rows.items()), -1);
+  for (auto* x : {&lift_, &weight_, &softness_}) x->assign(std::size_t(rows.count()), T(0));
+  blocks_.resize(pools.size());
+  for (int p = 0; p < int(pools.size()); ++p) build_pool(p);
+  reset();
+}
+
+/// G = A⁻¹ Hᵀ where A is block-diagonal.
+template <class T>
+void Delassus<T>::apply_inverse() {
+  Rows<T>& r = *rows_;
+  r.G = r.H;
+  for (Index i = 0; i < r.items(); ++i)
+    for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) {
+      const Entry& at = r.entries[e];
+      const SetView<T>& s = world_->sets[at.set];
+      for (int k = 0; !s.is_coupled && k < r.rows_of(i); ++k)
+        s.table->solve_block(s.set, at.block - s.first_block, r.G.data() + at.place + k * at.width);
+    }
+}
+
+/// Which entries act on a block, ascending.
+template <class T>
+void Delassus<T>::find_meetings() {
+  const Rows<T>& r = *rows_;
+  meeting_start_.assign(std::size_t(world_->blocks) + 1, 0);
+  for (const Entry& e : r.entries) ++meeting_start_[e.block + 1];
+  for (Index b = 0; b < world_->blocks; ++b) meeting_start_[b + 1] += meeting_start_[b];
+  next_ = meeting_start_;
+  meetings_.resize(r.entries.size());
+  for (Index i = 0; i < r.items(); ++i)
+    for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) meetings_[next_[r.entries[e].block]++] = {i, e};
+}
+
+/// One solve with A for each row on a set whose blocks A couples.
+template <class T>
+void Delassus<T>::solve_columns(int s) {
+  const Rows<T>& r = *rows_;
+  const SetView<T>& set = world_->sets[s];
+  const std::size_t size = std::size_t(set.table->width) * set.table->blocks(set.set);
+  Array<T> x;
+  for (Index i = 0; i < r.items(); ++i) {
+    const auto is_on_set = [&](const Entry& e) { return e.set == s; };
+    if (std::none_of(&r.entries[r.entry[i]], &r.entries[r.entry[i + 1]], is_on_set)) continue;
+    solved_.push_back({s, i, Index(columns_.size())});
+    for (int k = 0; k < r.rows_of(i); ++k) {
+      x.assign(size, T(0));
+      for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) {
+        const Entry& at = r.entries[e];
+        for (int j = 0; at.set == s && j < at.width; ++j)
+          x[at.velocity - set.first_velocity + j] += r.H[at.place + k * at.width + j];
+      }
+      set.table->solve(set.set, x.data());
+      columns_.append(x.begin(), x.end());
+    }
+  }
+}
+
+/// Which items are met through the bodies.
+template <class T>
+void Delassus<T>::choose(Index most_partners) {
+  const Rows<T>& r = *rows_;
+  through_bodies_.assign(std::size_t(r.items()), 0);
+  keeps_velocities_ = false;
+  for (Index i = 0; i < r.items(); ++i) {
+    Index partners = 0;
+    bool is_coupled = false;
+    for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) {
+      const Index b = r.entries[e].block;
+      partners += meeting_start_[b + 1] - meeting_start_[b] - 1;
+      is_coupled = is_coupled || world_->sets[r.entries[e].set].is_coupled;
+    }
+    through_bodies_[i] = !is_coupled && partners > most_partners;
+    keeps_velocities_ = keeps_velocities_ || through_bodies_[i];
+  }
+}
+
+template <class T>
+void Delassus<T>::build_pool(int p) {
+  PoolBlocks<T>& W = blocks_[p];
+  const std::size_t items = std::size_t(pools_[p]->items);
+  const int R = rows_of(p);
+  W.diagonal.assign(square(p) * items, T(0));
+  for (auto* x : {&W.block, &W.other_block}) x->clear();
+  for (auto* x : {&W.start, &W.other_start}) x->assign(1, 0);
+  W.column.clear();
+  W.others.clear();
+  W.base.resize(R * items);
+  for (Index i = 0; i < Index(items); ++i) {
+    build_row(p, i);
+    for (int k = 0; k < R; ++k) {
+      const Index r = pools_[p]->first_row + R * i + k;
+      softness_[r] = rows_->compliance[r] + rows_->softness[r] * diagonal(p, i)[k * (R + 1)];
+    }
+    lift(p, i, softness_);
+  }
+}
+
+/// Every entry of item i meets all entries on its body, or all items on a body that A couples to it.
+template <class T>
+void Delassus<T>::build_row(int p, Index i) {
+  const Rows<T>& r = *rows_;
+  PoolBlocks<T>& W = blocks_[p];
+  const Index item = pools_[p]->first_item + i;
+  T* const own = W.diagonal.data() + square(p) * std::size_t(i);
+  for (Index e = r.entry[item]; e < r.entry[item + 1]; ++e) {
+    const Entry& at = r.entries[e];
+    const SetView<T>& set = world_->sets[at.set];
+    if (!set.is_coupled) {
+      for (Index m = meeting_start_[at.block]; m < meeting_start_[at.block + 1]; ++m) {
+        const auto [j, f] = meetings_[m];
+        if (j != item && !has_blocks(item)) continue;
+        add_product(at, rows_of(p), r.G.data() + r.entries[f].place, std::size_t(at.width), r.rows_of(j),
+                    j == item ? own : block_at(p, j));
+      }
+      continue;
+    }
+    const std::size_t line = std::size_t(at.width) * set.table->blocks(set.set);
+    for (const Column& c : solved_)
+      if (c.set == at.set)  // zero where the two act on bodies that A does not couple
+        add_product(at, rows_of(p), columns_.data() + c.place + at.velocity - set.first_velocity, line,
+                    r.rows_of(c.item), c.item == item ? own : block_at(p, c.item));
+  }
+  for (const Index j : opened_) place_[j] = -1;
+  opened_.clear();
+  W.start.push_back(Index(W.column.size()));
+  W.other_start.push_back(Index(W.others.size()));
+}
+
+/// W_ij, zero when it is the first time; `place_` says where it is among the blocks of its list.
+template <class T>
+T* Delassus<T>::block_at(int p, Index j) {
+  PoolBlocks<T>& W = blocks_[p];
+  const int q = pool_of_[j], width = rows_of(q);
+  auto& blocks = q == p ? W.block : W.other_block;
+  if (place_[j] < 0) {
+    opened_.push_back(j);
+    place_[j] = Index(blocks.size());
+    blocks.resize(blocks.size() + std::size_t(rows_of(p)) * width, T(0));
+    if (q == p)
+      W.column.push_back(j - pools_[p]->first_item);
+    else
+      W.others.push_back({rows_->row[j], width, place_[j]});
+  }
+  return blocks.data() + place_[j];
+}
+
+/// to += H_e G, both given as a line of numbers for each row.
+template <class T>
+void Delassus<T>::add_product(const Entry& e, int rows, const T* G, std::size_t line, int columns,
+                              T* to) const {
+  const T* const H = rows_->H.data() + e.place;
+  const auto add = [&](auto width) {
+    for (int c = 0; c < columns; ++c)
+      for (int k = 0; k < rows; ++k) to[k + rows * c] += dot(H + width * k, G + line * c, width);
+  };
+  if (e.width == 6)
+    add(std::integral_constant<int, 6>{});
+  else if (e.width == 3)
+    add(std::integral_constant<int, 3>{});
+  else
+    add(e.width);
+}
+
+}  // namespace light
