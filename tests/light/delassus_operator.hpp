@@ -13,15 +13,9 @@ namespace light {
 /// What W has of the rows of one pool. Blocks are stored by columns.
 template <class T>
 struct PoolBlocks {
-  /// A block whose columns are another pool's item.
-  struct Other {
-    Index row;  ///< the first of the columns, in the flat λ
-    int width;
-    Index place;
-  };
   Array<T> diagonal, block, other_block, base;
   Array<Index> start, column, other_start;  ///< by item
-  Array<Other> others;
+  Array<OtherBlock> others;
 };
 
 /// Σ_j a_j b_j from left to right.
@@ -46,8 +40,8 @@ class Delassus {
 
   const T* diagonal(int p, Index i) const { return blocks_[p].diagonal.data() + square(p) * std::size_t(i); }
   /// The free velocity of item i of pool p, any number of rows; and with the item's own share.
-  void free(int p, Index i, T* u) const;
-  void velocity(int p, Index i, T* u) const;
+  void free(int p, Index i, T* u);
+  void velocity(int p, Index i, T* u);
   /// λ of an item, counted through the pools, has changed.
   void changed(Index item, const T* change);
   /// λ is what the rows say now.
@@ -86,7 +80,7 @@ class Delassus {
   void build_row(int p, Index i);
   void lift(int p, Index i, const Array<T>& by);  ///< numbers of all rows, onto the diagonal
   T* block_at(int p, Index j);
-  void add_others(int p, Index i, T* u) const;
+  OtherBlocks<T> others(int p) const;
   void add_product(const Entry& e, int rows, const T* G, std::size_t line, int columns, T* to) const;
 
   const WorldView<T>* world_ = nullptr;
@@ -120,38 +114,30 @@ Span<T> Delassus<T>::span(int p, const Index* items, Index count) {
 }
 
 template <class T>
-void Delassus<T>::add_others(int p, Index i, T* u) const {
+OtherBlocks<T> Delassus<T>::others(int p) const {
   const PoolBlocks<T>& W = blocks_[p];
-  const int R = rows_of(p);
-  for (Index e = W.other_start[i]; e < W.other_start[i + 1]; ++e) {
-    const auto [row, width, place] = W.others[e];
-    const T *w = W.other_block.data() + place, *x = rows_->lambda.data() + row;
-    for (int c = 0; c < width; ++c, w += R)
-      for (int k = 0; k < R; ++k) u[k] += w[k] * x[c];
-  }
+  return {.start = W.other_start.data(),
+          .list = W.others.data(),
+          .block = W.other_block.data(),
+          .lambda = rows_->lambda.data()};
 }
 
 template <class T>
 void Delassus<T>::sum_others(int p, const Span<T>& span) {
   if (blocks_[p].others.empty()) return;
-  const int R = rows_of(p);
   const T* const d = rows_->d.data() + pools_[p]->first_row;
-  T* const base = blocks_[p].base.data();
-  for (Index n = 0; n < span.count; ++n) {
-    const std::size_t at = std::size_t(R) * span.items[n];
-    for (int k = 0; k < R; ++k) base[at + k] = d[at + k];
-    add_others(p, span.items[n], base + at);
-  }
+  pools_[p]->sweeping->sum_others(span, d, others(p), blocks_[p].base.data());
 }
 
 template <class T>
-void Delassus<T>::free(int p, Index i, T* u) const {
+void Delassus<T>::free(int p, Index i, T* u) {
   const PoolBlocks<T>& W = blocks_[p];
   const Pool<T>& pool = *pools_[p];
   const int R = rows_of(p);
   if (!has_blocks(pool.first_item + i)) return free_through_bodies(pool.first_item + i, diagonal(p, i), u);
-  for (int k = 0; k < R; ++k) u[k] = rows_->d[pool.first_row + R * i + k];
-  add_others(p, i, u);
+  const Span<T> alone = span(p, &i, 1);
+  sum_others(p, alone);
+  for (int k = 0; k < R; ++k) u[k] = alone.base[R * i + k];
   const T* w = W.block.data() + square(p) * std::size_t(W.start[i]);
   for (Index e = W.start[i]; e < W.start[i + 1]; ++e) {
     const T* const x = rows_->lambda.data() + pool.first_row + R * W.column[e];
@@ -161,7 +147,7 @@ void Delassus<T>::free(int p, Index i, T* u) const {
 }
 
 template <class T>
-void Delassus<T>::velocity(int p, Index i, T* u) const {
+void Delassus<T>::velocity(int p, Index i, T* u) {
   const int R = rows_of(p);
   const T *own = diagonal(p, i), *const x = rows_->lambda.data() + pools_[p]->first_row + R * i;
   free(p, i, u);

@@ -208,7 +208,7 @@ struct LawLoops {
     }
   }
 
-  static constexpr SweepTable<T> table{R, &linearize, &prepare, &sweep, &measure, &clamp, &natural_map};
+  static constexpr SweepTable<T> table{R, &linearize, &prepare, &sweep, &measure, &clamp, &natural_map, &sum_others<R, T>};
 };
 
 template <class Law, class T>

@@ -26,6 +26,43 @@ struct Span {
   Delassus<T>* velocities;  ///< where some items are met through the bodies' velocities, else null
 };
 
+/// A block of W whose columns are an item of another pool.
+struct OtherBlock {
+  Index row;  ///< the first of the columns, in the flat λ
+  int width;
+  Index place;
+};
+
+/// What a pool reads of all others: its items' blocks, and the flat λ.
+template <class T>
+struct OtherBlocks {
+  const Index* start;
+  const OtherBlock* list;
+  const T *block, *lambda;
+};
+
+/// base = d + Σ W_ij λ_j over the items j of all other pools: once a span, R a constant and the width of a block a number,
+/// so that R kernels are compiled and not R².
+template <int R, class T>
+void sum_others(const Span<T>& span, const T* d, const OtherBlocks<T>& from, T* base) {
+  for (Index n = 0; n < span.count; ++n) {
+    const Index i = span.items[n];
+    T u[R];
+    for (int k = 0; k < R; ++k) u[k] = d[std::size_t(R) * i + k];
+    for (Index e = from.start[i]; e < from.start[i + 1]; ++e) {
+      const auto [row, width, place] = from.list[e];
+      const T *w = from.block + place, *x = from.lambda + row;
+      if (width == R)  // most of them
+        for (int c = 0; c < R; ++c)
+          for (int k = 0; k < R; ++k) u[k] += w[k + R * c] * x[c];
+      else
+        for (const T* const end = x + width; x != end; ++x, w += R)
+          for (int k = 0; k < R; ++k) u[k] += w[k] * *x;
+    }
+    for (int k = 0; k < R; ++k) base[std::size_t(R) * i + k] = u[k];
+  }
+}
+
 /// What a sweep and a measure need of a law, always of a span of items.
 template <class T>
 struct SweepTable {
@@ -36,6 +73,7 @@ struct SweepTable {
   void (*measure)(Pool<T>&, const Span<T>&, const T* d, MeasureSums&);
   void (*clamp)(Pool<T>&, const Span<T>&);                            ///< each λ into its cone
   void (*natural_map)(Pool<T>&, const Span<T>&, const T* u, T* out);  ///< w λ − P_K(w λ − ũ)
+  void (*sum_others)(const Span<T>&, const T* d, const OtherBlocks<T>&, T* base);  ///< of the number of rows alone
 };
 
 /// What Newton's method needs besides; only a solver that calls it has it compiled. With W replaced by w 1: λ
