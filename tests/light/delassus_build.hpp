@@ -32,13 +32,18 @@ void Delassus<T>::build(const WorldView<T>& world, std::span<Pool<T>* const> poo
 template <class T>
 void Delassus<T>::apply_inverse() {
   Rows<T>& r = *rows_;
-  r.G = r.H;
+  r.G.resize(r.H.size());
   for (Index i = 0; i < r.items(); ++i)
     for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) {
       const Entry& at = r.entries[e];
       const SetView<T>& s = world_->sets[at.set];
-      for (int k = 0; !s.is_coupled && k < r.rows_of(i); ++k)
-        s.table->solve_block(s.set, at.block - s.first_block, r.G.data() + at.place + k * at.width);
+      if (s.is_coupled) continue;
+      const int R = r.rows_of(i);
+      const T* const H = r.H.data() + at.place;
+      T* const G = r.G.data() + at.place;
+      for (int k = 0; k < R; ++k)
+        for (int j = 0; j < at.width; ++j) G[j + at.width * k] = H[k + R * j];
+      s.table->solve_block(s.set, at.block - s.first_block, R, G);
     }
 }
 
@@ -71,7 +76,7 @@ void Delassus<T>::solve_columns(int s) {
       for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) {
         const Entry& at = r.entries[e];
         for (int j = 0; at.set == s && j < at.width; ++j)
-          x[at.velocity - set.first_velocity + j] += r.H[at.place + k * at.width + j];
+          x[at.velocity - set.first_velocity + j] += r.H[at.place + k + r.rows_of(i) * j];
       }
       set.table->solve(set.set, x.data());
       columns_.append(x.begin(), x.end());
@@ -125,6 +130,7 @@ void Delassus<T>::build_row(int p, Index i) {
   const Rows<T>& r = *rows_;
   PoolBlocks<T>& W = blocks_[p];
   const Index item = pools_[p]->first_item + i;
+  const auto add = pools_[p]->sweeping->add_block;
   T* const own = W.diagonal.data() + square(p) * std::size_t(i);
   for (Index e = r.entry[item]; e < r.entry[item + 1]; ++e) {
     const Entry& at = r.entries[e];
@@ -133,16 +139,16 @@ void Delassus<T>::build_row(int p, Index i) {
       for (Index m = meeting_start_[at.block]; m < meeting_start_[at.block + 1]; ++m) {
         const auto [j, f] = meetings_[m];
         if (j != item && !has_blocks(item)) continue;
-        add_product(at, rows_of(p), r.G.data() + r.entries[f].place, std::size_t(at.width), r.rows_of(j),
-                    j == item ? own : block_at(p, j));
+        add(r.H.data() + at.place, r.G.data() + r.entries[f].place, at.width, at.width, r.rows_of(j),
+            j == item ? own : block_at(p, j));
       }
       continue;
     }
-    const std::size_t line = std::size_t(at.width) * set.table->blocks(set.set);
+    const Index line = at.width * set.table->blocks(set.set);
     for (const Column& c : solved_)
       if (c.set == at.set)  // zero where the two act on bodies that A does not couple
-        add_product(at, rows_of(p), columns_.data() + c.place + at.velocity - set.first_velocity, line,
-                    r.rows_of(c.item), c.item == item ? own : block_at(p, c.item));
+        add(r.H.data() + at.place, columns_.data() + c.place + at.velocity - set.first_velocity, at.width,
+            line, r.rows_of(c.item), c.item == item ? own : block_at(p, c.item));
   }
   for (const Index j : opened_) place_[j] = -1;
   opened_.clear();
@@ -166,23 +172,6 @@ T* Delassus<T>::block_at(int p, Index j) {
       W.others.push_back({rows_->row[j], width, place_[j]});
   }
   return blocks.data() + place_[j];
-}
-
-/// to += H_e G, both given as a line of numbers for each row.
-template <class T>
-void Delassus<T>::add_product(const Entry& e, int rows, const T* G, std::size_t line, int columns,
-                              T* to) const {
-  const T* const H = rows_->H.data() + e.place;
-  const auto add = [&](auto width) {
-    for (int c = 0; c < columns; ++c)
-      for (int k = 0; k < rows; ++k) to[k + rows * c] += dot(H + width * k, G + line * c, width);
-  };
-  if (e.width == 6)
-    add(std::integral_constant<int, 6>{});
-  else if (e.width == 3)
-    add(std::integral_constant<int, 3>{});
-  else
-    add(e.width);
 }
 
 }  // namespace light

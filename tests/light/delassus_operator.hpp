@@ -18,14 +18,6 @@ struct PoolBlocks {
   Array<OtherBlock> others;
 };
 
-/// Σ_j a_j b_j from left to right.
-template <class T>
-T dot(const T* a, const T* b, int width) {
-  T sum = a[0] * b[0];
-  for (int j = 1; j < width; ++j) sum += a[j] * b[j];
-  return sum;
-}
-
 /// The one primitive is the free velocity of an item, d_i + Σ_{j ≠ i} W_ij λ_j; the velocity of its rows
 /// follows by adding W_ii λ_i. An item with at most `most_partners` others on its bodies has blocks; one with
 /// more reads y = A⁻¹ Hᵀ λ, which `changed` keeps, if none of its bodies is coupled to others by A.
@@ -43,6 +35,7 @@ class Delassus {
   void free(int p, Index i, T* u);
   void velocity(int p, Index i, T* u);
   /// λ of an item, counted through the pools, has changed.
+  template <int R = 0>
   void changed(Index item, const T* change);
   /// λ is what the rows say now.
   void reset();
@@ -58,6 +51,8 @@ class Delassus {
 
   bool keeps_velocities() const { return keeps_velocities_; }
   bool has_blocks(Index item) const { return !through_bodies_[item]; }
+  /// R rows, if R is not zero.
+  template <int R>
   void free_through_bodies(Index item, const T* own, T* u) const;
 
  private:
@@ -81,7 +76,6 @@ class Delassus {
   void lift(int p, Index i, const Array<T>& by);  ///< numbers of all rows, onto the diagonal
   T* block_at(int p, Index j);
   OtherBlocks<T> others(int p) const;
-  void add_product(const Entry& e, int rows, const T* G, std::size_t line, int columns, T* to) const;
 
   const WorldView<T>* world_ = nullptr;
   Rows<T>* rows_ = nullptr;
@@ -134,7 +128,7 @@ void Delassus<T>::free(int p, Index i, T* u) {
   const PoolBlocks<T>& W = blocks_[p];
   const Pool<T>& pool = *pools_[p];
   const int R = rows_of(p);
-  if (!has_blocks(pool.first_item + i)) return free_through_bodies(pool.first_item + i, diagonal(p, i), u);
+  if (!has_blocks(pool.first_item + i)) return free_through_bodies<0>(pool.first_item + i, diagonal(p, i), u);
   const Span<T> alone = span(p, &i, 1);
   sum_others(p, alone);
   for (int k = 0; k < R; ++k) u[k] = alone.base[R * i + k];
@@ -157,29 +151,40 @@ void Delassus<T>::velocity(int p, Index i, T* u) {
 
 /// d + H y without what the item itself has given to y.
 template <class T>
+template <int rows>
 void Delassus<T>::free_through_bodies(Index item, const T* own, T* u) const {
   const Rows<T>& r = *rows_;
-  const int R = r.rows_of(item);
-  const Index first = r.row[item];
-  for (int k = 0; k < R; ++k) u[k] = r.d[first + k] + lift_[first + k] * r.lambda[first + k];
+  const int R = rows ? rows : r.rows_of(item);
+  const T *const d = r.d.data() + r.row[item], *const x = r.lambda.data() + r.row[item];
+  const T* const lift = lift_.data() + r.row[item];
+  for (int k = 0; k < R; ++k) u[k] = d[k] + lift[k] * x[k];
   for (Index e = r.entry[item]; e < r.entry[item + 1]; ++e) {
     const Entry& at = r.entries[e];
-    for (int k = 0; k < R; ++k) u[k] += dot(&r.H[at.place + k * at.width], &y_[at.velocity], at.width);
+    const T *const H = r.H.data() + at.place, *const y = y_.data() + at.velocity;
+    with_width(at.width, [&](auto width) {
+      for (int j = 0; j < width; ++j)
+        for (int k = 0; k < R; ++k) u[k] += H[k + R * j] * y[j];
+    });
   }
   for (int c = 0; c < R; ++c, own += R)
-    for (int k = 0; k < R; ++k) u[k] -= own[k] * r.lambda[first + c];
+    for (int k = 0; k < R; ++k) u[k] -= own[k] * x[c];
 }
 
 template <class T>
+template <int rows>
 void Delassus<T>::changed(Index item, const T* change) {
   if (!keeps_velocities_) return;
   const Rows<T>& r = *rows_;
+  const int R = rows ? rows : r.rows_of(item);
   for (Index e = r.entry[item]; e < r.entry[item + 1]; ++e) {
     const Entry& at = r.entries[e];
     if (world_->sets[at.set].is_coupled) continue;  // nobody reads y there
+    const T* const G = r.G.data() + at.place;
     T* const y = y_.data() + at.velocity;
-    for (int k = 0; k < r.rows_of(item); ++k)
-      for (int j = 0; j < at.width; ++j) y[j] += r.G[at.place + k * at.width + j] * change[k];
+    with_width(at.width, [&](auto width) {
+      for (int k = 0; k < R; ++k)
+        for (int j = 0; j < width; ++j) y[j] += G[j + width * k] * change[k];
+    });
   }
 }
 

@@ -74,7 +74,8 @@ struct LawLoops {
   [[gnu::always_inline]] static Row free_velocity(const Pool<T>& pool, const Span<T>& s, Index i) {
     if (s.velocities && !s.velocities->has_blocks(pool.first_item + i)) [[unlikely]] {
       Row u;
-      s.velocities->free_through_bodies(pool.first_item + i, s.diagonal + std::size_t(R * R) * i, u.data());
+      s.velocities->template free_through_bodies<R>(pool.first_item + i, s.diagonal + std::size_t(R * R) * i,
+                                                    u.data());
       return u;
     }
     Row u = load(s.base, i);
@@ -140,7 +141,7 @@ struct LawLoops {
       }
       const Row change = next - lambda;
       store(next, s.lambda, i);
-      if (s.velocities) s.velocities->changed(pool.first_item + i, change.data());
+      if (s.velocities) s.velocities->template changed<R>(pool.first_item + i, change.data());
       energy += weight(s, i) * change.squaredNorm();
     }
     return energy;
@@ -208,7 +209,8 @@ struct LawLoops {
     }
   }
 
-  static constexpr SweepTable<T> table{R, &linearize, &prepare, &sweep, &measure, &clamp, &natural_map, &sum_others<R, T>};
+  static constexpr SweepTable<T> table{R,      &linearize,   &prepare,          &sweep,          &measure,
+                                       &clamp, &natural_map, &sum_others<R, T>, &add_block<R, T>};
 };
 
 template <class Law, class T>

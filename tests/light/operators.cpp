@@ -52,7 +52,7 @@ Eigen::MatrixXd dense_rows(const Step& step) {
     for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e)
       for (int k = 0; k < r.rows_of(i); ++k)
         for (int j = 0; j < r.entries[e].width; ++j)
-          H(r.row[i] + k, r.entries[e].velocity + j) += r.H[r.entries[e].place + k * r.entries[e].width + j];
+          H(r.row[i] + k, r.entries[e].velocity + j) += r.H[r.entries[e].place + k + r.rows_of(i) * j];
   return H;
 }
 

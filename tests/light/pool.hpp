@@ -26,6 +26,35 @@ struct Span {
   Delassus<T>* velocities;  ///< where some items are met through the bodies' velocities, else null
 };
 
+/// f(width), a constant for bodies and particles.
+template <class F>
+[[gnu::always_inline]] inline void with_width(int width, const F& f) {
+  if (width == 6)
+    f(std::integral_constant<int, 6>{});
+  else if (width == 3)
+    f(std::integral_constant<int, 3>{});
+  else
+    f(width);
+}
+
+/// u += H y.
+template <int R, class T>
+[[gnu::always_inline]] inline void add_product(const T* H, const T* y, int width, T* u) {
+  T sum[R];
+  for (int k = 0; k < R; ++k) sum[k] = H[k] * y[0];
+  for (int j = 1; j < width; ++j)
+    for (int k = 0; k < R; ++k) sum[k] += H[k + R * j] * y[j];
+  for (int k = 0; k < R; ++k) u[k] += sum[k];
+}
+
+/// to += H G, with `line` numbers from one column of G to the next.
+template <int R, class T>
+void add_block(const T* H, const T* G, int width, Index line, int columns, T* to) {
+  with_width(width, [&](auto w) {
+    for (int c = 0; c < columns; ++c, G += line, to += R) add_product<R>(H, G, w, to);
+  });
+}
+
 /// A block of W whose columns are an item of another pool.
 struct OtherBlock {
   Index row;  ///< the first of the columns, in the flat λ
@@ -41,8 +70,8 @@ struct OtherBlocks {
   const T *block, *lambda;
 };
 
-/// base = d + Σ W_ij λ_j over the items j of all other pools: once a span, R a constant and the width of a block a number,
-/// so that R kernels are compiled and not R².
+/// base = d + Σ W_ij λ_j over the items j of all other pools: once a span, R a constant and the width of a
+/// block a number, so that R kernels are compiled and not R².
 template <int R, class T>
 void sum_others(const Span<T>& span, const T* d, const OtherBlocks<T>& from, T* base) {
   for (Index n = 0; n < span.count; ++n) {
@@ -73,7 +102,9 @@ struct SweepTable {
   void (*measure)(Pool<T>&, const Span<T>&, const T* d, MeasureSums&);
   void (*clamp)(Pool<T>&, const Span<T>&);                            ///< each λ into its cone
   void (*natural_map)(Pool<T>&, const Span<T>&, const T* u, T* out);  ///< w λ − P_K(w λ − ũ)
-  void (*sum_others)(const Span<T>&, const T* d, const OtherBlocks<T>&, T* base);  ///< of the number of rows alone
+  // Of the number of rows alone.
+  void (*sum_others)(const Span<T>&, const T* d, const OtherBlocks<T>&, T* base);
+  void (*add_block)(const T* H, const T* G, int width, Index line, int columns, T* to);
 };
 
 /// What Newton's method needs besides; only a solver that calls it has it compiled. With W replaced by w 1: λ

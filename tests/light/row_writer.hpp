@@ -25,27 +25,30 @@ class RowEnd {
   }
 
   /// u_k += direction · v(point).
-  void along(int k, const Vec3& direction) {
-    for (int b = 0; b < count_; ++b) set().table->along(set().set, anchor_, b, point_, direction, line(b, k));
-  }
+  void along(int k, const Vec3& direction) { add(k, &direction, 1); }
+  /// The first n rows see it along the rows of `axes`, times `sign`: one call for all of them.
   template <int n>
   void along(const Mat<n, 3>& axes, double sign) {
-    for (int k = 0; k < n; ++k) along(k, Vec3(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2)));
+    Vec3 directions[n];
+    for (int k = 0; k < n; ++k) directions[k] = {sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2)};
+    add(0, directions, n);
   }
   void along_axes(double sign) {
-    for (int k = 0; k < 3; ++k) along(k, sign * unit_axis(k));
+    const Vec3 directions[] = {{sign, 0, 0}, {0, sign, 0}, {0, 0, sign}};
+    add(0, directions, 3);
   }
   /// u_k += axis · ω.
   void about(int k, const Vec3& axis) {
-    for (int b = 0; b < count_; ++b) set().table->about(set().set, anchor_, b, axis, line(b, k));
+    for (int b = 0; b < count_; ++b) set().table->about(set().set, anchor_, b, axis, R, H(b) + k);
   }
 
  private:
-  const SetView<T>& set() const { return world_.of(anchor_); }
-  T* line(int b, int k) {
-    const Entry& e = rows_.entries[std::size_t(first_ + b)];
-    return rows_.H.data() + e.place + std::size_t(e.width) * k;
+  void add(int k, const Vec3* directions, int n) {
+    for (int b = 0; b < count_; ++b)
+      set().table->along(set().set, anchor_, b, point_, directions, n, R, H(b) + k);
   }
+  const SetView<T>& set() const { return world_.of(anchor_); }
+  T* H(int b) { return rows_.H.data() + rows_.entries[std::size_t(first_ + b)].place; }
 
   const WorldView<T>& world_;
   Rows<T>& rows_;

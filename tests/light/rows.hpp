@@ -8,8 +8,8 @@ namespace light {
 
 using namespace delassus;
 
-/// One block of bodies that an item acts on. Its H has a line of `width` numbers for each row of the item,
-/// from H[place] on; G = A⁻¹ Hᵀ the same, where A is block-diagonal there.
+/// One block of bodies that an item acts on, through H (R × width) and, where A is block-diagonal there, G =
+/// A⁻¹ Hᵀ (width × R), both by columns from `place` on.
 struct Entry {
   Index block;     ///< in the world's count
   Index velocity;  ///< of the block, in the world's count

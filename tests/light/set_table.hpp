@@ -18,13 +18,15 @@ struct SetTable {
   bool (*moves)(const void*, Index b);
   bool (*is_coupled)(const void*);  ///< A has entries between blocks
   void (*ties)(const void*, void* to, void (*tie)(void* to, Index a, Index b));
-  void (*solve_block)(const void*, Index b, T* x);  ///< x ← A_b⁻¹ x
-  void (*solve)(const void*, T* x);                 ///< x ← A⁻¹ x, of all blocks
+  void (*solve_block)(const void*, Index b, int columns, T* x);  ///< x ← A_b⁻¹ x, of each column
+  void (*solve)(const void*, T* x);                              ///< x ← A⁻¹ x, of all blocks
   int (*anchor_blocks)(const void*, const Anchor&);
   Index (*anchor_block)(const void*, const Anchor&, int k);
-  /// A unit force at a point, or a unit moment, as a row of H of the anchor's block k: added to `row`.
-  void (*along)(const void*, const Anchor&, int k, const Vec3& point, const Vec3& direction, T* row);
-  void (*about)(const void*, const Anchor&, int k, const Vec3& axis, T* row);
+  /// Unit forces at a point, one a row, or a unit moment, as rows of H of the anchor's block k: added to
+  /// `rows`.
+  void (*along)(const void*, const Anchor&, int k, const Vec3& point, const Vec3* directions, int count,
+                int R, T* H);
+  void (*about)(const void*, const Anchor&, int k, const Vec3& axis, int R, T* H);
   Vec3 (*point)(const void*, const Anchor&);
   Quat (*frame)(const void*, const Anchor&);
 };
@@ -47,28 +49,32 @@ struct FunctionsOf {
     if constexpr (requires { of(set).each_tie([](Index, Index) {}); })
       of(set).each_tie([&](Index a, Index b) { tie(to, a, b); });
   }
-  static void solve_block(const void* set, Index b, T* x) {
-    Eigen::Map<V> here(x);
-    const V right = here;
-    here = of(set).template solve_block<1>(b, right);
+  static void solve_block(const void* set, Index b, int columns, T* x) {
+    for (int k = 0; k < columns; ++k, x += width) {
+      Eigen::Map<V> here(x);
+      const V right = here;
+      here = of(set).template solve_block<1>(b, right);
+    }
   }
   static void solve(const void* set, T* x) {
     if constexpr (requires(std::span<V> v) { of(set).solve(v); })
       of(set).solve(std::span<V>(reinterpret_cast<V*>(x), std::size_t(blocks(set))));
     else
-      for (Index b = 0; b < blocks(set); ++b) solve_block(set, b, x + std::size_t(width) * b);
+      for (Index b = 0; b < blocks(set); ++b) solve_block(set, b, 1, x + std::size_t(width) * b);
   }
   static int anchor_blocks(const void* set, const Anchor& a) { return of(set).anchor_blocks(a); }
   static Index anchor_block(const void* set, const Anchor& a, int k) { return of(set).anchor_block(a, k); }
-  static void along(const void* set, const Anchor& a, int k, const Vec3& point, const Vec3& direction,
-                    T* row) {
-    const V h = of(set).along(a, k, point, direction);
-    for (int j = 0; j < width; ++j) row[j] += h[j];
+  static void along(const void* set, const Anchor& a, int k, const Vec3& point, const Vec3* directions,
+                    int count, int R, T* H) {
+    for (int n = 0; n < count; ++n) {
+      const V h = of(set).along(a, k, point, directions[n]);
+      for (int j = 0; j < width; ++j) H[n + R * j] += h[j];
+    }
   }
-  static void about(const void* set, const Anchor& a, int k, const Vec3& axis, T* row) {
+  static void about(const void* set, const Anchor& a, int k, const Vec3& axis, int R, T* H) {
     if constexpr (FramedSet<Set>) {
       const V h = of(set).about(a, k, axis);
-      for (int j = 0; j < width; ++j) row[j] += h[j];
+      for (int j = 0; j < width; ++j) H[R * j] += h[j];
     }
   }
   static Vec3 point(const void* set, const Anchor& a) { return of(set).point(a); }
