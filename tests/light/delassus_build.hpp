@@ -89,9 +89,10 @@ template <class T>
 void Delassus<T>::choose(Index most_partners) {
   const Rows<T>& r = *rows_;
   through_bodies_.assign(std::size_t(r.items()), 0);
+  partners_.assign(std::size_t(r.items()), 0);
   keeps_velocities_ = false;
   for (Index i = 0; i < r.items(); ++i) {
-    Index partners = 0;
+    Index& partners = partners_[i];
     bool is_coupled = false;
     for (Index e = r.entry[i]; e < r.entry[i + 1]; ++e) {
       const Index b = r.entries[e].block;
@@ -100,6 +101,8 @@ void Delassus<T>::choose(Index most_partners) {
     }
     through_bodies_[i] = !is_coupled && partners > most_partners;
     keeps_velocities_ = keeps_velocities_ || through_bodies_[i];
+    if (is_coupled) partners += Index(solved_.size());
+    if (through_bodies_[i]) partners = 0;
   }
 }
 
@@ -109,10 +112,8 @@ void Delassus<T>::build_pool(int p) {
   const std::size_t items = std::size_t(pools_[p]->items);
   const int R = rows_of(p);
   W.diagonal.assign(square(p) * items, T(0));
-  for (auto* x : {&W.block, &W.other_block}) x->clear();
   for (auto* x : {&W.start, &W.other_start}) x->assign(1, 0);
-  W.column.clear();
-  W.others.clear();
+  own_count_ = other_count_ = other_size_ = 0;
   W.base.resize(R * items);
   for (Index i = 0; i < Index(items); ++i) {
     build_row(p, i);
@@ -132,6 +133,7 @@ void Delassus<T>::build_row(int p, Index i) {
   const Index item = pools_[p]->first_item + i;
   const auto add = pools_[p]->sweeping->add_block;
   T* const own = W.diagonal.data() + square(p) * std::size_t(i);
+  make_room(p, item);
   for (Index e = r.entry[item]; e < r.entry[item + 1]; ++e) {
     const Entry& at = r.entries[e];
     const SetView<T>& set = world_->sets[at.set];
@@ -152,8 +154,24 @@ void Delassus<T>::build_row(int p, Index i) {
   }
   for (const Index j : opened_) place_[j] = -1;
   opened_.clear();
-  W.start.push_back(Index(W.column.size()));
-  W.other_start.push_back(Index(W.others.size()));
+  W.start.push_back(own_count_);
+  W.other_start.push_back(other_count_);
+}
+
+/// For as many blocks as an item can have, in each list.
+template <class T>
+void Delassus<T>::make_room(int p, Index item) {
+  constexpr int most_rows = 6;
+  PoolBlocks<T>& W = blocks_[p];
+  const std::size_t more = std::size_t(partners_[item]), own = own_count_ + more,
+                    others = other_count_ + more;
+  if (W.column.size() < own) {
+    W.column.resize(2 * own);
+    W.block.resize(2 * own * square(p));
+  }
+  if (W.others.size() < others) W.others.resize(2 * others);
+  const std::size_t size = other_size_ + more * most_rows * rows_of(p);
+  if (W.other_block.size() < size) W.other_block.resize(2 * size);
 }
 
 /// W_ij, zero when it is the first time; `place_` says where it is among the blocks of its list.
@@ -161,17 +179,21 @@ template <class T>
 T* Delassus<T>::block_at(int p, Index j) {
   PoolBlocks<T>& W = blocks_[p];
   const int q = pool_of_[j], width = rows_of(q);
-  auto& blocks = q == p ? W.block : W.other_block;
-  if (place_[j] < 0) {
-    opened_.push_back(j);
-    place_[j] = Index(blocks.size());
-    blocks.resize(blocks.size() + std::size_t(rows_of(p)) * width, T(0));
-    if (q == p)
-      W.column.push_back(j - pools_[p]->first_item);
-    else
-      W.others.push_back({rows_->row[j], width, place_[j]});
+  const std::size_t size = std::size_t(rows_of(p)) * width;
+  T* const blocks = q == p ? W.block.data() : W.other_block.data();
+  Index& place = place_[j];
+  if (place >= 0) return blocks + place;
+  opened_.push_back(j);
+  if (q == p) {
+    place = Index(size) * own_count_;
+    W.column[own_count_++] = j - pools_[p]->first_item;
+  } else {
+    place = other_size_;
+    other_size_ += Index(size);
+    W.others[other_count_++] = {rows_->row[j], width, place};
   }
-  return blocks.data() + place_[j];
+  std::fill_n(blocks + place, size, T(0));
+  return blocks + place;
 }
 
 }  // namespace light

@@ -10,12 +10,14 @@
 
 namespace light {
 
-/// What W has of the rows of one pool. Blocks are stored by columns.
+/// What W has of the rows of one pool. Blocks are stored by columns. The lists of blocks are room that is
+/// kept from one step to the next: item i has blocks start[i] … start[i + 1] − 1 of them.
 template <class T>
 struct PoolBlocks {
   Array<T> diagonal, block, other_block, base;
   Array<Index> start, column, other_start;  ///< by item
   Array<OtherBlock> others;
+  bool has_others() const { return other_start.back() > 0; }
 };
 
 /// The one primitive is the free velocity of an item, d_i + Σ_{j ≠ i} W_ij λ_j; the velocity of its rows
@@ -74,6 +76,7 @@ class Delassus {
   void build_pool(int p);
   void build_row(int p, Index i);
   void lift(int p, Index i, const Array<T>& by);  ///< numbers of all rows, onto the diagonal
+  void make_room(int p, Index item);
   T* block_at(int p, Index j);
   OtherBlocks<T> others(int p) const;
 
@@ -89,7 +92,8 @@ class Delassus {
   Array<T> columns_, softness_;
   Array<Column> solved_;
   Array<Meeting> meetings_;
-  Array<Index> meeting_start_, next_, place_, opened_;
+  Array<Index> meeting_start_, next_, place_, opened_, partners_;
+  Index own_count_ = 0, other_count_ = 0, other_size_ = 0;  ///< of the pool that is built
 };
 
 template <class T>
@@ -98,7 +102,7 @@ Span<T> Delassus<T>::span(int p, const Index* items, Index count) {
   const Index first = pools_[p]->first_row;
   return {.items = items,
           .count = count,
-          .base = W.others.empty() ? rows_->d.data() + first : W.base.data(),
+          .base = !W.has_others() ? rows_->d.data() + first : W.base.data(),
           .diagonal = W.diagonal.data(),
           .start = W.start.data(),
           .column = W.column.data(),
@@ -118,7 +122,7 @@ OtherBlocks<T> Delassus<T>::others(int p) const {
 
 template <class T>
 void Delassus<T>::sum_others(int p, const Span<T>& span) {
-  if (blocks_[p].others.empty()) return;
+  if (!blocks_[p].has_others()) return;
   const T* const d = rows_->d.data() + pools_[p]->first_row;
   pools_[p]->sweeping->sum_others(span, d, others(p), blocks_[p].base.data());
 }

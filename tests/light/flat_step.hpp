@@ -1,30 +1,12 @@
-/// The typed edge of the example, and one step of a loop both as the library's problem and on flat arrays.
+/// One step of a loop both as the library's problem and on flat arrays.
 #pragma once
 
 #include "acceleration.hpp"
+#include "flat_pools.hpp"
 #include "gauss_seidel.hpp"
-#include "law_pool.hpp"
 #include "scenes.hpp"
 
-#include <array>
-#include <tuple>
-
 namespace light {
-
-/// The pools of a list of laws, and the list of them that plain code is given.
-template <class... Laws>
-struct Pools {
-  std::tuple<LawPool<Laws, double>...> typed;
-  std::array<Pool<double>*, sizeof...(Laws)> list;
-
-  explicit Pools(const Constraints<Laws...>& laws)
-      : Pools(laws, std::make_index_sequence<sizeof...(Laws)>{}) {}
-
- private:
-  template <std::size_t... p>
-  Pools(const Constraints<Laws...>& laws, std::index_sequence<p...>)
-      : typed(laws.template pool<int(p)>()...), list{&std::get<p>(typed)...} {}
-};
 
 /// The stages of a loop up to W, so that bodies, A and rows are of one moment.
 template <class Loop>
