@@ -100,6 +100,28 @@ TEST_CASE("pools of one, three and five rows on bodies of three kinds are swept 
   CHECK(difference(step.rows.lambda, impulses(step.problem)) <= 1e-12);
 }
 
+TEST_CASE("the natural maps of all laws add up to the measured residual") {
+  const auto loop = mixed();
+  FlatStep step(loop);
+  solve_flat(step, 3);
+  for (Index k = 0; k < step.islands.count(); ++k) {
+    Island<double> island = step.island(k);
+    Array<double> u, map(step.rows.lambda.size());
+    island.velocities(u);
+    for (const auto& part : island.parts()) {
+      const Index row = part.pool->first_row;
+      part.pool->sweeping->natural_map(*part.pool, part.span, u.data() + row, map.data() + row);
+    }
+    double maps = 0, velocities = 0, free = 0;
+    for (const Index r : island.order()) {
+      maps += map[r] * map[r];
+      velocities += u[r] * u[r];
+      free += step.rows.d[r] * step.rows.d[r];
+    }
+    CHECK(island.measure().residual == Approx(std::sqrt(maps / std::max(velocities, free))).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("phi, springs and H of a law are what the library's writer makes of it") {
   const auto loop = mixed();
   FlatStep step(loop);
