@@ -22,8 +22,8 @@ struct SetTable {
   void (*solve)(const void*, T* x);                              ///< x ← A⁻¹ x, of all blocks
   int (*anchor_blocks)(const void*, const Anchor&);
   Index (*anchor_block)(const void*, const Anchor&, int k);
-  /// Unit forces at a point, one a row, or a unit moment, as rows of H of the anchor's block k: added to
-  /// `rows`.
+  /// Unit forces at a point, one a row, or a unit moment, as rows of H of the anchor's block k: added to H,
+  /// which lies by columns of R.
   void (*along)(const void*, const Anchor&, int k, const Vec3& point, const Vec3* directions, int count,
                 int R, T* H);
   void (*about)(const void*, const Anchor&, int k, const Vec3& axis, int R, T* H);
