@@ -5,19 +5,17 @@
 #include "flat_pools.hpp"
 #include "gauss_seidel.hpp"
 #include "scenes.hpp"
+#include "stages.hpp"
 
 namespace light {
 
 /// The stages of a loop up to W, so that bodies, A and rows are of one moment.
 template <class Loop>
 void stop_before_solve(Loop& loop, double h) {
-  loop.begin(h);
-  loop.detect();
-  loop.linearize();
-  loop.free_motion();
-  loop.find_islands();
-  loop.make_bias();
-  loop.build();
+  auto& step = loop.data();
+  stage::begin(step, h);
+  stage::detect(step);
+  linearize_to_build(step);
 }
 
 /// H, W, islands and the solve are the example's own; what Bias and FreeMotion write (d, compliance) and the
