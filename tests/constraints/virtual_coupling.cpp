@@ -62,10 +62,10 @@ TEST_CASE("a virtual coupling refuses what cannot be a spring") {
   const auto with = [&](double k, double c, double kt, double ct) {
     loop.add(VirtualCoupling::Item{anchor(rigid, tool), world_anchor({0, 0, 0}), k, c, kt, ct});
   };
-  REQUIRE_THROWS_WITH(with(0, 0, 1, 0), "delassus: VirtualCoupling: stiffness 0 must be finite and > 0 N/m");
-  REQUIRE_THROWS_WITH(with(1, -1, 1, 0), "delassus: VirtualCoupling: damping -1 must be finite and >= 0 N·s/m");
-  REQUIRE_THROWS_WITH(with(1, 0, 0, 0), "delassus: VirtualCoupling: angular_stiffness 0 must be finite and > 0 N·m/rad");
-  REQUIRE_THROWS_WITH(with(1, 0, 1, -2), "delassus: VirtualCoupling: angular_damping -2 must be finite and >= 0 N·m·s/rad");
+  REQUIRE_THROWS_WITH(with(0, 0, 1, 0), "delassus: VirtualCoupling: stiffness 0 N/m must be finite and > 0");
+  REQUIRE_THROWS_WITH(with(1, -1, 1, 0), "delassus: VirtualCoupling: damping -1 N·s/m must be finite and >= 0");
+  REQUIRE_THROWS_WITH(with(1, 0, 0, 0), "delassus: VirtualCoupling: angular_stiffness 0 N·m/rad must be finite and > 0");
+  REQUIRE_THROWS_WITH(with(1, 0, 1, -2), "delassus: VirtualCoupling: angular_damping -2 N·m·s/rad must be finite and >= 0");
 }
 
 }  // namespace virtual_coupling_tests

@@ -283,8 +283,8 @@ TEST_CASE("a sheet whose numbers are none is refused by one sentence") {
   CHECK(refusal(mesh, {.poisson = 0.5}).empty());
   CHECK(says(refusal(mesh, {.poisson = 0.51}), "Poisson's ratio 0.51 must lie in (-1, 0.5]"));
   CHECK(says(refusal(mesh, {.poisson = -1}), "must lie in (-1, 0.5]"));
-  CHECK(says(refusal(mesh, {.young = 0}), "Young's modulus 0 must be finite and > 0 Pa"));
-  CHECK(says(refusal(mesh, {.young = std::nan("")}), "must be finite and > 0 Pa"));
+  CHECK(says(refusal(mesh, {.young = 0}), "Young's modulus 0 Pa must be finite and > 0"));
+  CHECK(says(refusal(mesh, {.young = std::nan("")}), "Pa must be finite and > 0"));
   CHECK(says(refusal(mesh, {.bending = -1}), "the share of bending -1 must be finite and >= 0"));
   CHECK(says(refusal(mesh, {}, 0), "density 0 kg/m³ must be finite and > 0"));
 }

@@ -147,7 +147,7 @@ TEST_CASE("a rod that cannot be one is refused, and says why") {
   refused([](Rod& r) { r.points[3] = r.points[2]; }, "rod #0: segment #2 is 0 m long");
   refused([](Rod& r) { r.points[3] = r.points[1]; }, "rod #0: the line turns back on itself at point #2");
   refused([](Rod& r) { r.section = round_section(0); }, "of its section must be finite and > 0");
-  refused([](Rod& r) { r.young = -1; }, "rod #0: Young's modulus -1 must be finite and > 0 Pa");
+  refused([](Rod& r) { r.young = -1; }, "rod #0: Young's modulus -1 Pa must be finite and > 0");
   refused([](Rod& r) { r.poisson = 0.6; }, "rod #0: Poisson's ratio 0.6 must lie in (-1, 0.5]");
   refused([](Rod& r) { r.density = 0; }, "rod #0: density 0 kg/m³ must be finite and > 0");
   refused([&](Rod& r) { r.velocity[0] = nan; }, "rod #0: position, velocity or up is not finite");

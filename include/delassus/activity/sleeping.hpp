@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -48,10 +47,9 @@ struct Sleeping {
   using State = Sleepers<typename P::World, typename P::Laws>;
 
   void check() const {
-    DELASSUS_EXPECT(speed >= 0 && std::isfinite(speed), "Sleeping: speed " + inner::text(speed) + " m/s must be finite and >= 0");
-    DELASSUS_EXPECT(angular_speed >= 0 && std::isfinite(angular_speed),
-                    "Sleeping: angular_speed " + inner::text(angular_speed) + " rad/s must be finite and >= 0");
-    DELASSUS_EXPECT(after > 0 && std::isfinite(after), "Sleeping: after " + inner::text(after) + " s must be finite and > 0");
+    inner::expect_not_negative("Sleeping: speed", speed, "m/s");
+    inner::expect_not_negative("Sleeping: angular_speed", angular_speed, "rad/s");
+    inner::expect_positive("Sleeping: after", after, "s");
   }
 };
 

@@ -1,6 +1,7 @@
 /// Energy and momentum of a body set: what a step may and may not change.
 #pragma once
 
+#include <delassus/bodies/inner/point_invariants.hpp>
 #include <delassus/bodies/particles.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/math/twist.hpp>
@@ -52,40 +53,6 @@ Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
     sum += pose.position.cross(double(set.mass(b)) * linear_part(v)) +
            pose.rotation * (Mat3(set.inertia(b).template cast<double>()) * rate);
   }
-  return sum;
-}
-
-template <class T>
-double kinetic_energy(const BasicParticles<T>& set) {
-  double sum = 0;
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm());
-  return sum;
-}
-
-/// −m g·x + ½ k (|x_a − x_b| − L)² of all springs, J.
-template <class T>
-double potential_energy(const BasicParticles<T>& set) {
-  double sum = set.spring_energy();
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
-  return sum;
-}
-
-template <class T>
-Vec3 momentum(const BasicParticles<T>& set) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum += double(set.mass(b)) * set.velocity()[b].template cast<double>();
-  return sum;
-}
-
-template <class T>
-Vec3 angular_momentum(const BasicParticles<T>& set) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index b : alive(set))
-    if (set.moves(b))
-      sum += set.pose(b).position.cross(double(set.mass(b)) * set.velocity()[b].template cast<double>());
   return sum;
 }
 

@@ -260,11 +260,10 @@ typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& partic
   DELASSUS_EXPECT(particle.is_fixed || particle.mass, name + ": give mass (kg), or is_fixed");
   if (particle.mass) {
     const double mass = *particle.mass;
-    DELASSUS_EXPECT(std::isfinite(mass) && mass > 0, name + ": mass " + inner::text(mass) + " must be finite and > 0");
+    inner::expect_positive(name + ": mass", mass);
     DELASSUS_EXPECT(inner::has_inverse<T>(mass), name + ": mass " + inner::without_inverse<T>(inner::text(mass), "kg"));
   }
-  DELASSUS_EXPECT(std::isfinite(particle.radius) && particle.radius >= 0,
-                  name + ": radius " + inner::text(particle.radius) + " must be finite and >= 0");
+  inner::expect_not_negative(name + ": radius", particle.radius);
   const Index b = Places::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
                                                            : Velocity(particle.velocity.template cast<T>()));
   const std::size_t n = std::size_t(slots_.size());

@@ -44,9 +44,7 @@ struct Continuous {
   Continuous() = default;
   explicit Continuous(Backend b) : backend(std::move(b)) {}
 
-  void check() const {
-    if constexpr (requires { backend.check(); }) backend.check();
-  }
+  void check() const { inner::check_inside(backend); }
 
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,

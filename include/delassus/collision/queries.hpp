@@ -166,7 +166,7 @@ SurfacePoint first_on_ray(const World& world, const Bodies& bodies, const Vec3& 
   const Vec3 along = direction_of(direction);
   DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
                   "ray_cast: origin and direction must be finite and the direction not zero");
-  DELASSUS_EXPECT(reach >= 0, "ray_cast: reach " + text(reach) + " m must be >= 0");
+  inner::expect_at_least_zero("ray_cast: reach", reach, "m");
   SurfacePoint first;
   double nearest = reach;
   const auto meets = [&](const Aabb& box) {
@@ -191,7 +191,7 @@ template <class World, class Bodies, class Kept>
 SurfacePoint nearest_surface(const World& world, const Bodies& bodies, const Vec3& point, double reach,
                              std::uint32_t groups, const Kept& kept) {
   DELASSUS_EXPECT(is_finite(point), "closest_point: the point is not finite");
-  DELASSUS_EXPECT(reach >= 0, "closest_point: reach " + text(reach) + " m must be >= 0");
+  inner::expect_at_least_zero("closest_point: reach", reach, "m");
   SurfacePoint best;
   double limit = reach;
   const auto meets = [&](const Aabb& box) {

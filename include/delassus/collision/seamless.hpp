@@ -37,9 +37,8 @@ struct Seamless {
   explicit Seamless(Backend b, double largest_step = 1e-3) : backend(std::move(b)), level(largest_step) {}
 
   void check() const {
-    DELASSUS_EXPECT(level > 0 && std::isfinite(level),
-                    "Seamless: level " + inner::text(level) + " m must be finite and > 0");
-    if constexpr (requires { backend.check(); }) backend.check();
+    inner::expect_positive("Seamless: level", level, "m");
+    inner::check_inside(backend);
   }
 
   template <class Filter = NoFilter>

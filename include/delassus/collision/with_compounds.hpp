@@ -37,9 +37,7 @@ struct WithCompounds {
     return KeptShape{ShapeKind::compound, int(compounds_.size()) - 1, reach};
   }
 
-  void check() const {
-    if constexpr (requires { backend.check(); }) backend.check();
-  }
+  void check() const { inner::check_inside(backend); }
 
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,

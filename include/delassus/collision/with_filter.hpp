@@ -46,9 +46,7 @@ struct WithFilter {
     if (place != named_.end()) named_.erase(place);
   }
 
-  void check() const {
-    if constexpr (requires { backend.check(); }) backend.check();
-  }
+  void check() const { inner::check_inside(backend); }
 
   /// The loop says before each detection who is still there, and whom joints hold: each_joint(f) calls f(a,
   /// b).

@@ -53,9 +53,7 @@ struct WithMeshes {
     is_field ? f(fields_[place]) : f(meshes_[place]);
   }
 
-  void check() const {
-    if constexpr (requires { backend.check(); }) backend.check();
-  }
+  void check() const { inner::check_inside(backend); }
 
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,

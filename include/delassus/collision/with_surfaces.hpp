@@ -31,9 +31,7 @@ struct WithSurfaces {
   explicit WithSurfaces(Backend b, bool meets_itself = true)
       : backend(std::move(b)), self_contact(meets_itself) {}
 
-  void check() const {
-    if constexpr (requires { backend.check(); }) backend.check();
-  }
+  void check() const { inner::check_inside(backend); }
   CollisionSettings settings() const { return inner::settings_of(backend); }
 
   /// The loop shows its world before each detection: bodies come and go, nodes have moved.

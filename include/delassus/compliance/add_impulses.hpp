@@ -20,8 +20,7 @@ void add_impulses(const Set& set, const Rows& rows, std::span<typename Set::Velo
     scratch.resize(set.blocks());
     for (auto& x : scratch) x.setZero();
   }
-  for_each_index<Rows::pool_count>([&](auto p) {
-    const auto& pool = rows.template pool<p>();
+  each_pool(rows, [&](auto, const auto& pool) {
     const auto& blocks = std::get<s>(pool.sets);
     for (Index i = 0; i < pool.items(); ++i)
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {

@@ -5,7 +5,6 @@
 #include <delassus/compliance/inner/turned_operator.hpp>
 #include <delassus/core/expect.hpp>
 
-#include <cmath>
 
 namespace delassus {
 
@@ -28,14 +27,13 @@ struct BasicLazyCompliance {
   ComplianceReport report{};  ///< of the last step
 
   void check() const {
-    DELASSUS_EXPECT(std::isfinite(violation) && violation > 0,
-                    "LazyCompliance: violation " + inner::text(violation) + " m must be finite and > 0");
-    DELASSUS_EXPECT(tolerance > 0 && tolerance < 1,
-                    "LazyCompliance: tolerance " + inner::text(tolerance) + " must lie in (0, 1)");
+    inner::expect_positive("LazyCompliance: violation", violation, "m");
+    inner::expect_number(tolerance > 0 && tolerance < 1, "LazyCompliance: tolerance", tolerance,
+                         "must lie in (0, 1)");
     DELASSUS_EXPECT(max_iterations >= 0 && max_passes >= 0,
                     "LazyCompliance: max_iterations and max_passes must be >= 0");
-    DELASSUS_EXPECT(contraction > 0 && contraction < 1,
-                    "LazyCompliance: contraction " + inner::text(contraction) + " must lie in (0, 1)");
+    inner::expect_number(contraction > 0 && contraction < 1, "LazyCompliance: contraction", contraction,
+                         "must lie in (0, 1)");
   }
   inner::TurnedLimits limits() const {
     return {violation, tolerance, contraction, max_iterations, max_passes};

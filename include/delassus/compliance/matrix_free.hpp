@@ -39,8 +39,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
 
   void reset(const Rows& rows) {
     std::apply([](auto&... y) { (zero(y), ...); }, y_);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      const auto& pool = rows.template pool<p>();
+    each_pool(rows, [&](auto p, const auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) commit<p>(rows, i, pool.lambda[i]);
     });
   }

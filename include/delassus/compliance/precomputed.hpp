@@ -8,7 +8,6 @@
 #include <delassus/core/expect.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace delassus {
@@ -66,11 +65,9 @@ struct BasicPrecomputedCompliance {
   ComplianceReport report{};  ///< of the last step
 
   void check() const {
-    DELASSUS_EXPECT(
-        std::isfinite(violation) && violation > 0,
-        "PrecomputedCompliance: violation " + inner::text(violation) + " m must be finite and > 0");
-    DELASSUS_EXPECT(tolerance > 0 && tolerance < 1,
-                    "PrecomputedCompliance: tolerance " + inner::text(tolerance) + " must lie in (0, 1)");
+    inner::expect_positive("PrecomputedCompliance: violation", violation, "m");
+    inner::expect_number(tolerance > 0 && tolerance < 1, "PrecomputedCompliance: tolerance", tolerance,
+                         "must lie in (0, 1)");
     DELASSUS_EXPECT(max_passes >= 0, "PrecomputedCompliance: max_passes must be >= 0");
   }
   inner::TurnedLimits limits() const { return {violation, tolerance, 1, 0, max_passes}; }

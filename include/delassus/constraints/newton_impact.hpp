@@ -31,8 +31,7 @@ double restitution_of(const Law& law, const Item& item) {
 template <class World, class Laws, class Rows>
 void add_restitution(const World& world, const Laws& laws, Rows& rows, double h, Impulses<Rows>& bounce) {
   using T = typename Rows::Scalar;
-  for_each_index<Laws::pool_count>([&](auto p) {
-    const auto& constraints = laws.template pool<p>();
+  each_pool(laws, [&](auto p, const auto& constraints) {
     auto& pool = rows.template pool<p>();
     using Law = std::remove_cvref_t<decltype(constraints.law)>;
     constexpr auto kinds = row_kinds<Law>();

@@ -1,9 +1,11 @@
 /// Bad input is refused where it enters, in one sentence that says what, where and how to mend.
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace delassus {
 
@@ -21,6 +23,32 @@ inline std::string text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%g", value);
   return buffer;
+}
+
+/// Refuses a number with the sentence "`what` `value` `unit` `rule`" unless the rule holds.
+inline void expect_number(bool holds, std::string_view what, double value, const char* rule, const char* unit = "") {
+  if (holds) return;
+  const std::string space = *unit ? " " : "";
+  refuse(std::string(what) + " " + text(value) + space + unit + " " + rule);
+}
+inline void expect_positive(std::string_view what, double value, const char* unit = "") {
+  expect_number(std::isfinite(value) && value > 0, what, value, "must be finite and > 0", unit);
+}
+inline void expect_not_negative(std::string_view what, double value, const char* unit = "") {
+  expect_number(std::isfinite(value) && value >= 0, what, value, "must be finite and >= 0", unit);
+}
+/// It may be infinite.
+inline void expect_above_zero(std::string_view what, double value, const char* unit = "") {
+  expect_number(value > 0, what, value, "must be > 0", unit);
+}
+inline void expect_at_least_zero(std::string_view what, double value, const char* unit = "") {
+  expect_number(value >= 0, what, value, "must be >= 0", unit);
+}
+inline void expect_at_least_one(std::string_view what, double value) {
+  expect_number(value >= 1, what, value, "must be >= 1");
+}
+inline void expect_zero_to_one(std::string_view what, double value) {
+  expect_number(value >= 0 && value <= 1, what, value, "must be in [0, 1]");
 }
 
 }  // namespace inner

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace delassus {
@@ -19,17 +20,20 @@ enum class Status : std::uint8_t {
 
 constexpr Status worse(Status a, Status b) { return std::max(a, b); }
 
+namespace inner {
+
+/// The name of an enumerator, in the order in which its enumeration declares them.
+template <class Enum, std::size_t count>
+constexpr const char* name_in(const char* const (&names)[count], Enum value) {
+  return std::size_t(value) < count ? names[std::size_t(value)] : "unknown";
+}
+
+}  // namespace inner
+
 constexpr const char* name(Status status) {
-  switch (status) {
-    case Status::converged: return "converged";
-    case Status::stalled: return "stalled";
-    case Status::max_iterations: return "max_iterations";
-    case Status::deadline: return "deadline";
-    case Status::infeasible: return "infeasible";
-    case Status::unclaimed_contact: return "unclaimed_contact";
-    case Status::quarantined: return "quarantined";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"converged", "stalled", "max_iterations", "deadline",
+                                   "infeasible", "unclaimed_contact", "quarantined"};
+  return inner::name_in(names, status);
 }
 
 }  // namespace delassus

@@ -27,10 +27,8 @@ struct RestReport {
 /// the nodes are where it came to.
 template <class Set>
 RestReport find_rest(Set& set, const RestOptions& options = {}) {
-  DELASSUS_EXPECT(options.tolerance >= 0,
-                  "find_rest: tolerance " + inner::text(options.tolerance) + " must be >= 0");
-  DELASSUS_EXPECT(options.max_iterations > 0,
-                  "find_rest: max_iterations " + inner::text(options.max_iterations) + " must be > 0");
+  inner::expect_at_least_zero("find_rest: tolerance", options.tolerance);
+  inner::expect_above_zero("find_rest: max_iterations", options.max_iterations);
   using Velocity = typename Set::Velocity;
   using T = typename Set::Scalar;
   Array<Velocity> force(set.blocks()), step, trial(set.blocks());

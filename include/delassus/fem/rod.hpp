@@ -71,19 +71,16 @@ template <class T>
 void check_rod(const Rod& rod, const std::string& who) {
   check_line(rod, who);
   check_section(rod.section, who);
-  DELASSUS_EXPECT(std::isfinite(rod.young) && rod.young > 0,
-                  who + ": Young's modulus " + text(rod.young) + " must be finite and > 0 Pa");
-  DELASSUS_EXPECT(rod.poisson > -1 && rod.poisson <= 0.5,
-                  who + ": Poisson's ratio " + text(rod.poisson) + " must lie in (-1, 0.5]");
-  DELASSUS_EXPECT(std::isfinite(rod.density) && rod.density > 0,
-                  who + ": density " + text(rod.density) + " kg/m³ must be finite and > 0");
+  inner::expect_positive(who + ": Young's modulus", rod.young, "Pa");
+  inner::expect_number(rod.poisson > -1 && rod.poisson <= 0.5, who + ": Poisson's ratio", rod.poisson,
+                       "must lie in (-1, 0.5]");
+  inner::expect_positive(who + ": density", rod.density, "kg/m³");
   DELASSUS_EXPECT(is_finite(rod.position) && is_finite(rod.velocity) && is_finite(rod.up),
                   who + ": position, velocity or up is not finite");
   DELASSUS_EXPECT(fits<T>(rod.velocity), who + ": velocity " + beyond<T>(rod.velocity, "m/s"));
   DELASSUS_EXPECT(std::abs(rod.orientation.coeffs().norm() - 1) < 1e-6,
                   who + ": orientation is not a unit quaternion");
-  DELASSUS_EXPECT(std::isfinite(rod.contact_radius) && rod.contact_radius >= 0,
-                  who + ": contact_radius " + text(rod.contact_radius) + " m must be finite and >= 0");
+  inner::expect_not_negative(who + ": contact_radius", rod.contact_radius, "m");
   DELASSUS_EXPECT(rod.contact_radius == 0 || (rod.group & rod.collides_with) == 0,
                   who + ": its segments would collide with each other; leave its group out of collides_with");
 }

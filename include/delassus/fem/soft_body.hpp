@@ -37,15 +37,13 @@ template <class T, ElasticMaterial M, class Mesh>
 void check_soft_body(const SoftBody<M, Mesh>& body, const std::string& who) {
   check_mesh(body.mesh, who);
   check_material(body.elasticity, who);
-  DELASSUS_EXPECT(std::isfinite(body.density) && body.density > 0,
-                  who + ": density " + text(body.density) + " kg/m³ must be finite and > 0");
+  inner::expect_positive(who + ": density", body.density, "kg/m³");
   DELASSUS_EXPECT(is_finite(body.position) && is_finite(body.velocity),
                   who + ": position or velocity is not finite");
   DELASSUS_EXPECT(fits<T>(body.velocity), who + ": velocity " + beyond<T>(body.velocity, "m/s"));
   DELASSUS_EXPECT(std::abs(body.orientation.coeffs().norm() - 1) < 1e-6,
                   who + ": orientation is not a unit quaternion");
-  DELASSUS_EXPECT(std::isfinite(body.contact_radius) && body.contact_radius >= 0,
-                  who + ": contact_radius " + text(body.contact_radius) + " m must be finite and >= 0");
+  inner::expect_not_negative(who + ": contact_radius", body.contact_radius, "m");
   DELASSUS_EXPECT(body.contact_radius == 0 || (body.group & body.collides_with) == 0,
                   who + ": its nodes would collide with each other; leave its group out of collides_with");
   for (Index e = 0; e < Index(body.mesh.cells().size()); ++e) {

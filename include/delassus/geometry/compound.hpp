@@ -76,8 +76,7 @@ class Compound {
     check(part.shape, who);
     DELASSUS_EXPECT(part.shape.has_volume(),
                     who + ": a " + name(part.shape.kind) + " has no volume; give a convex shape");
-    DELASSUS_EXPECT(std::isfinite(part.density) && part.density > 0,
-                    who + ": density " + inner::text(part.density) + " must be finite and > 0");
+    inner::expect_positive(who + ": density", part.density);
     const double norm = part.orientation.coeffs().norm();
     DELASSUS_EXPECT(is_finite(part.position) && std::isfinite(norm) && norm > 1e-12,
                     who + ": its pose is not finite");

@@ -3,10 +3,12 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/geometry/inner/cell_sides.hpp>
+#include <delassus/geometry/inner/check_cells.hpp>
+#include <delassus/geometry/inner/corners.hpp>
 #include <delassus/geometry/outer_face.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -52,25 +54,13 @@ inline Vec3 trilinear_slope(int a, const Vec3& xi) {
 }
 /// J = ∂x/∂ξ.
 inline Mat3 jacobian(const EightPoints& x, const Vec3& xi) {
-  Mat3 J = Mat3::Zero();
-  for (int a = 0; a < 8; ++a) {
-    const Vec3 slope = trilinear_slope(a, xi);
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < 3; ++i) J(i, k) += x[a][i] * slope[k];
-  }
-  return J;
+  return jacobian_of(x, [&](int a) { return trilinear_slope(a, xi); });
 }
 inline double determinant(const Mat3& A) { return Vec3(A.col(0)).dot(Vec3(A.col(1)).cross(Vec3(A.col(2)))); }
 /// Gauss's point g of the 2 × 2 × 2 rule, all of weight 1: exact up to the third power of each ξ.
 inline Vec3 gauss_point(int g) {
   const double at = 1 / std::sqrt(3.0);
   return {at * hexahedron_corner[g][0], at * hexahedron_corner[g][1], at * hexahedron_corner[g][2]};
-}
-
-inline EightPoints corners(const HexahedralMesh& mesh, Index e) {
-  EightPoints x;
-  for (int a = 0; a < 8; ++a) x[a] = mesh.points[mesh.hexahedra[e][a]];
-  return x;
 }
 
 /// The least of 8 det J at corners and Gauss's points, m³: of a box its volume.
@@ -98,64 +88,6 @@ inline double corner_share(const HexahedralMesh& mesh, Index e, int a) {
   return sum;
 }
 
-inline double longest_edge(const HexahedralMesh& mesh, Index e) {
-  const EightPoints x = corners(mesh, e);
-  double longest = 0;
-  for (int a = 0; a < 8; ++a)
-    for (int b = a + 1; b < 8; ++b) longest = std::max(longest, (x[a] - x[b]).norm());
-  return longest;
-}
-
-/// Refuses hexahedra that name points which are not there.
-inline void check_corners(const HexahedralMesh& mesh, const std::string& who) {
-  const Index count = Index(mesh.points.size());
-  for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e)
-    for (const Index i : mesh.hexahedra[e])
-      DELASSUS_EXPECT(i >= 0 && i < count, who + ": hexahedron #" + std::to_string(e) + " names point " +
-                                               std::to_string(i) + ", but the mesh has points 0 to " +
-                                               std::to_string(count - 1));
-}
-
-/// A face of a hexahedron: its points as they lie around it, and sorted with the way around as a fifth
-/// number.
-struct HexahedronSide {
-  std::array<Index, 4> around;
-  std::array<Index, 5> face;
-  Index number;  ///< 6 e + which of its faces
-
-  HexahedronSide(const std::array<Index, 8>& h, Index e, int which) : number(6 * e + which) {
-    for (int k = 0; k < 4; ++k) around[k] = face[k] = h[hexahedron_face[which][k]];
-    const auto least = std::min_element(around.begin(), around.end()) - around.begin();
-    face[4] = around[(least + 1) % 4] < around[(least + 3) % 4] ? 0 : 1;
-    std::sort(face.begin(), face.begin() + 4);
-  }
-  bool has_points_of(const HexahedronSide& other) const {
-    return std::equal(face.begin(), face.begin() + 4, other.face.begin());
-  }
-};
-
-/// All faces, those of the same points beside each other.
-inline std::vector<HexahedronSide> sorted_sides(const HexahedralMesh& mesh) {
-  std::vector<HexahedronSide> sides;
-  sides.reserve(6 * mesh.hexahedra.size());
-  for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e)
-    for (int k = 0; k < 6; ++k) sides.emplace_back(mesh.hexahedra[e], e, k);
-  std::sort(sides.begin(), sides.end(), [](const HexahedronSide& a, const HexahedronSide& b) {
-    return a.face != b.face ? a.face < b.face : a.number < b.number;
-  });
-  return sides;
-}
-
-/// Refuses hexahedra that lie on the same side of a face, as one that is named twice does.
-inline void check_sides(const HexahedralMesh& mesh, const std::string& who) {
-  const auto sides = sorted_sides(mesh);
-  for (std::size_t k = 1; k < sides.size(); ++k)
-    DELASSUS_EXPECT(sides[k - 1].face != sides[k].face,
-                    who + ": hexahedra #" + std::to_string(sides[k - 1].number / 6) + " and #" +
-                        std::to_string(sides[k].number / 6) +
-                        " lie on the same side of a face; name each once");
-}
-
 }  // namespace inner
 
 /// Of hexahedron e, m³; negative where its points are ordered inside out.
@@ -170,16 +102,9 @@ inline double volume(const HexahedralMesh& mesh, Index e) {
 /// not there, hexahedra that are flat or folded (det J below 1e-9 of the size at a corner or at a Gauss
 /// point), inside out or there twice.
 inline void check_mesh(const HexahedralMesh& mesh, const std::string& who) {
-  const Index count = Index(mesh.points.size());
-  DELASSUS_EXPECT(!mesh.hexahedra.empty(), who + ": the mesh has no hexahedron");
-  for (Index i = 0; i < count; ++i)
-    DELASSUS_EXPECT(is_finite(mesh.points[i]),
-                    who + ": point #" + std::to_string(i) + " of the mesh is not finite");
-  inner::check_corners(mesh, who);
-  std::vector<char> is_used(count, 0);
+  inner::check_points(mesh, who);
   for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e) {
-    const std::string name = who + ": hexahedron #" + std::to_string(e);
-    for (const Index i : mesh.hexahedra[e]) is_used[i] = 1;
+    const std::string name = inner::name_of_cell<HexahedralMesh>(who, e);
     const double V = volume(mesh, e), least = inner::least_determinant(mesh, e),
                  longest = inner::longest_edge(mesh, e), rounding = 1e-9 * longest * longest * longest;
     DELASSUS_EXPECT(std::abs(V) > rounding, name + " is flat: its volume is " + inner::text(V) +
@@ -190,10 +115,7 @@ inline void check_mesh(const HexahedralMesh& mesh, const std::string& who) {
                                           inner::text(least) +
                                           " m³ there; its points go around the bottom, then around the top");
   }
-  inner::check_sides(mesh, who);
-  for (Index i = 0; i < count; ++i)
-    DELASSUS_EXPECT(is_used[i], who + ": point #" + std::to_string(i) +
-                                    " belongs to no hexahedron; take it out of the mesh");
+  inner::check_sides(mesh, inner::hexahedron_face, who, "hexahedra");
 }
 
 /// The same mesh with bottom and top exchanged in every hexahedron that is inside out.
@@ -213,17 +135,11 @@ inline Vec3 place_of_corner(const HexahedralMesh&, int k) {
 
 /// The faces that belong to one hexahedron only, each as two triangles, in the order of the hexahedra.
 inline std::vector<OuterFace> outer_faces(const HexahedralMesh& mesh) {
-  const auto sides = inner::sorted_sides(mesh);
-  std::vector<inner::HexahedronSide> outer;
-  for (std::size_t k = 0, next = 0; k < sides.size(); k = next) {
-    for (next = k; next < sides.size() && sides[next].has_points_of(sides[k]);) ++next;
-    if (next == k + 1) outer.push_back(sides[k]);
-  }
-  std::sort(outer.begin(), outer.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   std::vector<OuterFace> out;
-  for (const auto& [q, face, number] : outer) {
-    out.push_back({{q[0], q[1], q[2]}, number / 6});
-    out.push_back({{q[0], q[2], q[3]}, number / 6});
+  for (const auto& side : inner::outer_sides(mesh, inner::hexahedron_face)) {
+    const auto& q = side.around;
+    out.push_back({{q[0], q[1], q[2]}, side.element});
+    out.push_back({{q[0], q[2], q[3]}, side.element});
   }
   return out;
 }

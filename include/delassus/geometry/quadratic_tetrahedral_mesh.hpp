@@ -57,13 +57,7 @@ inline Vec3 quadratic_slope(int a, const Vec3& xi) {
 }
 /// J = ∂x/∂ξ.
 inline Mat3 jacobian(const TenPoints& x, const Vec3& xi) {
-  Mat3 J = Mat3::Zero();
-  for (int a = 0; a < 10; ++a) {
-    const Vec3 slope = quadratic_slope(a, xi);
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < 3; ++i) J(i, k) += x[a][i] * slope[k];
-  }
-  return J;
+  return jacobian_of(x, [&](int a) { return quadratic_slope(a, xi); });
 }
 /// Point g of the rule of four points, each of weight 1/24: exact up to the second power.
 inline Vec3 tetrahedron_point(int g) {
@@ -82,12 +76,6 @@ void each_exact_point(auto&& f) {
     if (g > 0) xi[g - 1] = 0.5;
     f(xi, 3. / 40);
   }
-}
-
-inline TenPoints corners(const QuadraticTetrahedralMesh& mesh, Index e) {
-  TenPoints x;
-  for (int a = 0; a < 10; ++a) x[a] = mesh.points[mesh.tetrahedra[e][a]];
-  return x;
 }
 
 /// The tetrahedra of the corners alone, over the same points.
@@ -135,22 +123,12 @@ inline double least_volume(const QuadraticTetrahedralMesh& mesh, Index e) {
 /// edges that are not there or belong to nothing, edges so bent that an element folds, and an edge with two
 /// nodes.
 inline void check_mesh(const QuadraticTetrahedralMesh& mesh, const std::string& who) {
-  const Index count = Index(mesh.points.size());
-  DELASSUS_EXPECT(!mesh.tetrahedra.empty(), who + ": the mesh has no tetrahedron");
-  for (Index i = 0; i < count; ++i)
-    DELASSUS_EXPECT(is_finite(mesh.points[i]),
-                    who + ": point #" + std::to_string(i) + " of the mesh is not finite");
-  std::vector<char> is_used(count, 0);
+  inner::check_points(mesh, who);
   std::vector<std::array<Index, 4>> edges;  ///< its corners, its node, its element
   const TetrahedralMesh straight = inner::straight(mesh);
   for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e) {
     const auto& t = mesh.tetrahedra[e];
-    const std::string name = who + ": tetrahedron #" + std::to_string(e);
-    for (const Index i : t) {
-      DELASSUS_EXPECT(i >= 0 && i < count, name + " names point " + std::to_string(i) +
-                                               ", but the mesh has points 0 to " + std::to_string(count - 1));
-      is_used[i] = 1;
-    }
+    const std::string name = inner::name_of_cell<QuadraticTetrahedralMesh>(who, e);
     for (int k = 0; k < 6; ++k) {
       const auto [a, b] = std::minmax(t[inner::tetrahedron_edge[k][0]], t[inner::tetrahedron_edge[k][1]]);
       edges.push_back({a, b, t[4 + k], e});
@@ -167,7 +145,7 @@ inline void check_mesh(const QuadraticTetrahedralMesh& mesh, const std::string& 
                                               inner::text(6 * least) +
                                               " m³ somewhere; move the nodes of its edges to their middles");
   }
-  inner::check_sides(straight, who);
+  inner::check_sides(straight, inner::tetrahedron_face, who, "tetrahedra");
   std::sort(edges.begin(), edges.end());
   for (std::size_t k = 1; k < edges.size(); ++k)
     DELASSUS_EXPECT(
@@ -175,9 +153,6 @@ inline void check_mesh(const QuadraticTetrahedralMesh& mesh, const std::string& 
         who + ": tetrahedra #" + std::to_string(edges[k - 1][3]) + " and #" + std::to_string(edges[k][3]) +
             " have different nodes on the edge between points " + std::to_string(edges[k][0]) + " and " +
             std::to_string(edges[k][1]) + "; name one of them in both");
-  for (Index i = 0; i < count; ++i)
-    DELASSUS_EXPECT(is_used[i], who + ": point #" + std::to_string(i) +
-                                    " belongs to no tetrahedron; take it out of the mesh");
 }
 
 /// The same mesh with two corners exchanged, and the nodes of their edges, in every tetrahedron that is

@@ -121,8 +121,7 @@ struct Shape {
 namespace inner {
 
 inline void check_length(double value, const char* what, const std::string& where) {
-  DELASSUS_EXPECT(std::isfinite(value) && value > 0,
-                  where + ": " + what + " " + text(value) + " m must be finite and > 0");
+  inner::expect_positive(where + ": " + what, value, "m");
 }
 
 }  // namespace inner

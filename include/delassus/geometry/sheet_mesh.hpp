@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/geometry/inner/check_cells.hpp>
 #include <delassus/geometry/inner/surface_topology.hpp>
 #include <delassus/geometry/outer_face.hpp>
 #include <delassus/geometry/triangle.hpp>
@@ -44,22 +45,11 @@ inline double volume(const SheetMesh& mesh, Index e) { return mesh.thickness * a
 /// numbers of points that are not there, triangles without area (height below 1e-6 of the longest edge), two
 /// triangles of the same points, edges of three triangles or of two that are turned to different sides.
 inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
-  const Index count = Index(mesh.points.size());
-  DELASSUS_EXPECT(!mesh.triangles.empty(), who + ": the mesh has no triangle");
-  DELASSUS_EXPECT(std::isfinite(mesh.thickness) && mesh.thickness > 0,
-                  who + ": the thickness " + inner::text(mesh.thickness) + " m must be finite and > 0");
-  for (Index i = 0; i < count; ++i)
-    DELASSUS_EXPECT(is_finite(mesh.points[i]),
-                    who + ": point #" + std::to_string(i) + " of the mesh is not finite");
-  std::vector<char> is_used(count, 0);
+  inner::check_points(mesh, who);
+  inner::expect_positive(who + ": the thickness", mesh.thickness, "m");
   for (Index e = 0; e < Index(mesh.triangles.size()); ++e) {
     const auto& t = mesh.triangles[e];
-    const std::string name = who + ": triangle #" + std::to_string(e);
-    for (const Index i : t) {
-      DELASSUS_EXPECT(i >= 0 && i < count, name + " names point " + std::to_string(i) +
-                                               ", but the mesh has points 0 to " + std::to_string(count - 1));
-      is_used[i] = 1;
-    }
+    const std::string name = inner::name_of_cell<SheetMesh>(who, e);
     DELASSUS_EXPECT(!is_zero(inner::triangle_normal(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])),
                     name + " has no area (height <= 1e-6 of its longest edge); drop it or join its points");
   }
@@ -75,16 +65,13 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
                     who + ": triangles #" + std::to_string(a[3]) + " and #" + std::to_string(b[3]) +
                         " have the same points; drop one of them, since a sheet has both its sides anyway");
   }
-  inner::SurfaceTopology(mesh.triangles, count).each_fault([&](const inner::SharedEdge& e, bool is_crowded) {
+  inner::SurfaceTopology(mesh.triangles, Index(mesh.points.size())).each_fault([&](const inner::SharedEdge& e, bool is_crowded) {
     const std::string which =
         who + ": triangles #" + std::to_string(e.first) + " and #" + std::to_string(e.second);
     DELASSUS_EXPECT(!is_crowded, which + " share an edge with #" + std::to_string(e.third) +
                                      "; at most two may, so make each sheet a body and tie them by joints");
     inner::refuse(which + " are turned to different sides; exchange two points of one of them");
   });
-  for (Index i = 0; i < count; ++i)
-    DELASSUS_EXPECT(is_used[i], who + ": point #" + std::to_string(i) +
-                                    " belongs to no triangle; take it out of the mesh");
 }
 
 /// Where corner k is in the coordinates by which an element weighs its corners.

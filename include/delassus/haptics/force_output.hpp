@@ -22,11 +22,10 @@ struct ForceOutput {
   double max_torque = std::numeric_limits<double>::infinity();  ///< N·m
 
   void check() const {
-    DELASSUS_EXPECT(cutoff > 0, "ForceOutput: cutoff " + inner::text(cutoff) + " Hz must be > 0");
-    DELASSUS_EXPECT(period > 0 && std::isfinite(period),
-                    "ForceOutput: period " + inner::text(period) + " s must be finite and > 0");
-    DELASSUS_EXPECT(max_force >= 0, "ForceOutput: max_force " + inner::text(max_force) + " N must be >= 0");
-    DELASSUS_EXPECT(max_torque >= 0, "ForceOutput: max_torque " + inner::text(max_torque) + " N·m must be >= 0");
+    inner::expect_above_zero("ForceOutput: cutoff", cutoff, "Hz");
+    inner::expect_positive("ForceOutput: period", period, "s");
+    inner::expect_at_least_zero("ForceOutput: max_force", max_force, "N");
+    inner::expect_at_least_zero("ForceOutput: max_torque", max_torque, "N·m");
   }
 
   double share() const { return std::isinf(cutoff) ? 1 : -std::expm1(-2 * std::numbers::pi * cutoff * period); }

@@ -50,7 +50,7 @@ struct BasicHapticChannel {
   void check() const {
     solver.check();
     output.check();
-    DELASSUS_EXPECT(budget >= 0, "HapticChannel: budget " + inner::text(budget) + " s must be >= 0");
+    inner::expect_at_least_zero("HapticChannel: budget", budget, "s");
   }
 
   template <class Problem>

@@ -5,7 +5,6 @@
 #include <delassus/haptics/device_state.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 
 namespace delassus {
 
@@ -26,8 +25,7 @@ struct SimulatedDevice {
   Vec3 hand_velocity = Vec3::Zero();
 
   void check() const {
-    DELASSUS_EXPECT(mass > 0 && std::isfinite(mass),
-                    "SimulatedDevice: mass " + inner::text(mass) + " kg must be finite and > 0");
+    inner::expect_positive("SimulatedDevice: mass", mass, "kg");
     DELASSUS_EXPECT(friction >= 0 && hand_stiffness >= 0 && hand_damping >= 0,
                     "SimulatedDevice: friction and the hand's stiffness and damping must be >= 0");
   }

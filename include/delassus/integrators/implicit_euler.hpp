@@ -4,7 +4,6 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/integrators/integrator.hpp>
 
-#include <cmath>
 
 namespace delassus {
 
@@ -17,10 +16,8 @@ struct ImplicitEuler {
   double rayleigh_stiffness = 0;  ///< β, s
 
   void check() const {
-    DELASSUS_EXPECT(std::isfinite(rayleigh_mass) && rayleigh_mass >= 0,
-                    "ImplicitEuler: rayleigh_mass " + inner::text(rayleigh_mass) + " must be finite and >= 0 1/s");
-    DELASSUS_EXPECT(std::isfinite(rayleigh_stiffness) && rayleigh_stiffness >= 0,
-                    "ImplicitEuler: rayleigh_stiffness " + inner::text(rayleigh_stiffness) + " must be finite and >= 0 s");
+    inner::expect_not_negative("ImplicitEuler: rayleigh_mass", rayleigh_mass, "1/s");
+    inner::expect_not_negative("ImplicitEuler: rayleigh_stiffness", rayleigh_stiffness, "s");
   }
   SystemScale scale(double h) const {
     return {.mass = 1 + h * rayleigh_mass, .damping = h, .stiffness = h * (h + rayleigh_stiffness)};

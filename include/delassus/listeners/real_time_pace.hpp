@@ -55,8 +55,8 @@ class BasicRealTimePace {
 
   /// `keep` is the number of latest steps that p50 and p99 are of; their room is taken here, once.
   explicit BasicRealTimePace(double catch_up = 0, C clock = {}, int keep = 4096) : catch_up_(catch_up), clock_(clock) {
-    DELASSUS_EXPECT(catch_up >= 0, "RealTimePace: catch_up " + inner::text(catch_up) + " s must be >= 0");
-    DELASSUS_EXPECT(keep >= 1, "RealTimePace: keep " + inner::text(keep) + " must be >= 1");
+    inner::expect_at_least_zero("RealTimePace: catch_up", catch_up, "s");
+    inner::expect_at_least_one("RealTimePace: keep", keep);
     work_.reserve(keep);
     keep_ = keep;
   }

@@ -20,6 +20,7 @@ struct SystemScale {
 /// A structure of arrays of bodies of one kind, `width` velocities per block. Blocks are bodies or nodes.
 ///
 /// v: start of the step, m/s and rad/s; v_free: after the free motion; v_next: after the corrective motion.
+/// Where A has no entries between blocks, solve_block(b, x) gives A_b⁻¹ x for one or more columns.
 template <class S>
 concept BodySet = requires(S set, const S fixed, const Anchor anchor, Index b, SystemScale scale, double h, Vec3 x,
                            std::span<Vec<S::width, typename S::Scalar>> p) {
@@ -31,12 +32,6 @@ concept BodySet = requires(S set, const S fixed, const Anchor anchor, Index b, S
   { fixed.along(anchor, 0, x, x) } -> std::same_as<Vec<S::width, typename S::Scalar>>;  // row of H of one of them
   { fixed.point(anchor) } -> std::same_as<Vec3>;  // where an anchor is in the world, m
   { set.advance(h) } -> std::same_as<void>;       // q, v from v_next
-};
-
-/// A body set whose A has no entries between blocks: solve_block(b, x) gives A_b⁻¹ x for one or more columns.
-template <class S>
-concept BlockDiagonalSet = BodySet<S> && requires(const S set, Index b, Mat<S::width, 1, typename S::Scalar> x) {
-  { set.solve_block(b, x) } -> std::same_as<Mat<S::width, 1, typename S::Scalar>>;
 };
 
 /// A set whose M⁻¹ is known by its parts: 1/m, and R I⁻¹ Rᵀ about `centre(b)` (m) of what turns.

@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/rows/row_system.hpp>
 
+#include <cstddef>
 #include <tuple>
 
 namespace delassus {
@@ -13,10 +14,26 @@ template <class Rows>
 struct Impulses;
 template <class T, int... w, int... R>
 struct Impulses<RowSystem<T, Widths<w...>, R...>> {
+  using Rows = RowSystem<T, Widths<w...>, R...>;
   std::tuple<Array<Vec<R, T>>...> pools;
 
-  void resize_like(const RowSystem<T, Widths<w...>, R...>& rows) {
+  void resize_like(const Rows& rows) {
     for_each_index<sizeof...(R)>([&](auto p) { std::get<p>(pools).resize(rows.template pool<p>().items()); });
+  }
+  void set_zero() {
+    for_each_index<sizeof...(R)>([&](auto p) {
+      for (auto& x : std::get<p>(pools)) x.setZero();
+    });
+  }
+  void add(const Impulses& more, T share = 1) {
+    for_each_index<sizeof...(R)>([&](auto p) {
+      auto& to = std::get<p>(pools);
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] += share * std::get<p>(more.pools)[i];
+    });
+  }
+  /// λ of the rows ← these.
+  void give_to(Rows& rows) const {
+    for_each_index<sizeof...(R)>([&](auto p) { rows.template pool<p>().lambda = std::get<p>(pools); });
   }
 };
 

@@ -40,8 +40,7 @@ class Islands {
     parent_.resize(blocks);
     for (Index b = 0; b < blocks; ++b) parent_[b] = b;
     ties([this](Index a, Index b) { unite(a, b); });
-    for_each_index<Rows::pool_count>([&](auto p) {
-      const auto& pool = rows.template pool<p>();
+    each_pool(rows, [&](auto p, const auto& pool) {
       lowest_[p].assign(pool.items(), -1);
       for (Index i = 0; i < pool.items(); ++i) join(pool, i, first_block, moves, lowest_[p][i]);
     });

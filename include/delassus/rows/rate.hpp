@@ -21,6 +21,12 @@ Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, co
   return u;
 }
 
+/// H v_next.
+template <class Pool, class World>
+auto next_rate(const Pool& pool, Index i, const World& world) {
+  return rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
+}
+
 /// The same of arrays x, one for each set.
 template <int R, class T, int... w, class... Arrays>
 Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const std::tuple<Arrays...>& x) {

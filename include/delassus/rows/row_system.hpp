@@ -63,4 +63,11 @@ constexpr void for_each_index(F&& f) {
   }(std::make_integer_sequence<int, count>{});
 }
 
+/// f(p, pool) for every pool of rows, or of constraints.
+void each_pool(auto& all, auto&& f) {
+  [&]<int... p>(std::integer_sequence<int, p...>) {
+    (f(std::integral_constant<int, p>{}, all.template pool<p>()), ...);
+  }(std::make_integer_sequence<int, std::remove_cvref_t<decltype(all)>::pool_count>{});
+}
+
 }  // namespace delassus

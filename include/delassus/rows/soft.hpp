@@ -3,8 +3,6 @@
 
 #include <delassus/core/expect.hpp>
 
-#include <string>
-
 namespace delassus::inner {
 
 /// What is asked of a stiffness or damping: 0, or a size at which the compliance 1/(h² k + h c) of the row and its bias
@@ -13,8 +11,7 @@ inline bool is_soft_number(double x) { return x == 0 || (x >= 1e-20 && x <= 1e20
 
 /// Refuses `value`, in a sentence that begins with `what` and ends with the rule.
 inline void check_soft_number(double value, const char* what, const char* unit) {
-  DELASSUS_EXPECT(is_soft_number(value),
-                  std::string(what) + " " + text(value) + " " + unit + " must be 0 or lie in [1e-20, 1e20]");
+  expect_number(is_soft_number(value), what, value, "must be 0 or lie in [1e-20, 1e20]", unit);
 }
 
 }  // namespace delassus::inner

@@ -32,8 +32,8 @@ struct JointByJoint {
   double tolerance = 1e-6;  ///< of the residual
 
   void check() const {
-    DELASSUS_EXPECT(sweeps >= 1, "JointByJoint: sweeps " + inner::text(sweeps) + " must be >= 1");
-    DELASSUS_EXPECT(tolerance >= 0, "JointByJoint: tolerance " + inner::text(tolerance) + " must be >= 0");
+    inner::expect_at_least_one("JointByJoint: sweeps", sweeps);
+    inner::expect_at_least_zero("JointByJoint: tolerance", tolerance);
   }
   /// One function of all that a joint and a body of a step take: calls between them cost a tenth of a
   /// pendulum's step.

@@ -22,9 +22,7 @@ struct Substeps {
   using State = StepParts<typename P::World, typename P::Laws>;
   int count = 4;
 
-  void check() const {
-    DELASSUS_EXPECT(count >= 1, "Substeps: count " + inner::text(count) + " must be >= 1");
-  }
+  void check() const { inner::expect_at_least_one("Substeps: count", count); }
   void run(auto& step) const {
     stage::detect(step);
     auto& parts = step.template state<role::Scheme>();

@@ -66,12 +66,10 @@ struct BasicAcceleratedGaussSeidel {
   };
 
   void check() const {
-    DELASSUS_EXPECT(tolerance >= 0,
-                    "AcceleratedGaussSeidel: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations >= 0, "AcceleratedGaussSeidel: max_iterations " +
-                                             inner::text(max_iterations) + " must be >= 0");
-    DELASSUS_EXPECT(relaxation > 0 && relaxation < 2,
-                    "AcceleratedGaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
+    inner::expect_at_least_zero("AcceleratedGaussSeidel: tolerance", tolerance);
+    inner::expect_at_least_zero("AcceleratedGaussSeidel: max_iterations", max_iterations);
+    inner::expect_number(relaxation > 0 && relaxation < 2, "AcceleratedGaussSeidel: relaxation", relaxation,
+                         "must lie in (0, 2)");
   }
 
   /// Sweeps in which the error must halve, at first. Momentum may stand for a thousand before it goes on:
@@ -142,6 +140,20 @@ SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& probl
     if (pursuit.is_over()) return pursuit.finish();
   }
 }
+
+namespace inner {
+
+/// Sweeps to the tolerance of another solver, or to a share of it.
+template <class Criterion, class Solver>
+BasicAcceleratedGaussSeidel<Criterion> sweeps_of(const Solver& solver, int most, int least, double share = 1) {
+  return {.tolerance = share * solver.tolerance,
+          .max_iterations = most,
+          .min_iterations = least,
+          .scale_tolerance = solver.scale_tolerance,
+          .all_verified = solver.all_verified};
+}
+
+}  // namespace inner
 
 /// Sweeps alone: a tenth less compiler memory than with Newton's method, and the same for what soon ends.
 using AcceleratedSweeps = BasicAcceleratedGaussSeidel<>;

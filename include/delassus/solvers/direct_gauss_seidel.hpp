@@ -59,12 +59,9 @@ struct BasicDirectGaussSeidel {
   };
 
   void check() const {
-    DELASSUS_EXPECT(tolerance >= 0,
-                    "DirectGaussSeidel: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations >= 0,
-                    "DirectGaussSeidel: max_iterations " + inner::text(max_iterations) + " must be >= 0");
-    DELASSUS_EXPECT(max_swept_rows >= 0,
-                    "DirectGaussSeidel: max_swept_rows " + inner::text(max_swept_rows) + " must be >= 0");
+    inner::expect_at_least_zero("DirectGaussSeidel: tolerance", tolerance);
+    inner::expect_at_least_zero("DirectGaussSeidel: max_iterations", max_iterations);
+    inner::expect_at_least_zero("DirectGaussSeidel: max_swept_rows", max_swept_rows);
   }
 
   template <class Problem, class Workspace>
@@ -73,7 +70,9 @@ struct BasicDirectGaussSeidel {
     if (!std::isfinite(report.measure.residual))
       return {.status = Status::quarantined, .measure = report.measure};
     auto& joints = work.joints;
-    if (!gather(problem, joints)) return sweeper(max_iterations).solve(problem, work.contacts.newton.sweeps);
+    if (!gather(problem, joints))
+      return inner::sweeps_of<Criterion>(*this, max_iterations, min_iterations)
+          .solve(problem, work.contacts.newton.sweeps);
     problem.tell(0, report.measure);
     report.ended_by = "factorization";
     bool is_contradiction = false;
@@ -101,7 +100,7 @@ struct BasicDirectGaussSeidel {
       report.measure = problem.measure();
       report.status = swept;
       if (swept == Status::infeasible) return report;
-      if (is_done(report.measure, problem.row_count()) || problem.is_out_of_time()) break;
+      if (inner::is_done<Criterion>(*this, report.measure, problem.row_count()) || problem.is_out_of_time()) break;
     }
     problem.tell(report.sweeps + report.factorizations, report.measure);
     report.status = is_contradiction
@@ -119,17 +118,6 @@ struct BasicDirectGaussSeidel {
     for (const RowKind kind : Problem::BookType::template kinds<p>())
       if (kind != RowKind::equality) return false;
     return true;
-  }
-
-  BasicAcceleratedGaussSeidel<Criterion> sweeper(int most, double share = 1) const {
-    return {.tolerance = share * tolerance,
-            .max_iterations = most,
-            .min_iterations = min_iterations,
-            .scale_tolerance = scale_tolerance,
-            .all_verified = all_verified};
-  }
-  bool is_done(const Measure& m, int rows) const {
-    return inner::is_within<Criterion>(*this, m, rows) || m.residual <= m.floor;
   }
 
   /// The bilateral constraints first; false where there are none, or the direct path cannot act.
@@ -212,7 +200,8 @@ struct BasicDirectGaussSeidel {
     problem.save(work.before);
     Rest<Problem, decltype(work.others)> rest(problem, work.others);
     rest.each([&](auto p, Index i) { rest.template prepare<p>(i, work.others.template diagonal<p>(i)); });
-    const inner::SweepsThenNewton<Criterion> solver{sweeper(max_iterations - report.sweeps, share)};
+    const inner::SweepsThenNewton<Criterion> solver{
+        inner::sweeps_of<Criterion>(*this, max_iterations - report.sweeps, min_iterations, share)};
     const SolveReport swept = solver.solve(rest, work.contacts);
     report.sweeps += swept.sweeps;
     report.factorizations += swept.factorizations;

@@ -28,10 +28,10 @@ struct BasicGaussSeidel {
   struct Workspace {};
 
   void check() const {
-    DELASSUS_EXPECT(tolerance >= 0, "GaussSeidel: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations >= 0, "GaussSeidel: max_iterations " + inner::text(max_iterations) + " must be >= 0");
-    DELASSUS_EXPECT(relaxation > 0 && relaxation < 2,
-                    "GaussSeidel: relaxation " + inner::text(relaxation) + " must lie in (0, 2)");
+    inner::expect_at_least_zero("GaussSeidel: tolerance", tolerance);
+    inner::expect_at_least_zero("GaussSeidel: max_iterations", max_iterations);
+    inner::expect_number(relaxation > 0 && relaxation < 2, "GaussSeidel: relaxation", relaxation,
+                         "must lie in (0, 2)");
   }
 
   template <class Problem, class Workspace>
@@ -43,7 +43,7 @@ struct BasicGaussSeidel {
     if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
     bool is_over = max_iterations == 0;
     while (!is_over) {
-      if (report.sweeps >= min_iterations && is_done(report.measure, rows)) break;
+      if (report.sweeps >= min_iterations && inner::is_done<Criterion>(*this, report.measure, rows)) break;
       const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
       for (int k = 0; k < batch && !is_over && !(k > 0 && problem.is_measure_due()); ++k) {
         problem.template sweep<!Criterion::needs_measure>(relaxation);
@@ -58,11 +58,6 @@ struct BasicGaussSeidel {
     if constexpr (!Criterion::needs_measure) report.measure = problem.measure();
     report.status = is_within ? Status::converged : inner::verdict<Criterion>(*this, report.measure, rows);
     return report;
-  }
-
- private:
-  bool is_done(const Measure& m, int rows) const {
-    return inner::is_within<Criterion>(*this, m, rows) || (Criterion::needs_measure && m.residual <= m.floor);
   }
 };
 

@@ -78,8 +78,7 @@ struct MinimumNorm {
 
   void check() const {
     solver.check();
-    DELASSUS_EXPECT(max_products >= 0,
-                    "MinimumNorm: max_products " + inner::text(max_products) + " must be >= 0");
+    inner::expect_at_least_zero("MinimumNorm: max_products", max_products);
   }
 
   template <class Problem, class Workspace>

@@ -52,10 +52,9 @@ struct BasicPathNewton {
   };
 
   void check() const {
-    DELASSUS_EXPECT(tolerance >= 0, "PathNewton: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations >= 0,
-                    "PathNewton: max_iterations " + inner::text(max_iterations) + " must be >= 0");
-    DELASSUS_EXPECT(max_sweeps >= 0, "PathNewton: max_sweeps " + inner::text(max_sweeps) + " must be >= 0");
+    inner::expect_at_least_zero("PathNewton: tolerance", tolerance);
+    inner::expect_at_least_zero("PathNewton: max_iterations", max_iterations);
+    inner::expect_at_least_zero("PathNewton: max_sweeps", max_sweeps);
   }
 
   template <class Problem, class Workspace>
@@ -76,7 +75,7 @@ struct BasicPathNewton {
       now.report.measure = problem.measure();
     }
     if (max_sweeps > 0 && !meets(now.report.measure, problem) && !problem.is_out_of_time()) {
-      SolveReport report = sweep(problem, work);
+      SolveReport report = inner::sweeps_of<Criterion>(*this, max_sweeps, 0).solve(problem, work.sweeps);
       report.factorizations = now.report.factorizations;
       return report;
     }
@@ -218,16 +217,6 @@ struct BasicPathNewton {
     return std::isfinite(length);
   }
 
-  template <class Problem, class Workspace>
-  SolveReport sweep(Problem& problem, Workspace& work) const {
-    const BasicAcceleratedGaussSeidel<Criterion> solver{.tolerance = tolerance,
-                                                        .max_iterations = max_sweeps,
-                                                        .min_iterations = 0,
-                                                        .scale_tolerance = scale_tolerance,
-                                                        .all_verified = all_verified};
-    return solver.solve(problem, work.sweeps);
-  }
-
   /// Measures λ by W itself and keeps the best.
   template <class W>
   bool is_done(W& now) const {
@@ -241,7 +230,7 @@ struct BasicPathNewton {
   }
   template <class Problem>
   bool meets(const Measure& m, const Problem& problem) const {
-    return inner::is_within<Criterion>(*this, m, problem.row_count()) || m.residual <= m.floor;
+    return inner::is_done<Criterion>(*this, m, problem.row_count());
   }
 };
 

@@ -48,11 +48,9 @@ struct BasicProximalNewton {
   };
 
   void check() const {
-    DELASSUS_EXPECT(tolerance >= 0, "ProximalNewton: tolerance " + inner::text(tolerance) + " must be >= 0");
-    DELASSUS_EXPECT(max_iterations >= 0,
-                    "ProximalNewton: max_iterations " + inner::text(max_iterations) + " must be >= 0");
-    DELASSUS_EXPECT(max_sweeps >= 0,
-                    "ProximalNewton: max_sweeps " + inner::text(max_sweeps) + " must be >= 0");
+    inner::expect_at_least_zero("ProximalNewton: tolerance", tolerance);
+    inner::expect_at_least_zero("ProximalNewton: max_iterations", max_iterations);
+    inner::expect_at_least_zero("ProximalNewton: max_sweeps", max_sweeps);
   }
 
   template <class Problem, class Workspace>
@@ -103,12 +101,7 @@ struct BasicProximalNewton {
 
   template <class Problem, class Workspace>
   SolveReport sweep(Problem& problem, Workspace& work, int most, int least) const {
-    const BasicAcceleratedGaussSeidel<Criterion> solver{.tolerance = tolerance,
-                                                        .max_iterations = most,
-                                                        .min_iterations = least,
-                                                        .scale_tolerance = scale_tolerance,
-                                                        .all_verified = all_verified};
-    return solver.solve(problem, work.sweeps);
+    return inner::sweeps_of<Criterion>(*this, most, least).solve(problem, work.sweeps);
   }
 
   template <class P>

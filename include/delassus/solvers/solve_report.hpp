@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 
 namespace delassus {
 
@@ -18,14 +17,6 @@ struct SolveReport {
   const char* ended_by = "sweeps";  ///< the stage of the solver that came last
 };
 
-/// The parameters every sweeping solver shares.
-template <class S>
-concept SweepingSolver = requires(const S s) {
-  { s.tolerance } -> std::convertible_to<double>;
-  { s.min_iterations } -> std::convertible_to<int>;
-  { s.max_iterations } -> std::convertible_to<int>;
-};
-
 namespace inner {
 
 /// tolerance, times the number of rows when `scale_tolerance` asks; or every constraint's share when `all_verified`.
@@ -33,6 +24,12 @@ template <class Criterion, class Solver>
 bool is_within(const Solver& solver, const Measure& m, int rows) {
   if (solver.all_verified) return Criterion::worst(m) <= solver.tolerance;
   return Criterion::sum(m) <= solver.tolerance * (solver.scale_tolerance ? rows : 1);
+}
+
+/// Within it, or at the floor of rounding.
+template <class Criterion, class Solver>
+bool is_done(const Solver& solver, const Measure& m, int rows) {
+  return is_within<Criterion>(solver, m, rows) || (Criterion::needs_measure && m.residual <= m.floor);
 }
 
 /// Sweeps between two measurements. With a measurement at the price of c sweeps, one every m sweeps costs n c/m on the way to

@@ -53,7 +53,7 @@ struct WithDeadline {
 
   void check() const {
     solver.check();
-    DELASSUS_EXPECT(budget >= 0, "WithDeadline: budget " + inner::text(budget) + " s must be >= 0");
+    inner::expect_at_least_zero("WithDeadline: budget", budget, "s");
     DELASSUS_EXPECT(!std::isnan(deadline),
                     "WithDeadline: the deadline must be a number of seconds on its clock");
   }

@@ -19,9 +19,9 @@ struct Baumgarte {
   double max_joint_speed = std::numeric_limits<double>::infinity();  ///< m/s, rad/s
 
   void check() const {
-    DELASSUS_EXPECT(rate > 0 && rate <= 1, "Baumgarte: rate " + inner::text(rate) + " must be in (0, 1]");
-    DELASSUS_EXPECT(max_speed > 0, "Baumgarte: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
-    DELASSUS_EXPECT(max_joint_speed > 0, "Baumgarte: max_joint_speed " + inner::text(max_joint_speed) + " must be > 0 m/s");
+    inner::expect_number(rate > 0 && rate <= 1, "Baumgarte: rate", rate, "must be in (0, 1]");
+    inner::expect_above_zero("Baumgarte: max_speed", max_speed, "m/s");
+    inner::expect_above_zero("Baumgarte: max_joint_speed", max_joint_speed, "m/s");
   }
   double equality(double phi, double h) const { return std::clamp(rate * phi / h, -max_joint_speed, max_joint_speed); }
   double penetration(double phi, double h) const { return std::max(rate * phi / h, -max_speed); }

@@ -22,8 +22,8 @@ struct PositionProjection {
   double max_speed = 1;  ///< m/s, of overlaps; joints are closed at any speed
 
   void check() const {
-    DELASSUS_EXPECT(rate > 0 && rate <= 1, "PositionProjection: rate " + inner::text(rate) + " must be in (0, 1]");
-    DELASSUS_EXPECT(max_speed > 0, "PositionProjection: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
+    inner::expect_number(rate > 0 && rate <= 1, "PositionProjection: rate", rate, "must be in (0, 1]");
+    inner::expect_above_zero("PositionProjection: max_speed", max_speed, "m/s");
   }
   double equality(double, double) const { return 0; }
   double penetration(double, double) const { return 0; }

@@ -5,7 +5,6 @@
 #include <delassus/stabilisation/stabilisation.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus {
@@ -25,15 +24,11 @@ struct SoftContact {
   double max_joint_speed = std::numeric_limits<double>::infinity();  ///< m/s, rad/s
 
   void check() const {
-    DELASSUS_EXPECT(frequency > 0 && std::isfinite(frequency),
-                    "SoftContact: frequency " + inner::text(frequency) + " must be finite and > 0 Hz");
-    DELASSUS_EXPECT(damping_ratio >= 0 && std::isfinite(damping_ratio),
-                    "SoftContact: damping_ratio " + inner::text(damping_ratio) + " must be finite and >= 0");
-    DELASSUS_EXPECT(max_speed > 0, "SoftContact: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
-    DELASSUS_EXPECT(joint_rate >= 0 && joint_rate <= 1,
-                    "SoftContact: joint_rate " + inner::text(joint_rate) + " must be in [0, 1]");
-    DELASSUS_EXPECT(max_joint_speed > 0,
-                    "SoftContact: max_joint_speed " + inner::text(max_joint_speed) + " must be > 0 m/s");
+    inner::expect_positive("SoftContact: frequency", frequency, "Hz");
+    inner::expect_not_negative("SoftContact: damping_ratio", damping_ratio);
+    inner::expect_above_zero("SoftContact: max_speed", max_speed, "m/s");
+    inner::expect_zero_to_one("SoftContact: joint_rate", joint_rate);
+    inner::expect_above_zero("SoftContact: max_joint_speed", max_joint_speed, "m/s");
   }
   double omega() const { return 6.283185307179586 * frequency; }
   double equality(double phi, double h) const {

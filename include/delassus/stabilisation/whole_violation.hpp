@@ -13,9 +13,7 @@ struct WholeViolation {
   using plays = role::Stabilisation;
   double max_speed = 1;  ///< m/s
 
-  void check() const {
-    DELASSUS_EXPECT(max_speed > 0, "WholeViolation: max_speed " + inner::text(max_speed) + " must be > 0 m/s");
-  }
+  void check() const { inner::expect_above_zero("WholeViolation: max_speed", max_speed, "m/s"); }
   double equality(double phi, double h) const { return phi / h; }
   double penetration(double phi, double h) const { return std::max(phi / h, -max_speed); }
 };

@@ -6,7 +6,6 @@
 #include <delassus/stabilisation/baumgarte.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 
-#include <cmath>
 #include <concepts>
 
 namespace delassus {
@@ -35,8 +34,7 @@ struct WithCompliance {
 
   void check() const {
     stabilisation.check();
-    DELASSUS_EXPECT(least >= 0 && std::isfinite(least),
-                    "WithCompliance: compliance " + inner::text(least) + " m/N must be finite and >= 0");
+    inner::expect_not_negative("WithCompliance: compliance", least, "m/N");
   }
   double equality(double phi, double h) const { return stabilisation.equality(phi, h); }
   double penetration(double phi, double h) const { return stabilisation.penetration(phi, h); }

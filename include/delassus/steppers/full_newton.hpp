@@ -27,8 +27,8 @@ struct FullNewton {
   int max_iterations = 50;   ///< factorizations; reaching it is a status
 
   void check() const {
-    DELASSUS_EXPECT(theta == 1 || theta == 0.5, "FullNewton: theta " + inner::text(theta) +
-                                                    " must be 1, implicit Euler, or 0.5, the midpoint rule");
+    inner::expect_number(theta == 1 || theta == 0.5, "FullNewton: theta", theta,
+                         "must be 1, implicit Euler, or 0.5, the midpoint rule");
     inner::check_newton("FullNewton", tolerance, max_iterations);
   }
   void move(auto& step) const { inner::solve_at_once(step); }

@@ -36,9 +36,7 @@ struct GeneralizedAlpha {
     return {alpha_m, alpha_f, step * step / 4, step - 0.5, h};
   }
   void check() const {
-    DELASSUS_EXPECT(
-        spectral_radius >= 0 && spectral_radius <= 1,
-        "GeneralizedAlpha: spectral_radius " + inner::text(spectral_radius) + " must be in [0, 1]");
+    inner::expect_zero_to_one("GeneralizedAlpha: spectral_radius", spectral_radius);
     inner::check_newton("GeneralizedAlpha", tolerance, max_iterations);
   }
   void move(auto& step) const { inner::solve_at_once(step); }

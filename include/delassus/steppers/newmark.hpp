@@ -31,11 +31,9 @@ struct Newmark {
 
   inner::AlphaRule rule(double h) const { return {0, 0, beta, gamma, h}; }
   void check() const {
-    DELASSUS_EXPECT(gamma >= 0.5 && gamma <= 1,
-                    "Newmark: gamma " + inner::text(gamma) + " must be in [0.5, 1]");
-    DELASSUS_EXPECT(
-        beta >= gamma / 2 && beta <= 1,
-        "Newmark: beta " + inner::text(beta) + " must be in [gamma/2, 1], where it is stable for every step");
+    inner::expect_number(gamma >= 0.5 && gamma <= 1, "Newmark: gamma", gamma, "must be in [0.5, 1]");
+    inner::expect_number(beta >= gamma / 2 && beta <= 1, "Newmark: beta", beta,
+                         "must be in [gamma/2, 1], where it is stable for every step");
     inner::check_newton("Newmark", tolerance, max_iterations);
   }
   void move(auto& step) const { inner::solve_at_once(step); }

@@ -6,7 +6,6 @@
 #include <delassus/steppers/inner/hold_at_midpoint.hpp>
 #include <delassus/steppers/inner/whole_steps.hpp>
 
-#include <cmath>
 #include <type_traits>
 
 namespace delassus {
@@ -35,10 +34,8 @@ struct NewtonMidpoint {
 
   void check() const {
     inner::check_newton("NewtonMidpoint", tolerance, max_iterations);
-    DELASSUS_EXPECT(acceptable >= 0,
-                    "NewtonMidpoint: acceptable " + inner::text(acceptable) + " must be >= 0");
-    DELASSUS_EXPECT(max_halvings >= 0,
-                    "NewtonMidpoint: max_halvings " + inner::text(max_halvings) + " must be >= 0");
+    inner::expect_at_least_zero("NewtonMidpoint: acceptable", acceptable);
+    inner::expect_at_least_zero("NewtonMidpoint: max_halvings", max_halvings);
   }
   void move(auto& step) const { inner::solve_at_once(step); }
   SystemScale scale(double) const { return {.mass = 1}; }

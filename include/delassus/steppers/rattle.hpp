@@ -34,7 +34,7 @@ struct Rattle {
 
   void check() const {
     inner::check_newton("Rattle", tolerance, max_iterations);
-    DELASSUS_EXPECT(drifts > 0, "Rattle: drifts " + inner::text(drifts) + " must be > 0");
+    inner::expect_above_zero("Rattle: drifts", drifts);
   }
   void move(auto& step) const { inner::solve_at_once(step); }
   SystemScale scale(double) const { return {.mass = 1}; }

@@ -37,7 +37,7 @@ class Audit {
   explicit Audit(double least_share) : least(least_share) {}
 
   void check() const {
-    DELASSUS_EXPECT(least > 0 && least < 1, "Audit: least " + inner::text(least) + " must lie in (0, 1)");
+    inner::expect_number(least > 0 && least < 1, "Audit: least", least, "must lie in (0, 1)");
   }
 
   void after(stage::Begin, const auto& loop) {

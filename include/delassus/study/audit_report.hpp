@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/status.hpp>
 #include <delassus/io/table.hpp>
 #include <delassus/math/pose.hpp>
 
@@ -23,32 +24,12 @@ enum class Verdict : std::uint8_t {
 };
 
 constexpr const char* name(Effect effect) {
-  switch (effect) {
-    case Effect::contact:
-      return "contact";
-    case Effect::friction:
-      return "friction";
-    case Effect::rolling:
-      return "rolling friction";
-    case Effect::restitution:
-      return "restitution";
-    case Effect::joint:
-      return "joint";
-    case Effect::body:
-      return "body";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"contact", "friction", "rolling friction", "restitution", "joint", "body"};
+  return inner::name_in(names, effect);
 }
 constexpr const char* name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::acted:
-      return "acted";
-    case Verdict::held:
-      return "held, never slipped";
-    case Verdict::never:
-      return "never";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"acted", "held, never slipped", "never"};
+  return inner::name_in(names, verdict);
 }
 
 struct EffectUse {

@@ -68,34 +68,24 @@ std::string code_of(const P& policy) {
     std::string out = inner::policy_name<P>() + "{";
     if constexpr (std::is_default_constructible_v<P>) {
       const P usual{};
-      const auto append = [&](const char* name, const auto& value, const auto& other) {
-        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>)
-          inner::append_member(out, name, value, other);
+      const auto append = [&](const char* name, const auto& member) {
+        if constexpr (requires { requires std::is_arithmetic_v<std::remove_cvref_t<decltype(member(usual))>>; })
+          inner::append_member(out, name, member(policy), member(usual));
       };
-      if constexpr (requires { policy.tolerance; }) append("tolerance", policy.tolerance, usual.tolerance);
-      if constexpr (requires { policy.max_iterations; })
-        append("max_iterations", policy.max_iterations, usual.max_iterations);
-      if constexpr (requires { policy.min_iterations; })
-        append("min_iterations", policy.min_iterations, usual.min_iterations);
-      if constexpr (requires { policy.relaxation; })
-        append("relaxation", policy.relaxation, usual.relaxation);
-      if constexpr (requires { policy.scale_tolerance; })
-        append("scale_tolerance", policy.scale_tolerance, usual.scale_tolerance);
-      if constexpr (requires { policy.all_verified; })
-        append("all_verified", policy.all_verified, usual.all_verified);
-      if constexpr (requires { policy.frequency; }) append("frequency", policy.frequency, usual.frequency);
-      if constexpr (requires { policy.damping_ratio; })
-        append("damping_ratio", policy.damping_ratio, usual.damping_ratio);
-      if constexpr (requires { policy.rate; }) append("rate", policy.rate, usual.rate);
-      if constexpr (requires { policy.max_speed; }) append("max_speed", policy.max_speed, usual.max_speed);
-      if constexpr (requires { policy.max_joint_speed; })
-        append("max_joint_speed", policy.max_joint_speed, usual.max_joint_speed);
-      if constexpr (requires { policy.joint_rate; })
-        append("joint_rate", policy.joint_rate, usual.joint_rate);
-      if constexpr (requires { policy.rayleigh_mass; })
-        append("rayleigh_mass", policy.rayleigh_mass, usual.rayleigh_mass);
-      if constexpr (requires { policy.rayleigh_stiffness; })
-        append("rayleigh_stiffness", policy.rayleigh_stiffness, usual.rayleigh_stiffness);
+      append("tolerance", [](const auto& p) -> decltype((p.tolerance)) { return p.tolerance; });
+      append("max_iterations", [](const auto& p) -> decltype((p.max_iterations)) { return p.max_iterations; });
+      append("min_iterations", [](const auto& p) -> decltype((p.min_iterations)) { return p.min_iterations; });
+      append("relaxation", [](const auto& p) -> decltype((p.relaxation)) { return p.relaxation; });
+      append("scale_tolerance", [](const auto& p) -> decltype((p.scale_tolerance)) { return p.scale_tolerance; });
+      append("all_verified", [](const auto& p) -> decltype((p.all_verified)) { return p.all_verified; });
+      append("frequency", [](const auto& p) -> decltype((p.frequency)) { return p.frequency; });
+      append("damping_ratio", [](const auto& p) -> decltype((p.damping_ratio)) { return p.damping_ratio; });
+      append("rate", [](const auto& p) -> decltype((p.rate)) { return p.rate; });
+      append("max_speed", [](const auto& p) -> decltype((p.max_speed)) { return p.max_speed; });
+      append("max_joint_speed", [](const auto& p) -> decltype((p.max_joint_speed)) { return p.max_joint_speed; });
+      append("joint_rate", [](const auto& p) -> decltype((p.joint_rate)) { return p.joint_rate; });
+      append("rayleigh_mass", [](const auto& p) -> decltype((p.rayleigh_mass)) { return p.rayleigh_mass; });
+      append("rayleigh_stiffness", [](const auto& p) -> decltype((p.rayleigh_stiffness)) { return p.rayleigh_stiffness; });
     }
     return out + "}";
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/core/status.hpp>
 #include <delassus/study/code_of.hpp>
 
 #include <algorithm>
@@ -30,8 +31,7 @@ struct StudyPlan {
   bool is_quiet = false;      ///< no progress line
 
   void check() const {
-    DELASSUS_EXPECT(std::isfinite(duration) && duration > 0,
-                    "study '" + name + "': duration " + inner::text(duration) + " must be finite and > 0 s");
+    inner::expect_positive("study '" + name + "': duration", duration, "s");
     DELASSUS_EXPECT(outputs > 0, "study '" + name + "': outputs " + std::to_string(outputs) + " must be > 0");
     DELASSUS_EXPECT(repeats > 0, "study '" + name + "': repeats " + std::to_string(repeats) + " must be > 0");
     DELASSUS_EXPECT(shards > 0 && shard >= 0 && shard < shards,
@@ -39,9 +39,7 @@ struct StudyPlan {
                         std::to_string(shards - 1));
     DELASSUS_EXPECT(!steps.empty(), "study '" + name + "': steps is empty; name at least one step size");
     for (const double h : steps) steps_between_outputs(h);
-    for (const double t : tolerances)
-      DELASSUS_EXPECT(t >= 0 && std::isfinite(t),
-                      "study '" + name + "': tolerance " + inner::text(t) + " must be finite and >= 0");
+    for (const double t : tolerances) inner::expect_not_negative("study '" + name + "': tolerance", t);
   }
   /// Whole steps from one output to the next.
   long steps_between_outputs(double h) const {
@@ -63,17 +61,8 @@ enum class Outcome : std::uint8_t {
 };
 
 constexpr const char* name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::sound:
-      return "sound";
-    case Outcome::capped:
-      return "capped";
-    case Outcome::failed:
-      return "failed";
-    case Outcome::too_slow:
-      return "too slow";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"sound", "capped", "failed", "too slow"};
+  return inner::name_in(names, outcome);
 }
 
 /// One combination at one tolerance and one step size.

@@ -60,7 +60,6 @@ class Places {
   Index held() const { return held_.count; }
   const Held& who_was_held() const { return held_; }
 
-  Index collider_count() const { return blocks(); }
   Index material(Index b) const { return material_[b]; }
   /// Whether every body that was ever added has a material from 0 to `count`.
   bool keeps_to_materials(Index count) const { return least_material_ >= 0 && most_material_ <= count; }

@@ -22,11 +22,10 @@ struct CollisionSettings {
   int max_points = 4;  ///< of one pair, at most 8
 
   void check(const char* who) const {
-    DELASSUS_EXPECT(std::isfinite(margin), std::string(who) + ": margin " + inner::text(margin) + " m must be finite");
-    DELASSUS_EXPECT(std::isfinite(contact_distance) && contact_distance >= 0,
-                    std::string(who) + ": contact_distance " + inner::text(contact_distance) + " m must be finite and >= 0");
-    DELASSUS_EXPECT(max_points >= 1 && max_points <= 8,
-                    std::string(who) + ": max_points " + inner::text(max_points) + " must be in [1, 8]");
+    inner::expect_number(std::isfinite(margin), std::string(who) + ": margin", margin, "m must be finite");
+    inner::expect_not_negative(std::string(who) + ": contact_distance", contact_distance, "m");
+    inner::expect_number(max_points >= 1 && max_points <= 8, std::string(who) + ": max_points", max_points,
+                         "must be in [1, 8]");
   }
 };
 

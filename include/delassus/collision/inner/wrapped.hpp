@@ -15,6 +15,11 @@ template <class Backend, unsigned own>
 concept Detects = CollisionBackend<Backend> && Fills<Backend, role::Collision, own> &&
     layers_of<Backend> < (own < layer::compounds ? layer::compounds : own);
 
+template <class Backend>
+void check_inside(const Backend& backend) {
+  if constexpr (requires { backend.check(); }) backend.check();
+}
+
 /// What the backend keeps from step to step, in its engine or by itself.
 template <class Backend>
 void remember(Backend& backend, auto& archive) {

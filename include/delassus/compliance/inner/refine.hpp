@@ -10,12 +10,6 @@
 
 namespace delassus {
 
-/// An operator that is no more than near W, and knows when it is near enough.
-template <class W>
-concept RefinedOperator = requires(W op, double miss) {
-  { op.goes_on(miss) } -> std::same_as<bool>;
-};
-
 /// With Δv = A⁻¹ Hᵀ λ: d ← d₀ + H Δv − W̃ λ. True when that changed d by more than the operator allows, so
 /// that λ is to be found again.
 template <class Step>
@@ -31,13 +25,10 @@ bool refine(Step& step) {
   });
   if (W.renew(world, rows)) step.book.prepare(W, rows, step.h);
   double miss = 0;
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& pool = rows.template pool<p>();
+  each_pool(rows, [&](auto p, auto& pool) {
     auto& missed = W.template missed<p>();
     for (Index i = 0; i < pool.items(); ++i) {
-      const auto whole = inner::rate(
-          pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
-      const auto change = (whole - inner::response<p>(W, rows, i) - missed[i]).eval();
+      const auto change = (inner::next_rate(pool, i, world) - inner::response<p>(W, rows, i) - missed[i]).eval();
       missed[i] += change;
       pool.d[i] += change;
       const T size = change.cwiseAbs().maxCoeff();

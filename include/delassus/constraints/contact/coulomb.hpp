@@ -41,10 +41,7 @@ struct Coulomb {
     T alpha = 0;
   };
 
-  void check() const {
-    DELASSUS_EXPECT(friction >= 0 && std::isfinite(friction),
-                    "Coulomb: friction " + inner::text(friction) + " must be finite and >= 0");
-  }
+  void check() const { inner::expect_not_negative("Coulomb: friction", friction); }
 
   Parameters parameters() const { return {friction}; }
   static void set_friction(Parameters& p, double friction) { p.friction = friction; }

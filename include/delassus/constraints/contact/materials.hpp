@@ -67,10 +67,8 @@ class Materials {
   };
 
   static void check(const Material& m, const char* what) {
-    DELASSUS_EXPECT(std::isfinite(m.friction) && m.friction >= 0,
-                    std::string(what) + ": friction " + inner::text(m.friction) + " must be finite and >= 0");
-    DELASSUS_EXPECT(m.restitution >= 0 && m.restitution <= 1,
-                    std::string(what) + ": restitution " + inner::text(m.restitution) + " must be in [0, 1]");
+    inner::expect_not_negative(std::string(what) + ": friction", m.friction);
+    inner::expect_zero_to_one(std::string(what) + ": restitution", m.restitution);
   }
 
   Array<Material> materials_;

@@ -47,10 +47,8 @@ struct Penalty {
 
   void check() const {
     law.check();
-    DELASSUS_EXPECT(std::isfinite(stiffness) && stiffness > 0,
-                    "Penalty: stiffness " + inner::text(stiffness) + " N/m must be finite and > 0");
-    DELASSUS_EXPECT(std::isfinite(damping) && damping >= 0,
-                    "Penalty: damping " + inner::text(damping) + " N·s/m must be finite and >= 0");
+    inner::expect_positive("Penalty: stiffness", stiffness, "N/m");
+    inner::expect_not_negative("Penalty: damping", damping, "N·s/m");
     inner::check_soft_number(stiffness, "Penalty: stiffness", "N/m");
     inner::check_soft_number(damping, "Penalty: damping", "N·s/m");
   }

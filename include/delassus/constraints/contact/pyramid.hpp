@@ -33,10 +33,7 @@ struct Pyramid {
     double slope;
   };
 
-  void check() const {
-    DELASSUS_EXPECT(friction >= 0 && std::isfinite(friction),
-                    "Pyramid: friction " + inner::text(friction) + " must be finite and >= 0");
-  }
+  void check() const { inner::expect_not_negative("Pyramid: friction", friction); }
 
   Parameters parameters() const { return {friction}; }
   static void set_friction(Parameters& p, double friction) { p.slope = friction; }

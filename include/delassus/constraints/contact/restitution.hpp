@@ -26,8 +26,7 @@ struct Restitution {
 
   void check() const {
     law.check();
-    DELASSUS_EXPECT(restitution >= 0 && restitution <= 1,
-                    "Restitution: restitution " + inner::text(restitution) + " must be in [0, 1]");
+    inner::expect_zero_to_one("Restitution: restitution", restitution);
   }
 
   Parameters parameters() const { return {law.parameters(), restitution}; }

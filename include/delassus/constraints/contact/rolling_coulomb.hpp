@@ -53,9 +53,7 @@ struct RollingCoulomb {
     for (const auto& [what, value] :
          {std::pair{"friction", friction}, std::pair{"rolling_friction", rolling_friction},
           std::pair{"torsional_friction", torsional_friction}})
-      DELASSUS_EXPECT(
-          value >= 0 && std::isfinite(value),
-          std::string("RollingCoulomb: ") + what + " " + inner::text(value) + " must be finite and >= 0");
+      inner::expect_not_negative(std::string("RollingCoulomb: ") + what, value);
   }
 
   Parameters parameters() const { return {friction, rolling_friction, torsional_friction}; }

@@ -99,8 +99,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
   });
   const auto round = [&] {
     bool any = false;
-    for_each_index<Laws::pool_count>([&](auto p) {
-      const auto& pool = laws.template pool<p>();
+    each_pool(laws, [&](auto p, const auto& pool) {
       using Law = std::remove_cvref_t<decltype(pool.law)>;
       if constexpr (inner::hits_in_turn<Law>)
         for (Index i = 0; i < pool.count(); ++i) {

@@ -33,10 +33,8 @@ struct SequentialRestitution {
 
   void check() const {
     law.check();
-    DELASSUS_EXPECT(restitution >= 0 && restitution <= 1,
-                    "SequentialRestitution: restitution " + inner::text(restitution) + " must be in [0, 1]");
-    DELASSUS_EXPECT(most_rounds >= 0,
-                    "SequentialRestitution: most_rounds " + inner::text(most_rounds) + " must be >= 0");
+    inner::expect_zero_to_one("SequentialRestitution: restitution", restitution);
+    inner::expect_at_least_zero("SequentialRestitution: most_rounds", most_rounds);
   }
 
   Parameters parameters() const { return {law.parameters(), restitution}; }

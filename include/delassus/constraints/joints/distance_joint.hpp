@@ -6,7 +6,6 @@
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/soft.hpp>
 
-#include <cmath>
 
 namespace delassus {
 
@@ -23,13 +22,10 @@ struct DistanceJoint : Bilateral<1> {
   };
 
   static void check(const Item& item) {
-    DELASSUS_EXPECT(std::isfinite(item.length) && item.length >= 0,
-                    "DistanceJoint: length " + inner::text(item.length) + " must be finite and >= 0 m");
-    DELASSUS_EXPECT(std::isfinite(item.stiffness) && item.stiffness >= 0,
-                    "DistanceJoint: stiffness " + inner::text(item.stiffness) + " must be finite and >= 0 N/m");
-    DELASSUS_EXPECT(std::isfinite(item.damping) && item.damping >= 0,
-                    "DistanceJoint: damping " + inner::text(item.damping) + " must be finite and >= 0 N·s/m");
-    DELASSUS_EXPECT(item.length <= 1e20, "DistanceJoint: length " + inner::text(item.length) + " must be <= 1e20 m");
+    inner::expect_not_negative("DistanceJoint: length", item.length, "m");
+    inner::expect_not_negative("DistanceJoint: stiffness", item.stiffness, "N/m");
+    inner::expect_not_negative("DistanceJoint: damping", item.damping, "N·s/m");
+    inner::expect_number(item.length <= 1e20, "DistanceJoint: length", item.length, "must be <= 1e20 m");
     inner::check_soft_number(item.stiffness, "DistanceJoint: stiffness", "N/m");
     inner::check_soft_number(item.damping, "DistanceJoint: damping", "N·s/m");
   }

@@ -43,10 +43,9 @@ struct Limit : OnAxis<Coordinate> {
     Coordinate::check(item, "Limit");
     DELASSUS_EXPECT(item.lower <= item.upper, "Limit: lower " + inner::text(item.lower) +
                                                   " must be <= upper " + inner::text(item.upper));
-    DELASSUS_EXPECT(item.restitution >= 0 && item.restitution <= 1,
-                    "Limit: restitution " + inner::text(item.restitution) + " must be in [0, 1]");
-    DELASSUS_EXPECT(item.margin >= 0 && std::isfinite(item.position),
-                    "Limit: margin " + inner::text(item.margin) + " must be >= 0 and position finite");
+    inner::expect_zero_to_one("Limit: restitution", item.restitution);
+    inner::expect_number(item.margin >= 0 && std::isfinite(item.position), "Limit: margin", item.margin,
+                         "must be >= 0 and position finite");
   }
 
   void follow(Item& item, const auto& world) const {

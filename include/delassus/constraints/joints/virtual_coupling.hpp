@@ -7,7 +7,6 @@
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/soft.hpp>
 
-#include <cmath>
 
 namespace delassus {
 
@@ -29,20 +28,12 @@ struct VirtualCoupling : Bilateral<6> {
   };
 
   static void check(const Item& item) {
-    const auto is_positive = [](double x) { return std::isfinite(x) && x > 0; };
-    const auto is_not_negative = [](double x) { return std::isfinite(x) && x >= 0; };
     DELASSUS_EXPECT(item.a.has_frame && item.b.has_frame,
                     "VirtualCoupling: both ends need an orientation; a particle has none");
-    DELASSUS_EXPECT(is_positive(item.stiffness),
-                    "VirtualCoupling: stiffness " + inner::text(item.stiffness) + " must be finite and > 0 N/m");
-    DELASSUS_EXPECT(is_not_negative(item.damping),
-                    "VirtualCoupling: damping " + inner::text(item.damping) + " must be finite and >= 0 N·s/m");
-    DELASSUS_EXPECT(is_positive(item.angular_stiffness), "VirtualCoupling: angular_stiffness " +
-                                                             inner::text(item.angular_stiffness) +
-                                                             " must be finite and > 0 N·m/rad");
-    DELASSUS_EXPECT(is_not_negative(item.angular_damping), "VirtualCoupling: angular_damping " +
-                                                               inner::text(item.angular_damping) +
-                                                               " must be finite and >= 0 N·m·s/rad");
+    inner::expect_positive("VirtualCoupling: stiffness", item.stiffness, "N/m");
+    inner::expect_not_negative("VirtualCoupling: damping", item.damping, "N·s/m");
+    inner::expect_positive("VirtualCoupling: angular_stiffness", item.angular_stiffness, "N·m/rad");
+    inner::expect_not_negative("VirtualCoupling: angular_damping", item.angular_damping, "N·m·s/rad");
     inner::check_soft_number(item.stiffness, "VirtualCoupling: stiffness", "N/m");
     inner::check_soft_number(item.damping, "VirtualCoupling: damping", "N·s/m");
     inner::check_soft_number(item.angular_stiffness, "VirtualCoupling: angular_stiffness", "N·m/rad");

@@ -4,7 +4,6 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <concepts>
 #include <string>
 
@@ -43,8 +42,7 @@ concept ElasticMaterial = requires(const M material, const Mat3 F, const Vec3 a)
 /// Refuses numbers that no stable material has.
 template <ElasticMaterial M>
 void check_material(const M& material, const std::string& who) {
-  DELASSUS_EXPECT(std::isfinite(material.young) && material.young > 0,
-                  who + ": Young's modulus " + inner::text(material.young) + " must be finite and > 0 Pa");
+  inner::expect_positive(who + ": Young's modulus", material.young, "Pa");
   constexpr bool may_keep_volume = requires { requires M::may_keep_volume; };
   DELASSUS_EXPECT(
       material.poisson > -1 && (material.poisson < 0.5 || (may_keep_volume && material.poisson == 0.5)),

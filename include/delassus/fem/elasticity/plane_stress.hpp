@@ -5,7 +5,6 @@
 #include <delassus/fem/elasticity/material.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace delassus {
@@ -27,8 +26,7 @@ struct PlaneStress {
 
   static constexpr bool may_keep_volume = true;  ///< ν = ½
   void check(const std::string& who) const {
-    DELASSUS_EXPECT(std::isfinite(bending) && bending >= 0,
-                    who + ": the share of bending " + inner::text(bending) + " must be finite and >= 0");
+    inner::expect_not_negative(who + ": the share of bending", bending);
   }
 
   IsotropicPoint at(const Mat3& F) const {

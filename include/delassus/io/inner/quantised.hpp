@@ -59,15 +59,6 @@ inline Turn turn_code(const Quat& rotation) {
   return words;
 }
 
-inline Quat turn_value(const Turn& words) {
-  const Index largest = (words[0] & 1) << 1 | (words[1] & 1);
-  Vec<4> q = Vec<4>::Zero();
-  for (Index k = 0, i = 0; k < 4; ++k)
-    if (k != largest) q[k] = ((words[i++] >> 1) / 32767.0 - 0.5) * std::sqrt(2.0);
-  q[largest] = std::sqrt(std::max(0.0, 1 - q.squaredNorm()));
-  return Quat(q);
-}
-
 /// A list of 16-bit words, lowest byte first, that goes into the page as base64.
 class Words {
  public:

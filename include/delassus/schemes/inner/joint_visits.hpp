@@ -122,8 +122,7 @@ class JointVisits<World<Sets...>, Laws> {
   /// f(pool, place, visit) for every joint, in the order of the laws and of adding.
   template <class S, class F>
   static void each(World& world, Laws& laws, const S& stabilisation, double h, F&& f) {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      auto& pool = laws.template pool<p>();
+    each_pool(laws, [&](auto, auto& pool) {
       using Law = std::remove_cvref_t<decltype(pool.law)>;
       for (const Index place : pool.slots.active()) {
         const auto& item = std::as_const(pool.items[place]);
@@ -221,8 +220,7 @@ class JointVisits<World<Sets...>, Laws> {
     return sums;
   }
   static void start_cold(Laws& laws) {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      auto& pool = laws.template pool<p>();
+    each_pool(laws, [&](auto, auto& pool) {
       for (const Index place : pool.slots.active()) pool.starts_cold[place] = 1;
     });
   }

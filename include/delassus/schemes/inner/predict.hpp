@@ -27,11 +27,10 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
     add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
     for (std::size_t b = 0; b < set.v_free.size(); ++b) set.v_free[b] += set.v_next[b];
   });
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& pool = rows.template pool<p>();
+  each_pool(rows, [&](auto p, auto& pool) {
     for (Index i = 0; i < pool.items(); ++i) {
       auto& response = std::get<p>(predicted.pools)[i];
-      pool.d[i] += inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; }) - response;
+      pool.d[i] += inner::next_rate(pool, i, world) - response;
       response = pool.lambda[i];
     }
   });
@@ -54,8 +53,7 @@ void take_change(Rows& rows, Kept& predicted) {
 /// λ ← the total again.
 template <class Rows, class Kept>
 void give_back_total(Rows& rows, const Kept& predicted) {
-  for_each_index<Rows::pool_count>(
-      [&](auto p) { rows.template pool<p>().lambda = std::get<p>(predicted.pools); });
+  predicted.give_to(rows);
 }
 
 namespace inner {

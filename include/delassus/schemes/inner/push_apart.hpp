@@ -30,8 +30,7 @@ void each_block_at(World& world, const Anchor& anchor, const Vec3& point, const 
 /// stands in the list of contacts.
 template <class World, class Laws>
 void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    auto& pool = laws.template pool<p>();
+  each_pool(laws, [&](auto, auto& pool) {
     if constexpr (requires { pool.law.law.stiffness; pool.items.clear(); }) {
       constexpr int rows = std::remove_cvref_t<decltype(pool.law)>::rows;
       constexpr bool is_force = rows == 1 || (rows == 3 && requires { pool.items[0].parameters.friction; });

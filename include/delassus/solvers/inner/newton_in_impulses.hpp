@@ -64,7 +64,7 @@ struct NewtonInImpulses {
     const int rows = problem.row_count();
     double epsilon = 1e-4, last = Criterion::sum(report.measure);
     space.take(problem);
-    for (int stalled = 0; stalled < 8 && !is_done(report.measure, rows);) {
+    for (int stalled = 0; stalled < 8 && !is_done<Criterion>(sweeps, report.measure, rows);) {
       if (report.factorizations >= max_factorizations || !problem.has_time_for(cost_in_sweeps(rows))) return;
       const double fall = approach(problem, space, epsilon, report);
       space.give(problem);
@@ -104,10 +104,6 @@ struct NewtonInImpulses {
       size = space.evaluate(epsilon);
     }
     return first > 0 ? size / first : 0;
-  }
-
-  bool is_done(const Measure& m, int rows) const {
-    return is_within<Criterion>(sweeps, m, rows) || m.residual <= m.floor;
   }
 };
 

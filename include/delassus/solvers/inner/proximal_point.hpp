@@ -47,15 +47,13 @@ class ProximalPoint {
 
   /// The rows take λ(u); the measure by W itself tells whether it is one.
   bool is_met() {
-    body_.hand_over(
-        problem_, [](const auto& c) -> const auto& { return c.lambda; });
+    body_.hand_over(problem_, [](const auto& c) { return c.lambda; });
     measure = problem_.measure();
     return is_done(measure);
   }
   /// The rows take the λ of the smallest measured error.
   void give_best() {
-    body_.hand_over(
-        problem_, [](const auto& c) -> const auto& { return c.best; });
+    body_.hand_over(problem_, [](const auto& c) { return c.best; });
   }
 
   /// Begins anew from the λ that the rows have; false when nothing can be begun from there.
@@ -77,7 +75,7 @@ class ProximalPoint {
   Problem& problem() const { return problem_; }
   int rows() const { return rows_; }
   bool is_done(const Measure& m) const {
-    return is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
+    return inner::is_done<Criterion>(solver_, m, rows_);
   }
 
   int factorizations = 0, sweeps = 0;  ///< sweeps: what the observer is told beside them
@@ -100,8 +98,7 @@ class ProximalPoint {
       body_.advance(problem_, search_line(size));
       measure = body_.measure(problem_);
       if (problem_.tells_forces())
-        body_.hand_over(
-            problem_, [](const auto& c) -> const auto& { return c.lambda; });
+        body_.hand_over(problem_, [](const auto& c) { return c.lambda; });
       problem_.tell(sweeps + factorizations, measure);
       if (is_done(measure) || size < 1e-4 * first) break;
       if (!(size <= 0.99 * before)) return false;

@@ -91,7 +91,7 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
     constexpr auto kinds = row_kinds<Law>();
     auto& pool = rows.template pool<p>();
     for (Index i = 0; i < pool.items(); ++i) {
-      const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
+      const auto u = inner::next_rate(pool, i, world);
       pool.lambda[i].setZero();
       pool.d[i].setZero();
       for (int k = 0; k < Law::rows; ++k) {

@@ -13,6 +13,15 @@
 #include <type_traits>
 
 namespace delassus {
+namespace inner {
+
+/// v_next of set s of a world.
+template <class World>
+auto next_of(World& world) {
+  return [&world](auto s) -> auto& { return world.template set<s>().v_next; };
+}
+
+}  // namespace inner
 
 /// Solves H G δ = −r for all rows that are not soft, G = M⁻¹ Hᵀ or another answer of the bodies. Rows that
 /// depend on each other share their load (ε = 1e-12 of W_kk). Without rows it is empty.
@@ -41,8 +50,7 @@ class Equalities {
   template <class World>
   static void pull(const World& world, const Rows& rows, Impulses<Rows>& lambda, double t) {
     lambda.resize_like(rows);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      const auto& pool = rows.template pool<p>();
+    each_pool(rows, [&](auto p, const auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) {
         auto& out = std::get<p>(lambda.pools)[i];
         out.setZero();
@@ -116,8 +124,7 @@ class Equalities {
  private:
   template <class R, class F>
   static void each_row(R& rows, F&& f) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& pool = rows.template pool<p>();
+    each_pool(rows, [&](auto, auto& pool) {
       for (Index i = 0; i < pool.items(); ++i)
         for (int k = 0; k < pool.rows; ++k) f(pool, i, k);
     });

@@ -32,13 +32,8 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
     keep(world);
     for (auto* all : {&newton_.impulses, &force_, &total_}) all->resize_like(rows);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      const auto& guess = rows.template pool<p>().lambda;
-      for (std::size_t i = 0; i < guess.size(); ++i) {
-        std::get<p>(force_.pools)[i] = guess[i] / T(h);
-        std::get<p>(total_.pools)[i].setZero();
-      }
-    });
+    total_.set_zero();
+    for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(rows.template pool<p>().lambda, h); });
     report_ = {.ended_by = "Newton"};
     bool is_done = false;
     for (const Way way : {Way::exact, Way::yielding, Way::near}) {
@@ -91,16 +86,15 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     if (!is_solved && (way == Way::exact || part.measure.residual > integrator.acceptable)) return false;
     if (part.factorizations > 0 && !yields) newton_.take_least(world, rows);
     newton_.go(world, h);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      const auto& lambda = std::get<p>(newton_.impulses.pools);
-      for (std::size_t i = 0; i < lambda.size(); ++i) {
-        std::get<p>(total_.pools)[i] += lambda[i];
-        std::get<p>(force_.pools)[i] = lambda[i] / T(h);
-      }
-    });
+    total_.add(newton_.impulses);
+    for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(std::get<p>(newton_.impulses.pools), h); });
     return true;
   }
 
+  template <int p>
+  void keep_force(const auto& lambda, double h) {
+    for (std::size_t i = 0; i < lambda.size(); ++i) std::get<p>(force_.pools)[i] = lambda[i] / T(h);
+  }
   /// λ of a step of h by the forces of the last part.
   void guess(double h) {
     for_each_index<Rows::pool_count>([&](auto p) {
@@ -116,9 +110,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
       for (const Index b : set.active()) set.state().take_pose_back(b);
     });
     linearize(world, laws, rows);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (auto& x : std::get<p>(total_.pools)) x.setZero();
-    });
+    total_.set_zero();
     report_ = {.factorizations = report_.factorizations, .ended_by = "Newton"};
   }
   void keep(World& world) {
@@ -139,12 +131,8 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
         if (!is_done || !set.moves(b)) set.state().take_pose_back(b);
       }
     });
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = rows.template pool<p>().lambda;
-      lambda = std::get<p>(total_.pools);
-      if (!is_done)
-        for (auto& x : lambda) x.setZero();
-    });
+    if (!is_done) total_.set_zero();
+    total_.give_to(rows);
   }
 
   YieldingMidpoint<World, Laws, Rows> newton_;

@@ -22,14 +22,10 @@ double contradiction(World& world, Rows& rows, Equalities<Rows>& equalities) {
   equalities.solve(
       rows, [&](auto p, Index i) { return rows.template pool<p>().phi[i]; },
       [&](auto p, Index i, const auto& change) {
-        Equalities<Rows>::template push<p>(
-            rows, i, change, [&](auto s) -> auto& { return world.template set<s>().v_next; });
+        Equalities<Rows>::template push<p>(rows, i, change, next_of(world));
       });
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& pool = rows.template pool<p>();
-    for (Index i = 0; i < pool.items(); ++i)
-      pool.phi[i] += rate(
-          pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
+  each_pool(rows, [&](auto, auto& pool) {
+    for (Index i = 0; i < pool.items(); ++i) pool.phi[i] += next_rate(pool, i, world);
   });
   return Equalities<Rows>::worst(rows);
 }

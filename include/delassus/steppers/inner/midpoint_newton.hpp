@@ -53,10 +53,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       iterate(world, laws, rows, integrator, h, is_damped,
               is_damped ? integrator.max_iterations : most_undamped, report);
       if (report.status != Status::max_iterations || is_cut_short(integrator, report)) break;
-      if (!is_damped)
-        for_each_index<Rows::pool_count>([&](auto p) {
-          for (auto& x : std::get<p>(impulses.pools)) x.setZero();
-        });
+      if (!is_damped) impulses.set_zero();
     }
     return report;
   }
@@ -166,8 +163,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     double most = 0, spoilt = 0;
     load_ = 0;
     impulse_ = force_;
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& pool = rows.template pool<p>();
+    each_pool(rows, [&](auto p, auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) {
         const auto& lambda = std::get<p>(impulses.pools)[i];
         world.each([&](auto& set, auto s) { push<p>(set, s, i, lambda); });

@@ -49,13 +49,12 @@ class RattleStep<World<Sets...>, Laws, Rows> {
       report.status = Status::max_iterations;
       find_places(world, laws, rows, integrator, h, report);
       if (part == 0) std::swap(sent_, kicked_);
-      add(first_);
+      sum_.add(first_);
       if (report.status == Status::max_iterations) break;
     }
     find_velocities(world, rows, integrator, h);
-    add(second_);
-    for_each_index<Rows::pool_count>(
-        [&](auto p) { rows.template pool<p>().lambda = std::get<p>(sum_.pools); });
+    sum_.add(second_);
+    sum_.give_to(rows);
     inner::keep_or_leave(world, laws, rows, integrator, equalities_, drifts > 1 ? before_ : paths_,
                          h * speed_, report);
     return report;
@@ -82,7 +81,8 @@ class RattleStep<World<Sets...>, Laws, Rows> {
       }
     });
     if (!(speed_ > 0)) speed_ = 1;
-    clear(rows, sum_);
+    sum_.resize_like(rows);
+    sum_.set_zero();
     guess(world, rows);
     start_ = rows;
   }
@@ -96,7 +96,7 @@ class RattleStep<World<Sets...>, Laws, Rows> {
       std::get<s>(free_) = set.v_next;
       for (const Index b : set.active()) std::get<s>(paths_).begin(set.state(), b, set.velocity()[b]);
     });
-    clear(rows, first_);
+    first_.set_zero();
     report.factorizations += Rows::pool_count > 0;
     guess(world, rows);
     start_ = rows;
@@ -104,17 +104,11 @@ class RattleStep<World<Sets...>, Laws, Rows> {
   /// λ₁ of H w = 0. Last step's, half of them, would turn slender bodies round and round.
   void guess(World& world, Rows& rows) {
     world.each([&](auto& set, auto s) { set.v_next = std::get<s>(free_); });
-    Equalities<Rows>::push_all(rows, first_, next_of(world));
+    Equalities<Rows>::push_all(rows, first_, inner::next_of(world));
     if (!equalities_.factor(rows)) return;
     equalities_.solve(
-        rows, [&](auto p, Index i) { return rate_of<p>(world, rows, i); },
+        rows, [&](auto p, Index i) { return inner::next_rate(rows.template pool<p>(), i, world); },
         [&](auto p, Index i, const auto& change) { std::get<p>(first_.pools)[i] += change; });
-  }
-  /// H v_next of an item.
-  template <int p>
-  static auto rate_of(const World& world, const Rows& rows, Index i) {
-    return inner::rate(
-        rows.template pool<p>(), i, world, [](const auto& set) -> const auto& { return set.v_next; });
   }
   template <class Set, class I>
   static void kick(const Set& set, const I& integrator, Array<typename Set::Velocity>& p, double h) {
@@ -144,7 +138,7 @@ class RattleStep<World<Sets...>, Laws, Rows> {
   }
   void drift(World& world, double h) {
     world.each([&](auto& set, auto s) { set.v_next = std::get<s>(free_); });
-    Equalities<Rows>::push_all(start_, first_, next_of(world));
+    Equalities<Rows>::push_all(start_, first_, inner::next_of(world));
     world.each([&](auto& set, auto s) {
       for (const Index b : set.active()) {
         auto& w = std::get<s>(sent_);
@@ -195,32 +189,15 @@ class RattleStep<World<Sets...>, Laws, Rows> {
         if (set.moves(b)) set.v_next[b] += set.template solve_block<1>(b, std::get<s>(force_)[b]);
       }
     });
-    Equalities<Rows>::push_all(rows, second_, next_of(world));
+    Equalities<Rows>::push_all(rows, second_, inner::next_of(world));
     if (!equalities_.factor(rows)) return;
     for (int pass = 0; pass < 2; ++pass)  // the second takes out the error of ε
       equalities_.solve(
-          rows, [&](auto p, Index i) { return rate_of<p>(world, rows, i); },
+          rows, [&](auto p, Index i) { return inner::next_rate(rows.template pool<p>(), i, world); },
           [&](auto p, Index i, const auto& change) {
             std::get<p>(second_.pools)[i] += change;
-            Equalities<Rows>::template push<p>(rows, i, change, next_of(world));
+            Equalities<Rows>::template push<p>(rows, i, change, inner::next_of(world));
           });
-  }
-
-  static void clear(const Rows& rows, Impulses<Rows>& impulses) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      std::get<p>(impulses.pools)
-          .assign(std::size_t(rows.template pool<p>().items()), Vec<Rows::template rows_of<p>, T>::Zero());
-    });
-  }
-  void add(const Impulses<Rows>& impulses) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& sum = std::get<p>(sum_.pools);
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += std::get<p>(impulses.pools)[i];
-    });
-  }
-
-  static auto next_of(World& world) {
-    return [&world](auto s) -> auto& { return world.template set<s>().v_next; };
   }
 
   std::tuple<typename Sets::Path...> paths_, before_;  ///< from the start of a part, of the step

@@ -58,8 +58,7 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
       }
     });
     project(world, laws, rows, integrator, h, report);
-    for_each_index<Rows::pool_count>(
-        [&](auto p) { rows.template pool<p>().lambda = std::get<p>(lambda_.pools); });
+    lambda_.give_to(rows);
     inner::keep_or_leave(world, laws, rows, integrator, equalities_, paths_, h * speed_, report);
     return report;
   }
@@ -69,9 +68,7 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
   void begin(World& world, Rows& rows, const I& integrator, double h) {
     speed_ = 0;
     lambda_.resize_like(rows);
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (auto& x : std::get<p>(lambda_.pools)) x.setZero();
-    });
+    lambda_.set_zero();
     world.each([&](auto& set, auto s) {
       set.factor(integrator.scale(h));
       auto& path = std::get<s>(paths_);
@@ -106,25 +103,19 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
       linearize(world, laws, rows);
       world.each([&](const auto& set, auto s) { inner::apply_inverse(set, rows, s); });
       Equalities<Rows>::pull(world, rows, force_, 1);
-      add(force_, share);
+      lambda_.add(force_, T(share));
       const auto a_of = [this](auto s) -> auto& { return std::get<s>(a_); };
       Equalities<Rows>::push_all(rows, force_, a_of);
       ++report.factorizations;
       if (!equalities_.factor(rows)) return;
       for (int pass = 0; pass < 2; ++pass)  // the second takes out the error of ε
         equalities_.solve(
-            rows, [&](auto p, Index i) { return missing<p>(world, rows, i); },
+            rows, [&](auto p, Index i) { return missing<p>(rows, i); },
             [&](auto p, Index i, const auto& force) {
               std::get<p>(lambda_.pools)[i] += T(share) * force;
               Equalities<Rows>::template push<p>(rows, i, force, a_of);
             });
     }
-  }
-  void add(const Impulses<Rows>& force, double share) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& to = std::get<p>(lambda_.pools);
-      for (std::size_t i = 0; i < to.size(); ++i) to[i] += T(share) * std::get<p>(force.pools)[i];
-    });
   }
   /// Ḣ v into `turned_`: (H(q ⊕ e v) − H(q ⊖ e v)) v/(2 e), e a thousandth of the step.
   void turn_directions(World& world, const Laws& laws, Rows& rows, double h) {
@@ -142,8 +133,7 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
     for (const double side : {-1.0, 1.0}) {
       look(side * e);
       linearize(world, laws, rows);
-      for_each_index<Rows::pool_count>([&](auto p) {
-        const auto& pool = rows.template pool<p>();
+      each_pool(rows, [&](auto p, const auto& pool) {
         auto& out = std::get<p>(turned_.pools);
         for (Index i = 0; i < pool.items(); ++i) {
           const auto u = inner::rate(
@@ -159,9 +149,9 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
   }
   /// H a + Ḣ v of an item.
   template <int p>
-  Vec<Rows::template rows_of<p>, T> missing(const World& world, const Rows& rows, Index i) const {
+  Vec<Rows::template rows_of<p>, T> missing(const Rows& rows, Index i) const {
     Vec<Rows::template rows_of<p>, T> r = std::get<p>(turned_.pools)[i];
-    world.each([&](const auto&, auto s) {
+    for_each_index<int(sizeof...(Sets))>([&](auto s) {
       const auto& blocks = std::get<s>(rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         r.noalias() += blocks.H[e] * std::get<s>(a_)[blocks.block[e]];
@@ -199,15 +189,9 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
       }
       for (int pass = 0; pass < 2; ++pass)
         equalities_.solve(
-            rows,
-            [&](auto p, Index i) {
-              return inner::rate(
-                  rows.template pool<p>(), i, world,
-                  [](const auto& set) -> const auto& { return set.v_next; });
-            },
+            rows, [&](auto p, Index i) { return inner::next_rate(rows.template pool<p>(), i, world); },
             [&](auto p, Index i, const auto& change) {
-              Equalities<Rows>::template push<p>(
-                  rows, i, change, [&](auto s) -> auto& { return world.template set<s>().v_next; });
+              Equalities<Rows>::template push<p>(rows, i, change, inner::next_of(world));
             });
     }
   }
