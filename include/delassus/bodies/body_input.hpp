@@ -40,25 +40,29 @@ struct RigidBody {
 namespace inner {
 
 /// Sylvester's criterion: a symmetric 3×3 matrix is positive definite when its leading minors are positive.
-inline bool is_positive_definite(const Mat3& m) {
-  const double a = m(0, 0), b = m(1, 1), c = m(2, 2), d = m(0, 1), e = m(0, 2), f = m(1, 2);
+template <class T>
+bool is_positive_definite(const Mat<3, 3, T>& m) {
+  const T a = m(0, 0), b = m(1, 1), c = m(2, 2), d = m(0, 1), e = m(0, 2), f = m(1, 2);
   return a > 0 && a * b - d * d > 0 && a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
 }
 
 /// The power of two next to the largest moment: products of three scaled moments neither overflow nor vanish.
-inline double scale_of(const Mat3& inertia) {
+template <class T>
+T scale_of(const Mat<3, 3, T>& inertia) {
   return std::exp2(std::ilogb(std::max({inertia(0, 0), inertia(1, 1), inertia(2, 2)})));
 }
 
 /// I⁻¹, kg⁻¹·m⁻², for every size of body.
-inline Mat3 inverse_of_inertia(const Mat3& inertia) {
-  const double scale = scale_of(inertia);
-  return 1 / scale * inverse(Mat3(1 / scale * inertia));
+template <class T>
+Mat<3, 3, T> inverse_of_inertia(const Mat<3, 3, T>& inertia) {
+  const T scale = scale_of(inertia);
+  return 1 / scale * inverse(Mat<3, 3, T>(1 / scale * inertia));
 }
 
 /// Refuses an inertia that no distribution of mass has: not finite, not symmetric positive, or λ₃ > λ₁ + λ₂.
-inline void check_inertia(const Mat3& inertia, const std::string& who) {
-  double scale = 0, skewness = 0, sum = 0;
+template <class T>
+void check_inertia(const Mat<3, 3, T>& inertia, const std::string& who) {
+  T scale = 0, skewness = 0, sum = 0;
   for (int i = 0; i < 3; ++i) {
     scale = std::max(scale, std::abs(inertia(i, i)));
     for (int j = 0; j < 3; ++j) {
@@ -68,13 +72,13 @@ inline void check_inertia(const Mat3& inertia, const std::string& who) {
   }
   DELASSUS_EXPECT(sum == 0, who + ": inertia is not finite; give a 3×3 matrix in kg·m²");
   DELASSUS_EXPECT(skewness <= 1e-9 * scale, who + ": inertia is not symmetric; give the matrix about the centre of mass");
-  const double to_unit = 1 / scale_of(inertia);
+  const T to_unit = 1 / scale_of(inertia);
   DELASSUS_EXPECT(is_positive_definite(to_unit * inertia),
                   who + ": inertia is not positive definite; every principal moment must be > 0 kg·m²");
   // The triangle inequality of the principal moments says: ½ tr(I) 1 − I, the second moment of mass, is positive; it is
   // zero in one direction for a flat body, so rounding's share is granted.
-  const double half = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) + 1e-9 * scale;
-  Mat3 second_moment;
+  const T half = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2)) + 1e-9 * scale;
+  Mat<3, 3, T> second_moment;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) second_moment(i, j) = (i == j ? half : 0) - inertia(i, j);
   DELASSUS_EXPECT(is_positive_definite(to_unit * second_moment),
@@ -84,7 +88,8 @@ inline void check_inertia(const Mat3& inertia, const std::string& who) {
 }
 
 /// Refuses what cannot be placed or moved, and returns the unit quaternion.
-inline Quat check_state(const RigidBody& body, const std::string& who) {
+template <class Body>
+Quat check_state(const Body& body, const std::string& who) {
   DELASSUS_EXPECT(is_finite(body.position), who + ": position is not finite");
   DELASSUS_EXPECT(is_finite(body.velocity), who + ": velocity is not finite");
   DELASSUS_EXPECT(is_finite(body.angular_velocity), who + ": angular velocity is not finite");
@@ -96,7 +101,7 @@ inline Quat check_state(const RigidBody& body, const std::string& who) {
 
 /// Mass (kg) and inertia (kg·m²) of a dynamic body from what the user gave, for a set of scalar T.
 template <class T>
- MassProperties check_mass(const RigidBody& body, const std::string& who) {
+MassProperties check_mass(const RigidBody& body, const std::string& who) {
   DELASSUS_EXPECT(body.mass || body.density, who + ": give mass (kg) or density (kg/m³)");
   DELASSUS_EXPECT(!(body.mass && body.density), who + ": give mass or density, not both");
   const double given = body.mass ? *body.mass : *body.density;

@@ -4,6 +4,10 @@
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
 
+#include <concepts>
+#include <string>
+#include <type_traits>
+
 namespace delassus {
 
 /// kg · body frame, m · kg·m² about the centre, axes of the body frame.
@@ -62,15 +66,16 @@ inline MassProperties unit_solid(const Ellipsoid& e) {
 }
 
 /// I = tr(S) 1 − S with the second moment S.
-inline MassProperties unit_solid(const ConvexHull& h) {
-  const Mat3& S = h.second_moment();
+template <class Scalar>
+MassProperties unit_solid(const BasicConvexHull<Scalar>& h) {
+  const auto& S = h.second_moment();
   MassProperties p{.mass = h.volume(), .centre = h.centroid(), .inertia = -S};
   for (int k = 0; k < 3; ++k) p.inertia(k, k) += S(0, 0) + S(1, 1) + S(2, 2);
   return p;
 }
 
 /// Of density 1 kg/m³.
-inline MassProperties unit_solid(const Shape& s) {
+MassProperties unit_solid(const std::same_as<Shape> auto& s) {
   switch (s.kind) {
     case ShapeKind::sphere:
       return unit_solid(Sphere{s.size[0]});
@@ -94,7 +99,8 @@ inline MassProperties unit_solid(const Shape& s) {
 }  // namespace inner
 
 /// Of `shape` filled with `density` (kg/m³). Pre: the shape has a volume.
-inline MassProperties mass_properties(const Shape& shape, double density) {
+template <class Scalar = double>
+MassProperties mass_properties(const Shape& shape, std::type_identity_t<Scalar> density) {
   DELASSUS_EXPECT(shape.has_volume(),
                   std::string("a ") + name(shape.kind) +
                       " has no finite volume; give mass and inertia instead of a density");

@@ -173,7 +173,7 @@ namespace inner {
 inline double across(const Mat3& R, int k) { return std::sqrt(R(k, 0) * R(k, 0) + R(k, 1) * R(k, 1)); }
 
 /// How far a shape that is symmetric about its origin reaches along each axis of the world, m.
-inline Vec3 half_widths(const Shape& s, const Mat3& R) {
+Vec3 half_widths(const std::same_as<Shape> auto& s, const Mat3& R) {
   const auto along = [](const auto& axis) { return Vec3(axis(0), axis(1), axis(2)); };
   switch (s.kind) {
     case ShapeKind::sphere:
@@ -197,7 +197,8 @@ inline Vec3 half_widths(const Shape& s, const Mat3& R) {
 }
 
 /// Of the tip and the disc of the base.
-inline Aabb cone_box(const Shape& s, const Pose& pose) {
+template <class Box>
+Box cone_box(const Shape& s, const Pose& pose) {
   Vec3 low, high;
   for (int k = 0; k < 3; ++k) {
     const double axis = pose.rotation(k, 2) * s.size[1], tip = 1.5 * axis, base = -0.5 * axis;
@@ -205,11 +206,12 @@ inline Aabb cone_box(const Shape& s, const Pose& pose) {
     low[k] = pose.position[k] + std::min(tip, base - rim);
     high[k] = pose.position[k] + std::max(tip, base + rim);
   }
-  return Aabb(low, high);
+  return Box(low, high);
 }
 
 /// As many vertices at a time as there are lanes, each lane with its own extremes.
-inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
+template <class Box>
+Box hull_box(const ConvexHull& hull, const Pose& pose) {
   const Mat3& R = pose.rotation;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   TwoLanes least[3], most[3];
@@ -229,19 +231,20 @@ inline Aabb hull_box(const ConvexHull& hull, const Pose& pose) {
     low[k] += std::min(least[k][0], least[k][1]);
     high[k] += std::max(most[k][0], most[k][1]);
   }
-  return Aabb(low, high);
+  return Box(low, high);
 }
 
 }  // namespace inner
 
 /// The smallest box with axes of the world around a posed shape, m. Infinite for a half-space, empty for no
 /// shape.
-inline Aabb tight_box(const Shape& s, const Pose& pose) {
-  if (s.kind == ShapeKind::none) return Aabb();
-  if (s.kind == ShapeKind::convex_hull) return inner::hull_box(*s.hull, pose);
-  if (s.kind == ShapeKind::cone) return inner::cone_box(s, pose);
+template <class Box = Aabb>
+Box tight_box(const Shape& s, const Pose& pose) {
+  if (s.kind == ShapeKind::none) return Box();
+  if (s.kind == ShapeKind::convex_hull) return inner::hull_box<Box>(*s.hull, pose);
+  if (s.kind == ShapeKind::cone) return inner::cone_box<Box>(s, pose);
   const Vec3 reach = inner::half_widths(s, pose.rotation);
-  return Aabb(pose.position - reach, pose.position + reach);
+  return Box(pose.position - reach, pose.position + reach);
 }
 
 }  // namespace delassus

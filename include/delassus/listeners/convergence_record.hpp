@@ -12,7 +12,8 @@
 namespace delassus {
 
 /// Keeps the last step. It has the solver measure after every sweep, which about doubles the cost of the solve.
-class ConvergenceRecord {
+template <class Real>
+class BasicConvergenceRecord {
  public:
   using plays = role::Listener;
   using listens = Listens<stage::Begin, stage::Solve>;
@@ -28,13 +29,13 @@ class ConvergenceRecord {
     int pool;
     Index item;
     int row;
-    double force;
+    Real force;
   };
   /// |F_i| of one constraint in velocity units, m/s: its share of the residual before the division.
   struct Constraint {
     int pool;
     Index item;
-    double error;
+    Real error;
   };
 
   /// One row after one sweep.
@@ -45,7 +46,7 @@ class ConvergenceRecord {
   };
 
   /// With `every_force` the force of each row is kept after every sweep, too.
-  explicit ConvergenceRecord(bool every_force = false) : every_force_(every_force) {}
+  explicit BasicConvergenceRecord(bool every_force = false) : every_force_(every_force) {}
 
   const std::vector<Sweep>& sweeps() const { return sweeps_; }
   const std::vector<Force>& forces() const { return forces_; }
@@ -80,5 +81,7 @@ class ConvergenceRecord {
   std::vector<Row> rows_;
   std::vector<Constraint> constraints_;
 };
+
+using ConvergenceRecord = BasicConvergenceRecord<double>;
 
 }  // namespace delassus

@@ -18,7 +18,8 @@ namespace delassus {
 
 /// Wall-clock time of every stage of every step, from one reading of the clock between two stages. Stages that do
 /// nothing in a loop show zero. `keep` bounds the memory: later steps are summed but not kept.
-class Stopwatch {
+template <class Real>
+class BasicStopwatch {
  public:
   using plays = role::Listener;
   using listens = ListensToAll;
@@ -28,9 +29,9 @@ class Stopwatch {
   static constexpr std::size_t stages = names.size();
 
   /// Milliseconds of each stage of one step, in the order of `names`.
-  using Times = std::array<double, stages>;
+  using Times = std::array<Real, stages>;
 
-  explicit Stopwatch(std::size_t keep = 100000) : keep_(keep) { laps_.reserve(std::min<std::size_t>(keep, 1024)); }
+  explicit BasicStopwatch(std::size_t keep = 100000) : keep_(keep) { laps_.reserve(std::min<std::size_t>(keep, 1024)); }
 
   const std::vector<Times>& laps() const { return laps_; }
   const Times& last() const { return now_; }
@@ -38,15 +39,15 @@ class Stopwatch {
   /// ms, mean over all steps so far.
   Times mean() const {
     Times mean = sum_;
-    for (double& m : mean) m /= double(std::max<long>(steps_, 1));
+    for (Real& m : mean) m /= Real(std::max<long>(steps_, 1));
     return mean;
   }
 
   /// "stage  mean  share" lines.
   void print(std::FILE* out = stdout) const {
     const Times m = mean();
-    double total = 0;
-    for (const double x : m) total += x;
+    Real total = 0;
+    for (const Real x : m) total += x;
     std::fprintf(out, "%-12s %10s %7s\n", "stage", "ms/step", "share");
     for (std::size_t s = 0; s < stages; ++s)
       std::fprintf(out, "%-12s %10.5f %6.1f%%\n", names[s], m[s], total > 0 ? 100 * m[s] / total : 0);
@@ -58,7 +59,7 @@ class Stopwatch {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "w"), std::fclose);
     DELASSUS_EXPECT(file != nullptr, "trace: cannot write '" + path + "'; is its folder there?");
     std::fprintf(file.get(), "[\n");
-    double start = 0;
+    Real start = 0;
     for (std::size_t k = 0; k < laps_.size(); ++k)
       for (std::size_t s = 0; s < stages; ++s) {
         std::fprintf(file.get(), "%s{\"name\":\"%s\",\"ph\":\"X\",\"pid\":1,\"tid\":1,\"ts\":%.3f,\"dur\":%.3f,\"args\":{\"step\":%zu}}",
@@ -102,5 +103,7 @@ class Stopwatch {
   std::vector<Times> laps_;
   long steps_ = 0;
 };
+
+using Stopwatch = BasicStopwatch<double>;
 
 }  // namespace delassus

@@ -11,7 +11,8 @@ namespace delassus::inner {
 class Targets {
  public:
   void resize(std::size_t n) { targets_.resize(n); }
-  void set(Index b, const Vec3& position, const Quat& orientation) {
+  template <class Turn>
+  void set(Index b, const Vec3& position, const Turn& orientation) {
     targets_[b] = {position, unit(orientation), true};
     are_any_ = true;
   }
