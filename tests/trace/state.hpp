@@ -261,6 +261,11 @@ class Memory {
     text_.size(list);
     for (E& e : list) part(e);
   }
+  template <class E>
+  void part(std::vector<E>& list) {
+    text_.size(list);
+    for (E& e : list) part(e);
+  }
   template <class E, std::size_t n>
   void part(std::array<E, n>& list) {
     for (E& e : list) part(e);
