@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 namespace delassus {
 
@@ -16,8 +17,8 @@ namespace delassus {
 /// or, for `far`, one with −h(n) > margin. h is an upper bound of the depth, so an accepted normal always
 /// separates. On acceptance the witnesses are rebuilt: heights along n from the support points, so that b − a
 /// = −h(n) n exactly.
-inline bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale,
-                    SignedPair& r) {
+template <std::same_as<SignedPair> Pair>
+bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale, Pair& r) {
   if (r.status == PairStatus::failed || !is_finite(r.normal) || !std::isfinite(r.distance)) return false;
   const double excess = r.normal.squaredNorm() - 1;
   if (!(std::abs(excess) < 1e-9)) return false;
@@ -39,8 +40,8 @@ inline bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double m
 
 /// True when another direction, say last step's normal, proves a greater distance than the answer: then the
 /// answer is not the shortest way out, though it is one.
-inline bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& other, double scale,
-                      const SignedPair& r) {
+template <std::same_as<SignedPair> Pair>
+bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& other, double scale, const Pair& r) {
   if (r.status != PairStatus::near || !(other.squaredNorm() > 0.5)) return false;
   const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
   return -inner::Difference{a, b, b_in_a}.reach(other) > r.distance + tolerance;
@@ -48,10 +49,11 @@ inline bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const 
 
 /// The answer of last resort: the least h(n) over the face normals of both bodies, the line of centres and
 /// the guess. Always finite and always a valid separating translation, though not always the shortest.
-inline SignedPair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess) {
+template <std::same_as<SignedPair> Pair = SignedPair>
+Pair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess) {
   const inner::Difference difference{a, b, b_in_a};
   const Mat3& R = b_in_a.rotation;
-  SignedPair r{.status = PairStatus::near, .distance = -std::numeric_limits<double>::infinity()};
+  Pair r{.status = PairStatus::near, .distance = -std::numeric_limits<double>::infinity()};
   const auto consider = [&](const Vec3& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return;

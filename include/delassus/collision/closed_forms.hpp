@@ -4,11 +4,14 @@
 #include <delassus/collision/inner/nearest.hpp>
 #include <delassus/collision/signed_pair.hpp>
 
+#include <concepts>
+
 namespace delassus {
 namespace inner {
 
 /// Sphere B against shape A; `center` is the sphere's, in the frame of A.
-inline SignedPair sphere_against(const Shape& a, double radius, const Vec3& center, const Vec3& wish) {
+template <std::same_as<Shape> S>
+SignedPair sphere_against(const S& a, double radius, const Vec3& center, const Vec3& wish) {
   const NearestSurface s = nearest_surface(a, center, wish);
   SignedPair r{.status = PairStatus::near, .distance = s.distance - radius, .normal = s.normal};
   r.point_a = center - s.distance * s.normal;
@@ -18,7 +21,8 @@ inline SignedPair sphere_against(const Shape& a, double radius, const Vec3& cent
 
 /// Parameters s, t ∈ [−1, 1] of the nearest points s·u and x + t·v of two segments with the half vectors u,
 /// v. Source: [Ericson2005], §5.1.9; parallel ones meet in the middle of their overlap.
-inline void nearest_on_segments(const Vec3& u, const Vec3& v, const Vec3& x, double& s, double& t) {
+template <class T>
+void nearest_on_segments(const Vec<3, T>& u, const Vec<3, T>& v, const Vec<3, T>& x, double& s, double& t) {
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ux = u.dot(x), vx = v.dot(x);
   const double determinant = u.cross(v).squaredNorm();
   if (determinant > 1e-12 * uu * vv) {
@@ -32,7 +36,8 @@ inline void nearest_on_segments(const Vec3& u, const Vec3& v, const Vec3& x, dou
   s = std::clamp((t * uv + ux) / uu, -1.0, 1.0);
 }
 
-inline SignedPair two_capsules(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& wish) {
+template <std::same_as<Shape> S>
+SignedPair two_capsules(const S& a, const S& b, const Pose& b_in_a, const Vec3& wish) {
   const Vec3 u = a.size[1] * unit_axis(2), v = b.size[1] * Vec3(b_in_a.rotation.col(2));
   double s = 0, t = 0;
   nearest_on_segments(u, v, b_in_a.position, s, t);
@@ -77,8 +82,8 @@ inline bool has_closed_form(const Shape& a, const Shape& b) {
 }
 
 /// True when the pair has a formula, whose answer is then in `r`. Exact, in the frame of A.
-inline bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess,
-                        SignedPair& r) {
+template <std::same_as<SignedPair> Pair>
+bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess, Pair& r) {
   const Vec3 wish = guess.squaredNorm() > 0 ? guess : b_in_a.position;
   if (b.kind == ShapeKind::sphere && inner::is_simple(a)) {
     r = inner::sphere_against(a, b.size[0], b_in_a.position, wish);

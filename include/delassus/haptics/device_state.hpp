@@ -17,9 +17,10 @@ struct DeviceState {
   Vec3 angular_velocity = Vec3::Zero();
 
   bool is_finite() const {
-    const double norm = orientation.coeffs().norm();
+    const Quat& q = orientation;
+    const double square = q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
     return delassus::is_finite(position) && delassus::is_finite(velocity) && delassus::is_finite(angular_velocity) &&
-           norm > 0.5 && norm < 2;
+           square > 0.25 && square < 4;
   }
 };
 

@@ -15,12 +15,13 @@ namespace delassus {
 
 /// Neighbours of the nodes of an undirected graph, compressed: those of node i are neighbour[start[i]] …
 /// [start[i+1] − 1].
-struct NodeGraph {
+template <class Index>
+struct BasicNodeGraph {
   Array<Index> start, neighbour;
 
-  NodeGraph() = default;
+  BasicNodeGraph() = default;
   /// From the pairs (i, j), i ≠ j, each once.
-  NodeGraph(Index nodes, std::span<const std::pair<Index, Index>> pairs) : start(nodes + 1, 0) {
+  BasicNodeGraph(Index nodes, std::span<const std::pair<Index, Index>> pairs) : start(nodes + 1, 0) {
     for (auto [i, j] : pairs) ++start[i + 1], ++start[j + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
     Array<Index> next(start.begin(), start.end() - 1);
@@ -36,12 +37,15 @@ struct NodeGraph {
   }
 };
 
+using NodeGraph = BasicNodeGraph<Index>;
+
 /// A. George, "Nested dissection of a regular finite element mesh". A part is cut at the median of x, y or z,
 /// whichever needs the fewest nodes between the halves. Without positions x is the distance, in edges, from a
 /// node a far out, y and z are those from a and from its opposite b less that from a node c far from both: of
 /// a square net with corners a, b and c, whose distance from a has diagonals for level lines, they are its
 /// sides. Parts of at most `leaf` nodes are not cut.
-struct NestedDissection {
+template <class Index>
+struct BasicNestedDissection {
   Index leaf = 12;
 
   /// order[k]: the node eliminated at place k. `positions` is empty or has one point a node, m. The nodes
@@ -175,5 +179,7 @@ struct NestedDissection {
     return {lefts, takes_left ? rim_left : rim_right};
   }
 };
+
+using NestedDissection = BasicNestedDissection<Index>;
 
 }  // namespace delassus

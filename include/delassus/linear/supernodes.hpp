@@ -25,7 +25,8 @@ struct Supernode {
 
 /// J. W. H. Liu, "The role of elimination trees in sparse factorization": the tree, its postorder, the rows
 /// of each column, then supernodes, merged with their parents where that adds few zeros.
-class SupernodalPattern {
+template <class Index>
+class BasicSupernodalPattern {
  public:
   /// `order[k]`: the node eliminated at place k; the postorder may permute it further. The last `last` nodes
   /// of it are not merged with others: what lies above them in the tree are nodes of their kind.
@@ -181,8 +182,11 @@ class SupernodalPattern {
   std::vector<Supernode> supernodes_;
 };
 
+using SupernodalPattern = BasicSupernodalPattern<Index>;
+
 /// A's own entries below the diagonal, by columns of P A Pᵀ with rows ascending; rows and columns are places.
-struct LowerEntries {
+template <class Index>
+struct BasicLowerEntries {
   Array<Index> start, row;
 
   void analyse(const NodeGraph& graph, const SupernodalPattern& pattern) {
@@ -202,5 +206,7 @@ struct LowerEntries {
     return e != last && *e == at ? Index(e - row.begin()) : -1;
   }
 };
+
+using LowerEntries = BasicLowerEntries<Index>;
 
 }  // namespace delassus

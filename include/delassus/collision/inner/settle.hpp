@@ -4,6 +4,7 @@
 #include <delassus/collision/certificate.hpp>
 #include <delassus/geometry/face.hpp>
 
+#include <concepts>
 #include <cstdint>
 
 namespace delassus::inner {
@@ -15,8 +16,9 @@ enum class NormalOwner : std::uint8_t { kernel, a, b };
 /// a distance no worse than 1e-5 of the scale. Last step's choice has as much in advance, so that two nearly
 /// parallel faces do not take turns. Afterwards the normal of a flat contact is exact, whatever the kernel's
 /// rounding.
-inline NormalOwner settle_normal(const Shape& a, const Shape& b, const Pose& b_in_a, double scale,
-                                 NormalOwner last, SignedPair& r) {
+template <std::same_as<Shape> S>
+NormalOwner settle_normal(const S& a, const S& b, const Pose& b_in_a, double scale, NormalOwner last,
+                          SignedPair& r) {
   const double advance = 1e-5 * scale;
   const SignedPair kernel = r;
   NormalOwner owner = NormalOwner::kernel;

@@ -26,7 +26,8 @@ struct FrontPlace {
 /// parents: those of even depth on one, those of odd depth on the other, so that a front takes its children's
 /// from the top of one and leaves its own on top of the other. What goes to a parent among the last nodes is
 /// kept from one factorization to the next. Sizes are in numbers.
-struct FrontLayout {
+template <class Index>
+struct BasicFrontLayout {
   std::vector<FrontPlace> fronts;
   std::size_t factor_size = 0, stack_size = 0, kept_size = 0;
 
@@ -70,5 +71,7 @@ struct FrontLayout {
     }
   }
 };
+
+using FrontLayout = BasicFrontLayout<Index>;
 
 }  // namespace delassus::inner

@@ -15,7 +15,8 @@
 namespace delassus::inner {
 
 /// What is known of the fronts before any number is: made once a pattern.
-struct FrontPlan {
+template <class Index>
+struct BasicFrontPlan {
   SupernodalPattern pattern;
   LowerEntries entries;
   FrontLayout layout;
@@ -37,6 +38,8 @@ struct FrontPlan {
   Index fronts() const { return Index(layout.fronts.size()); }
   const Supernode& supernode(Index s) const { return pattern.supernodes()[s]; }
 };
+
+using FrontPlan = BasicFrontPlan<Index>;
 
 /// A front of m rows is its first columns, m high, and the part below them, which is the parent's to add: of
 /// both only the lower triangle, with whole blocks on the diagonal, is meant.
