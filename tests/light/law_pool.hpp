@@ -42,9 +42,20 @@ struct LawLoops {
   }
 
   static Typed& typed(Pool<T>& pool) { return static_cast<Typed&>(pool); }
-  static Row load(const T* x, Index i) { return Eigen::Map<const Row>(x + std::size_t(R) * i); }
-  static Block block_at(const T* x, Index i) { return Eigen::Map<const Block>(x + std::size_t(R * R) * i); }
-  static void store(const Row& from, T* x, Index i) { Eigen::Map<Row>(x + std::size_t(R) * i) = from; }
+  // Loops and not Eigen's maps, which are types of their own for each R.
+  static Row load(const T* x, Index i) {
+    Row row;
+    for (int k = 0; k < R; ++k) row.data()[k] = x[std::size_t(R) * i + k];
+    return row;
+  }
+  static Block block_at(const T* x, Index i) {
+    Block block;
+    for (int k = 0; k < R * R; ++k) block.data()[k] = x[std::size_t(R * R) * i + k];
+    return block;
+  }
+  static void store(const Row& from, T* x, Index i) {
+    for (int k = 0; k < R; ++k) x[std::size_t(R) * i + k] = from.data()[k];
+  }
 
   static void linearize(const Pool<T>& pool, const WorldView<T>& world, Rows<T>& rows) {
     const auto& source = *static_cast<const Typed&>(pool).source;
@@ -91,7 +102,7 @@ struct LawLoops {
       for (Index e = first; e < end; ++e) {
         const T* const x = s.lambda + std::size_t(R) * s.column[e];
         for (int c = 0; c < R; ++c, w += R)
-          for (int k = 0; k < R; ++k) u[k] += w[k] * x[c];
+          for (int k = 0; k < R; ++k) u.data()[k] += w[k] * x[c];
       }
     }
   }
@@ -139,10 +150,14 @@ struct LawLoops {
         next = lambda + relaxation * (next - lambda);
         clamp_one(self, i, next);
       }
-      const Row change = next - lambda;
+      T change[R], square = 0;
+      for (int k = 0; k < R; ++k) {
+        change[k] = next.data()[k] - lambda.data()[k];
+        square += change[k] * change[k];
+      }
       store(next, s.lambda, i);
-      if (s.velocities) s.velocities->template changed<R>(pool.first_item + i, change.data());
-      energy += weight(s, i) * change.squaredNorm();
+      if (s.velocities) s.velocities->template changed<R>(pool.first_item + i, change);
+      energy += weight(s, i) * square;
     }
     return energy;
   }
