@@ -3,7 +3,7 @@
 #include <delassus/io/problem_file.hpp>
 #include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/law_set.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -20,7 +20,7 @@ using namespace delassus;
 
 namespace {
 
-using Book = LawBook<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double>;
+using Book = LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double>;
 using Solver = BasicAcceleratedGaussSeidel<SiconosError>;
 
 double blocks_of(const FrictionProblem& p) {

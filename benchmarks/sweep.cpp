@@ -40,7 +40,7 @@ void sweep_per_contact(benchmark::State& state) {
     set.add({.position = {3.0 * i, 0, 0.05}, .velocity = {1, 0.3, -0.1}, .mass = 1.0, .shape = Box{1.5, 1.5, 0.1}});
   loop.step(1e-3);
   auto problem = loop.problem();
-  LawBook<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
+  LawSet<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
   book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
   for (auto _ : state)

@@ -38,7 +38,7 @@ TEST_CASE("a warm step that ends at its deadline, in the midst of a sweep or of 
   add_stack(rigid_bodies(loop), 40, Box{1, 1, 1});
   REQUIRE(allocations_of(loop, 10, 1) == 0);
   for (int n = 0; n < 300; ++n) {
-    loop.template part<role::Solver>().budget = 20 + 3 * n;
+    loop.template policy<role::Solver>().budget = 20 + 3 * n;
     REQUIRE(allocations_of(loop, 0, 1) == 0);
   }
 }

@@ -42,7 +42,7 @@ void check_soft_contacts() {
   WithSurfaces ours{Backend{.margin = 0.02}};
   WithSurfaces native{NativeCollision{.margin = 0.02}};
   NativeCollision nodes{.margin = 0.02};
-  ContactBook book;
+  ContactCache book;
   std::vector<ContactPoint> found, expected;
   std::size_t between = 0;
   for (int n = 0; n < 200; ++n) {

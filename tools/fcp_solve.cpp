@@ -15,7 +15,7 @@
 #include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/with_deadline.hpp>
 
@@ -75,7 +75,7 @@ Result run(FrictionProblem& problem, const Solver& solver, double time_limit) {
   for (int runs = 1; int(times.size()) < runs;) {
     problem.rows.pool<0>().lambda = start;
     const double before = clock.now();
-    LawBook<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
+    LawSet<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
     typename WithDeadline<Solver>::template Workspace<FrictionProblem::Rows> workspace;
     workspace.reset(problem.rows);
     book.prepare(problem.W, problem.rows, problem.h);

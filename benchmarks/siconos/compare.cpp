@@ -19,7 +19,7 @@
 #include <delassus/io/problem_file.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/law_set.hpp>
 
 #include <csignal>
 #include <cstdio>
@@ -56,7 +56,7 @@ struct Result {
   double seconds = 0, build = 0, err = 0, err_s = 0;
 };
 
-using Book = LawBook<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double>;
+using Book = LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double>;
 constexpr int no_limit = 2000000000;
 
 double median(std::vector<double> of) {

@@ -24,7 +24,7 @@ template void CollisionEngine<GjkEpa, BoxTree>::recall_pairs();
 template void CollisionEngine<GjkEpa, BoxTree>::collide(std::span<const Collider>, const Job&, double,
                                                         const CollisionSettings&, RestingPair&,
                                                         std::vector<ContactPoint>&);
-template Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactBook&, const Materials&);
+template Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
 
 template SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(
     inner::ContactIsland&, Workspace<inner::ContactRowsOfBodies>&) const;

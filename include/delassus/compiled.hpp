@@ -25,7 +25,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 
 /// The islands of contacts with Coulomb's friction between rigid bodies.
 using ContactRowsOfBodies = RowSystem<double, Widths<6>, 3>;
-using ContactIsland = IslandProblem<LawBook<Constraints<Contact<Coulomb>>, double>, ContactRowsOfBodies,
+using ContactIsland = IslandProblem<LawSet<Constraints<Contact<Coulomb>>, double>, ContactRowsOfBodies,
                                     AssembledCompliance::Operator<ContactRowsOfBodies>>;
 
 extern template bool RigidState<double>::drift(Index, Velocity&, const Velocity&, double, double);
@@ -42,7 +42,7 @@ extern template void CollisionEngine<GjkEpa, BoxTree>::recall_pairs();
 extern template void CollisionEngine<GjkEpa, BoxTree>::collide(std::span<const Collider>, const Job&, double,
                                                                const CollisionSettings&, RestingPair&,
                                                                std::vector<ContactPoint>&);
-extern template Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactBook&, const Materials&);
+extern template Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
 
 extern template SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(
     inner::ContactIsland&, Workspace<inner::ContactRowsOfBodies>&) const;

@@ -1,4 +1,4 @@
-// expect: delassus: this AnimationLoop has no part of this type; name it among the arguments, or ask for the part of a role, loop.part<role::Solver>()
+// expect: delassus: this AnimationLoop has no policy of this type; name it among the arguments, or ask for the policy of a role, loop.policy<role::Solver>()
 #include <delassus/delassus.hpp>
 
 using namespace delassus;

@@ -1,4 +1,4 @@
-// expect: delassus: this AnimationLoop has no part of this role: without constraints, and under JointByJoint, there is no solver and no compliance
+// expect: delassus: this AnimationLoop has no policy of this role: without constraints, and under JointByJoint, there is no solver and no compliance
 #include <delassus/delassus.hpp>
 #include <delassus/schemes/joint_by_joint.hpp>
 
@@ -6,5 +6,5 @@ using namespace delassus;
 
 int main() {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, JointByJoint{}};
-  return loop.part<role::Solver>().max_iterations;
+  return loop.policy<role::Solver>().max_iterations;
 }

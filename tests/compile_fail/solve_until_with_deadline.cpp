@@ -6,5 +6,5 @@ using namespace delassus;
 int main() {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, WithDeadline{AcceleratedGaussSeidel{}, 1e-3}};
   auto problem = loop.problem();
-  solve_until(problem, loop.part<role::Solver>(), 1e-3);
+  solve_until(problem, loop.policy<role::Solver>(), 1e-3);
 }

@@ -10,7 +10,7 @@ TEST_CASE("places are handed out in order and stay where they are") {
   REQUIRE(slots.take() == 0);
   REQUIRE(slots.take() == 1);
   REQUIRE(slots.take() == 2);
-  slots.give_back(1);
+  slots.release(1);
   REQUIRE(slots.size() == 3);
   REQUIRE(slots.active() == std::vector<Index>{0, 2});
 }
@@ -19,7 +19,7 @@ TEST_CASE("a place given back is reused under a new generation") {
   Slots slots;
   const Index place = slots.take();
   const auto before = slots.generation(place);
-  slots.give_back(place);
+  slots.release(place);
   REQUIRE_FALSE(slots.is_alive(place));
   REQUIRE(slots.take() == place);
   REQUIRE(slots.is_alive(place));
@@ -37,8 +37,8 @@ TEST_CASE("no place outside the list is alive") {
 TEST_CASE("the live places are listed in ascending order whatever the order of removal") {
   Slots slots;
   for (int i = 0; i < 6; ++i) slots.take();
-  slots.give_back(4);
-  slots.give_back(1);
+  slots.release(4);
+  slots.release(1);
   slots.take();  // reuses 1, the last one freed
   REQUIRE(slots.active() == std::vector<Index>{0, 1, 2, 3, 5});
 }
@@ -47,11 +47,11 @@ TEST_CASE("the count of removals is never again what it was, whatever the slots 
   Slots slots;
   for (int i = 0; i < 3; ++i) slots.take();
   const Slots saved = slots;
-  slots.give_back(0);
+  slots.release(0);
   const auto after = slots.removals();
   slots = saved;
   REQUIRE(slots.removals() > after);
   const auto back = slots.removals();
-  slots.give_back(1);
+  slots.release(1);
   REQUIRE(slots.removals() > back);
 }

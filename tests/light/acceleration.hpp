@@ -37,7 +37,7 @@ struct Nesterov {
   template <class T>
   SolveReport solve(Island<T>& island) const {
     struct Patient : Chase<Island<T>> {
-      bool stands() const { return false; }
+      bool is_stagnating() const { return false; }
     } chase{{island, tolerance, max_sweeps}};
     Array<T> x, y;
     inner::momentum(island, chase, x, [&](const Array<T>& before, double& curvature) {

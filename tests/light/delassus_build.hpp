@@ -119,7 +119,7 @@ void Delassus<T>::build_pool(int p) {
     build_row(p, i);
     for (int k = 0; k < R; ++k) {
       const Index r = pools_[p]->first_row + R * i + k;
-      softness_[r] = rows_->compliance[r] + rows_->softness[r] * diagonal(p, i)[k * (R + 1)];
+      softness_[r] = rows_->compliance[r] + rows_->relative_compliance[r] * diagonal(p, i)[k * (R + 1)];
     }
     lift(p, i, softness_);
   }

@@ -67,7 +67,7 @@ struct FlatStep {
         for (int k = 0; k < from.rows; ++k, ++row) {
           rows.d[row] = from.d[i][k];
           rows.compliance[row] = from.compliance[i][k];
-          rows.softness[row] = from.softness[i][k];
+          rows.relative_compliance[row] = from.relative_compliance[i][k];
           rows.lambda[row] = from.lambda[i][k];
         }
     });

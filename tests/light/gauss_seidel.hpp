@@ -29,7 +29,7 @@ SolveReport GaussSeidel::solve(Island<T>& island) const {
   const SolveControl& control = island.control();
   const int rows = island.row_count();
   SolveReport report{.measure = island.measure()};
-  control.tell(0, report.measure);
+  control.notify(0, report.measure);
   if (!std::isfinite(report.measure.residual))
     return {.status = Status::quarantined, .measure = report.measure};
   Array<T> best;
@@ -52,7 +52,7 @@ SolveReport GaussSeidel::solve(Island<T>& island) const {
       return {.status = Status::deadline, .sweeps = report.sweeps, .measure = least};
     }
     report.measure = island.measure();
-    control.tell(report.sweeps, report.measure);
+    control.notify(report.sweeps, report.measure);
     keep();
   }
   report.status = inner::verdict<Residual>(*this, report.measure, rows);

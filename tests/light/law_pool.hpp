@@ -127,8 +127,8 @@ struct LawLoops {
     const auto& law = self.source->law;
     const auto& item = self.source->item(i);
     auto& memory = self.memory[i];
-    if constexpr (requires { law.meet(item, free, memory); }) {
-      return law.meet(item, free, memory);
+    if constexpr (requires { law.solve_local(item, free, memory); }) {
+      return law.solve_local(item, free, memory);
     } else {
       Local<R, T> c{block_at(diagonal, i), free, lambda};
       c.d += c.W * lambda;

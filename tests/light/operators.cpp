@@ -118,7 +118,7 @@ TEST_CASE("sweeps through the bodies are the library's without a matrix") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}, BallJoint{}},
                      MatrixFreeCompliance{}, scenes::GivenContacts{}, delassus::GaussSeidel{}};
   auto& set = loop.world().set<0>();
-  loop.part<role::Collision>().points = scenes::add_cluster(set, 12, 40, 3);
+  loop.policy<role::Collision>().points = scenes::add_cluster(set, 12, 40, 3);
   for (int k = 1; k < 5; ++k)
     loop.add(BallJoint::Item{anchor(set, set.handle(k), {0.5, 0, 0}),
                              anchor(set, set.handle(k + 1), {-0.5, 0, 0})});

@@ -24,7 +24,7 @@ struct Rows {
   Array<Index> row{0}, entry{0};
   Array<Entry> entries;
   Array<T> H, G;
-  Array<T> phi, stiffness, damping, bias, compliance, softness, d, lambda;  ///< one number a row
+  Array<T> phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda;  ///< one number a row
 
   Index items() const { return Index(row.size()) - 1; }
   Index count() const { return row.back(); }
@@ -47,7 +47,7 @@ struct Rows {
  private:
   template <class F>
   void each_number(const F& f) {
-    for (auto* x : {&phi, &stiffness, &damping, &bias, &compliance, &softness, &d, &lambda}) f(*x);
+    for (auto* x : {&phi, &stiffness, &damping, &bias, &compliance, &relative_compliance, &d, &lambda}) f(*x);
   }
 };
 

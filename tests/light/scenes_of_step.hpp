@@ -20,7 +20,7 @@ inline auto stack(int count) {
 inline auto cluster(int bodies, int contacts) {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}},
                      scenes::GivenContacts{}, delassus::GaussSeidel{}};
-  loop.template part<role::Collision>().points =
+  loop.template policy<role::Collision>().points =
       scenes::add_cluster(scenes::rigid_bodies(loop), bodies, contacts, 3);
   stop_before_solve(loop, 1.0 / 60);
   return loop;

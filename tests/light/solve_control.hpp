@@ -24,7 +24,7 @@ struct SolveControl {
   bool has_deadline() const { return deadline < std::numeric_limits<double>::infinity(); }
   bool is_late() const { return has_deadline() && now(clock) >= deadline; }
   Index longest_span() const { return has_deadline() ? longest_piece : std::numeric_limits<Index>::max(); }
-  void tell(int sweeps, const Measure& m) const {
+  void notify(int sweeps, const Measure& m) const {
     if (observe) observe(observer, sweeps, m);
   }
 };

@@ -15,7 +15,7 @@ namespace {
 template <class Problem>
 struct TypedIsland {
   Problem& problem;
-  LawBook<decltype(Problem::laws), double> book;
+  LawSet<decltype(Problem::laws), double> book;
   NoObserver nobody;
   IslandProblem<decltype(book), typename Problem::Rows, decltype(Problem::W)> island;
 

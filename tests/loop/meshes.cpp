@@ -93,7 +93,7 @@ namespace {
 std::vector<double> tumble(double length, double mass, double time) {
   Scene loop = scene();
   const double speed = length / time;
-  loop.part<role::Stabilisation>().max_speed *= speed;
+  loop.policy<role::Stabilisation>().max_speed *= speed;
   auto& rigid = bodies<RigidBodies>(loop.world());
   rigid.gravity *= speed / time;
   std::vector<double> heights;

@@ -15,7 +15,7 @@ namespace {
 //
 // Of 3000 scenes two come to a solve that does not end, from the first step: a capsule hangs on the world and is
 // jammed in the ground, the line from the contact to the joint being in the cone of friction. 69 more come to
-// one that needs `inner::leap`; in those that were looked at a capsule lies and sticks with both ends. Its gaps
+// one that needs `inner::extrapolate_to_cone_boundary`; in those that were looked at a capsule lies and sticks with both ends. Its gaps
 // g₁ ≠ g₂ ask it to turn by (g₁ − g₂)/L in a step, points that lie half a gap apart in height then part along the
 // axis by (g₁ − g₂)²/2hL ≈ 1e-9 m/s, and only an impulse at the edge of a cone allows that.
 constexpr int steps = 20;

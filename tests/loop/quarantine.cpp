@@ -165,10 +165,10 @@ TEST_CASE("a policy whose number was made invalid is refused at the next step, a
     REQUIRE_THROWS_WITH(loop.step(0.01), Catch::Contains("GaussSeidel: relaxation") && Catch::Contains("must lie in (0, 2)"));
   }
   loop.get<GaussSeidel>().relaxation = 1.5;
-  loop.part<role::Stabilisation>().rate = -1;  // a default nobody named
+  loop.policy<role::Stabilisation>().rate = -1;  // a default nobody named
   REQUIRE_THROWS_WITH(loop.step(0.01), Catch::Contains("Baumgarte: rate"));
   REQUIRE(set.position(ball) == Vec3(0, 0, 5));
-  loop.part<role::Stabilisation>().rate = 0.2;
+  loop.policy<role::Stabilisation>().rate = 0.2;
   REQUIRE(loop.step(0.01).status == Status::converged);
 }
 

@@ -121,7 +121,7 @@ namespace {
 std::vector<double> fallen(double length, double mass, double time) {
   Scene s;
   const double speed = length / time, density = mass / (length * length * length);
-  s.loop.part<role::Stabilisation>().max_speed *= speed;
+  s.loop.policy<role::Stabilisation>().max_speed *= speed;
   s.loop.get<ImplicitEuler>().rayleigh_stiffness *= time;
   s.loop.get<NativeCollision>().margin *= length;
   s.rigid.gravity *= speed / time;

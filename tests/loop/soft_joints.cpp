@@ -215,7 +215,7 @@ TEST_CASE("what a soft column hangs on carries its weight when it has come to re
 }
 
 TEST_CASE("a soft body that is given a force that is no number stays where it was, and no other notices") {
-  const auto run = [](bool is_sick) {
+  const auto run = [](bool is_nonfinite) {
     AnimationLoop loop{World{Soft{}}, Constraints{BallJoint{}}, ImplicitEuler{}};
     auto& soft = bodies<Soft>(loop.world());
     std::vector<Soft::BodyHandle> bars;
@@ -227,10 +227,10 @@ TEST_CASE("a soft body that is given a force that is no number stays where it wa
     std::vector<Vec3> x;
     for (int n = 0; n < 20; ++n) {
       const double nan = std::numeric_limits<double>::quiet_NaN();
-      if (is_sick && n == 5) soft.apply_force(soft.node(bars[0], 2), {nan, 0, 0});
+      if (is_nonfinite && n == 5) soft.apply_force(soft.node(bars[0], 2), {nan, 0, 0});
       loop.step(0.01);
-      if (is_sick && n == 5) CHECK(loop.report().status == Status::quarantined);
-      if (is_sick) CHECK(is_finite(soft.position(soft.node(bars[0], 2))));
+      if (is_nonfinite && n == 5) CHECK(loop.report().status == Status::quarantined);
+      if (is_nonfinite) CHECK(is_finite(soft.position(soft.node(bars[0], 2))));
       for (Index k = 0; k < 8; ++k) x.push_back(soft.position(soft.node(bars[1], k)));
     }
     CHECK(loop.report().islands == 2);

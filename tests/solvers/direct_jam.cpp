@@ -32,7 +32,7 @@ TEST_CASE(
   int late = 0;
   for (int n = 0; n < 300; ++n) {
     const double budget = 430 + n % 30;  // 400 are for the sweeps before Newton's method
-    loop.template part<role::Solver>().budget = budget;
+    loop.template policy<role::Solver>().budget = budget;
     time = 0;
     sink(loop);
     const SolveReport& solve = loop.island_reports()[0];

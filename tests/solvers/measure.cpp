@@ -99,7 +99,7 @@ TEST_CASE("what a step reports are the two errors of its own impulses") {
     const double rounding = double(r.size()) * std::numeric_limits<double>::epsilon() * reach / velocity;
     CAPTURE(seed, rounding, report.residual - expected.err_s);
     REQUIRE(std::abs(report.residual - expected.err_s) <= rounding);
-    REQUIRE(std::abs(report.siconos_error - expected.err) <= rounding * (1 + r.norm() / velocity));
+    REQUIRE(std::abs(report.natural_map_error - expected.err) <= rounding * (1 + r.norm() / velocity));
     REQUIRE((report.status == Status::converged) == (expected.err_s <= 1e-6));
     converged += report.status == Status::converged;
   }

@@ -299,7 +299,7 @@ TEST_CASE("a slack chain that snaps taut under a ton is met in halved steps, and
   CHECK(worst == Status::quarantined);
 }
 
-// Loads act over the whole step, and a body that is led arrives at its end, however many parts it takes.
+// Loads act over the whole step, and a kinematic body arrives at its end, however many parts it takes.
 TEST_CASE("a step in halves is one step to those who load and lead it") {
   const NewtonMidpoint one{.tolerance = 1e-13},
       halves{.tolerance = 0, .max_iterations = 12, .max_halvings = 2};

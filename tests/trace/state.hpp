@@ -124,9 +124,9 @@ class Memory {
     part(set.velocity()[b]);
     if (!text_.reads() || is_awake == set.is_awake(b)) return;
     if (is_awake)
-      set.rouse(b);
+      set.wake(b);
     else
-      set.lull(b);
+      set.put_to_sleep(b);
   }
   template <class Set>
   static auto& poses(Set& set) {
@@ -151,7 +151,7 @@ class Memory {
       text_(presence), part(pool.impulse[k]), text_(pool.starts_cold[k]);
       axis(pool.items[k]);
       if (!text_.reads()) continue;
-      if (presence == 0 && pool.slots.is_alive(k)) pool.slots.give_back(k);
+      if (presence == 0 && pool.slots.is_alive(k)) pool.slots.release(k);
       if (presence > 0) pool.slots.set_awake(k, presence == 1);
     }
     if constexpr (BreakableLaw<Law>) {
@@ -174,7 +174,7 @@ class Memory {
 
   // --- contacts
   // ----------------------------------------------------------------------------------------------------
-  void part(ContactBook& book) {
+  void part(ContactCache& book) {
     text_.line("contacts");
     book.memory(*this);
   }
@@ -288,7 +288,7 @@ void walk_state(Loop& loop, Text& state, Text& pairs) {
       if (state.reads())
         for (const auto& body : loop.dormant().bodies())
           loop.world().each([&](auto& set, auto s) {
-            if (s == body.set) set.hold(body.block, true);
+            if (s == body.set) set.set_fixed(body.block, true);
           });
 }
 

@@ -5,7 +5,7 @@ using namespace delassus;
 
 using Loop = AnimationLoop<World<RigidBodies>, Constraints<Contact<Coulomb>>>;
 using Given = decltype(std::declval<const Loop&>().problem());
-using Book = LawBook<Constraints<Contact<Coulomb>>, double>;
+using Book = LawSet<Constraints<Contact<Coulomb>>, double>;
 using Island = IslandProblem<Book, Given::Rows, decltype(Given::W), NoObserver>;
 
 extern "C" [[gnu::noinline]] double one_sweep(Island& island) { return island.sweep(); }

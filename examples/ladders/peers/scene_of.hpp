@@ -155,7 +155,7 @@ inline void tell_bodies(const auto& set, Told& told, std::vector<int>& place) {
     told.scene.gravity = triple(set.gravity);
     place.assign(std::size_t(set.blocks()), -1);
     for (const Index b : alive(set)) {
-      if (set.motion(b) == Motion::kinematic) throw Unsayable("needs a body that is led");
+      if (set.motion(b) == Motion::kinematic) throw Unsayable("needs a kinematic body");
       if (set.material(b) != 0 || set.group(b) != 1 || set.collides_with(b) != ~0u)
         throw Unsayable("needs materials or groups");
       Body body{.is_fixed = set.motion(b) == Motion::fixed};
@@ -186,7 +186,7 @@ Told scene_of(const Loop& loop) {
   Told told;
   std::vector<int> place;
   loop.world().each([&](const auto& set, auto) { inner::tell_bodies(set, told, place); });
-  const auto& laws = loop.template part<delassus::role::Constraints>();
+  const auto& laws = loop.template policy<delassus::role::Constraints>();
   delassus::for_each_index<Loop::Laws::pool_count>(
       [&](auto p) { inner::tell_law(laws.template pool<p>(), told, place); });
   return told;

@@ -7,7 +7,7 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 
 #include <algorithm>
 #include <span>
@@ -49,21 +49,21 @@ class SwitchedOff {
     world.each([&](auto& bodies, auto s) {
       if (s != set || !bodies.is_alive(block)) return;
       using Velocity = typename std::remove_reference_t<decltype(bodies)>::Velocity;
-      bodies.hold(block, false);
+      bodies.set_fixed(block, false);
       bodies.velocity()[block] = velocity_[group].template head<Velocity::RowsAtCompileTime>().template cast<typename Velocity::Scalar>();
     });
   }
 
   /// Switches one body off; nothing for one that is off or does not move by itself.
   template <class Set>
-  void lull(World& world, Laws& laws, Set& set, Index s, Index block) {
+  void put_to_sleep(World& world, Laws& laws, Set& set, Index s, Index block) {
     if (dormant_.group_of(s, block) >= 0 || !set.moves(block)) return;
     const Index group = dormant_.new_group();
     velocity_.resize(group + 1);
     velocity_[group].setZero();
     velocity_[group].template head<Set::width>() = set.velocity()[block].template cast<double>();
     dormant_.add(set, s, block, group);
-    set.hold(block, true);
+    set.set_fixed(block, true);
     for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, group); });
   }
 
@@ -81,15 +81,15 @@ class SwitchedOff {
       else dormant_.wake(world, laws, [&](Index g) { return g == body.group; });
     }
   }
-  bool add_obstacles(const World& world, ContactBook& book) const {
+  bool add_obstacles(const World& world, ContactCache& book) const {
     for (const auto& body : dormant_.bodies())
       world.each([&](const auto& set, auto s) {
         if (s == body.set && set.has_collider(body.block)) book.add(set, s, body.block, false);
       });
     return true;
   }
-  bool wake_touched(World&, Laws&, const ContactBook&, double) const { return false; }
-  void drop_points(ContactBook&) const {}
+  bool wake_touched(World&, Laws&, const ContactCache&, double) const { return false; }
+  void drop_points(ContactCache&) const {}
   template <class Rows, int pools>
   void watch(const HandPicked&, World&, const Rows&, const Islands<pools>&, std::span<const SolveReport>, double) const {}
   template <int pools>

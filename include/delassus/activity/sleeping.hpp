@@ -10,7 +10,7 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 
 #include <algorithm>
 #include <array>
@@ -93,7 +93,7 @@ class Sleepers {
   }
 
   /// Detect: sleepers near an awake body are obstacles. False when nobody who can move is awake.
-  bool add_obstacles(const World& world, ContactBook& book) {
+  bool add_obstacles(const World& world, ContactCache& book) {
     Aabb near;
     for (const Collider& c : book.colliders) {
       if (!c.is_movable || c.shape.kind == ShapeKind::half_space) continue;
@@ -111,7 +111,7 @@ class Sleepers {
   }
 
   /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
-  bool wake_touched(World& world, Laws& laws, const ContactBook& book, double h) {
+  bool wake_touched(World& world, Laws& laws, const ContactCache& book, double h) {
     const double fall = h * h * strongest_gravity(world);
     for (const ContactPoint& p : book.points) {
       const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
@@ -125,7 +125,7 @@ class Sleepers {
   }
 
   /// Contact points of sleepers that are not reached make no rows.
-  void drop_points(ContactBook& book) const {
+  void drop_points(ContactCache& book) const {
     std::erase_if(book.points, [&](const ContactPoint& p) {
       return group_of(book.colliders[p.a]) >= 0 || group_of(book.colliders[p.b]) >= 0;
     });

@@ -12,7 +12,7 @@ namespace delassus {
 
 /// The calling thread runs before all others until it waits: SCHED_FIFO, `priority` 1 (low) … 99. False when the system
 /// refuses, which it does without CAP_SYS_NICE or an `rtprio` limit (/etc/security/limits.conf). Threads inherit it.
-inline bool run_first(int priority) {
+inline bool set_realtime_priority(int priority) {
   sched_param parameters{};
   parameters.sched_priority =
       std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
@@ -21,7 +21,7 @@ inline bool run_first(int priority) {
 
 /// No page of this process, present or future, is swapped out or comes late: mlockall. False when the system refuses, which it
 /// does without CAP_IPC_LOCK or a `memlock` limit. Call it before the threads start.
-inline bool keep_memory() { return mlockall(MCL_CURRENT | MCL_FUTURE) == 0; }
+inline bool lock_memory() { return mlockall(MCL_CURRENT | MCL_FUTURE) == 0; }
 
 /// Processor time of the calling thread, s, whatever else the machine does meanwhile. Reading it takes a few hundred ns.
 struct ThreadClock {

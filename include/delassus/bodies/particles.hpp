@@ -1,8 +1,8 @@
 /// Point masses as a structure of arrays, with springs between them and to points of the world.
 #pragma once
 
+#include <delassus/bodies/inner/body_storage.hpp>
 #include <delassus/bodies/inner/particle_path.hpp>
-#include <delassus/bodies/inner/places.hpp>
 #include <delassus/bodies/springs.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
@@ -33,13 +33,13 @@ struct Particle {
 
 /// q = x, v = ẋ. f = m g + loads + springs; A = mass M + damping D + stiffness K of the springs (`Springs`).
 template <class T>
-class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
-  using Places = inner::Places<BasicParticles, T, 3>;
+class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
+  using BodyStorage = inner::BodyStorage<BasicParticles, T, 3>;
 
  public:
   using Body = Particle;
-  using typename Places::Handle, typename Places::Velocity;
-  using Places::gravity, Places::v_free, Places::v_next, Places::who;
+  using typename BodyStorage::Handle, typename BodyStorage::Velocity;
+  using BodyStorage::gravity, BodyStorage::v_free, BodyStorage::v_next, BodyStorage::who;
   static constexpr const char* kind = "particle";
 
   BasicParticles() = default;
@@ -58,7 +58,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   void remove(Handle particle) {
     const Index b = checked(particle);
     springs_.remove_of(b);
-    slots_.give_back(b);
+    slots_.release(b);
     inverse_mass_[b] = T(0);
   }
 
@@ -93,7 +93,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   // --- reading -------------------------------------------------------------------------------------------------
 
   Vec3 position(Handle particle) const { return x_[checked(particle)].template cast<double>(); }
-  using Places::velocity;
+  using BodyStorage::velocity;
   Vec3 velocity(Handle particle) const { return v_[checked(particle)].template cast<double>(); }
   T mass(Index b) const { return mass_[b]; }
   double spring_energy() const { return springs_.energy(x_); }
@@ -102,7 +102,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
 
   bool moves(Index b) const { return inverse_mass_[b] > T(0); }
   /// Takes a particle's answer to impulses away (A⁻¹ = 0), or gives it back.
-  void hold(Index b, bool is_held) { inverse_mass_[b] = is_held || !(mass_[b] > T(0)) ? T(0) : T(1) / mass_[b]; }
+  void set_fixed(Index b, bool is_held) { inverse_mass_[b] = is_held || !(mass_[b] > T(0)) ? T(0) : T(1) / mass_[b]; }
   /// Springs tie particles together outside of every island: while there are any, none sleeps.
   bool may_sleep() const { return springs_.is_empty(); }
 
@@ -160,7 +160,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
     const T *mass, *inverse_mass;
     Velocity gravity;
     T inverse_scale;
-    inner::Held* held;
+    inner::QuarantineRecord* record;
 
     bool moves(Index b) const { return inverse_mass[b] > T(0); }
     const Velocity& velocity(Index b) const { return v[b]; }
@@ -171,7 +171,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
     void advance(Index b, const Velocity& next, double h, T old_share) const {
       if (moves(b)) {
         const Velocity moved = x[b] + T(h) * inner::mean(v[b], next, old_share);
-        if (!is_finite(moved)) [[unlikely]] return held->leave(load, load[b]);
+        if (!is_finite(moved)) [[unlikely]] return record->leave(load, load[b]);
         x[b] = moved;
         v[b] = next;
       }
@@ -179,7 +179,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
     }
   };
   Blocks by_block(SystemScale scale = {}) {
-    held_ = {};
+    quarantine_ = {};
     return {.x = x_.data(),
             .v = v_.data(),
             .load = load_.data(),
@@ -187,7 +187,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
             .inverse_mass = inverse_mass_.data(),
             .gravity = gravity.template cast<T>(),
             .inverse_scale = T(1 / scale.mass),
-            .held = &held_};
+            .record = &quarantine_};
   }
   /// True when no spring joins anything: every particle moves by itself.
   bool is_separable() const { return springs_.is_empty(); }
@@ -208,11 +208,11 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
   /// What a scheme that finds x and v of the end itself does with each particle; it leaves x there, and v_next.
   using Path = inner::ParticlePath<T>;
   auto& state() { return x_; }
-  void arrive(double) {
-    held_ = {};
+  void finish_step(double) {
+    quarantine_ = {};
     for (const Index b : slots_.active()) {
       if (moves(b) && is_finite(v_next[b])) v_[b] = v_next[b];
-      else if (moves(b)) held_.leave(load_.data(), load_[b]);
+      else if (moves(b)) quarantine_.leave(load_.data(), load_[b]);
       load_[b].setZero();
     }
   }
@@ -223,7 +223,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
 
   /// What outlives a step; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    Places::memory(archive);
+    BodyStorage::memory(archive);
     archive(springs_, x_, mass_, inverse_mass_, radius_);
   }
 
@@ -241,7 +241,7 @@ class BasicParticles : public inner::Places<BasicParticles<T>, T, 3> {
     for (const Index b : slots_.active()) blocks.advance(b, v_next[b], h, old_share);
   }
 
-  using Places::checked, Places::slots_, Places::held_, Places::v_, Places::load_;
+  using BodyStorage::checked, BodyStorage::slots_, BodyStorage::quarantine_, BodyStorage::v_, BodyStorage::load_;
   Springs<T> springs_;
   Array<Velocity> x_, shifted_x_;
   Array<T> mass_, inverse_mass_;
@@ -264,7 +264,7 @@ typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& partic
     DELASSUS_EXPECT(inner::has_inverse<T>(mass), name + ": mass " + inner::without_inverse<T>(inner::text(mass), "kg"));
   }
   inner::expect_not_negative(name + ": radius", particle.radius);
-  const Index b = Places::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
+  const Index b = BodyStorage::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
                                                            : Velocity(particle.velocity.template cast<T>()));
   const std::size_t n = std::size_t(slots_.size());
   for (auto* array : {&x_, &shifted_x_}) array->resize(n);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/body_input.hpp>
-#include <delassus/bodies/inner/places.hpp>
+#include <delassus/bodies/inner/body_storage.hpp>
 #include <delassus/bodies/inner/rigid_midpoint.hpp>
 #include <delassus/bodies/inner/rigid_path.hpp>
 #include <delassus/bodies/inner/rigid_state.hpp>
@@ -29,13 +29,13 @@ namespace delassus {
 /// The gyroscopic term is not in f: a step kicks at fixed R, so that impulses enter P and L exactly, then drifts
 /// by free rotation by the midpoint rule (`midpoint_rate`), which keeps L and the energy of each body.
 template <class T>
-class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
-  using Places = inner::Places<BasicRigidBodies, T, 6>;
+class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
+  using BodyStorage = inner::BodyStorage<BasicRigidBodies, T, 6>;
 
  public:
   using Body = RigidBody;
-  using typename Places::Handle, typename Places::Velocity;
-  using Places::gravity, Places::v_free, Places::v_next, Places::who;
+  using typename BodyStorage::Handle, typename BodyStorage::Velocity;
+  using BodyStorage::gravity, BodyStorage::v_free, BodyStorage::v_next, BodyStorage::who;
   static constexpr const char* kind = "rigid body";
 
   BasicRigidBodies() = default;
@@ -58,7 +58,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
 
   /// Takes a body out. Its handle is stale from then on; nothing else moves.
   void remove(Handle body) {
-    slots_.give_back(checked(body));
+    slots_.release(checked(body));
     shapes_.drop(body.index);
     motion_[body.index] = Motion::fixed;
     set_mass(body.index);
@@ -103,7 +103,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   // --- reading -------------------------------------------------------------------------------------------------
   Vec3 position(Handle body) const { return position_of(checked(body)); }
   Quat orientation(Handle body) const { return state_.q[checked(body)].template cast<double>(); }
-  using Places::velocity;
+  using BodyStorage::velocity;
   Vec3 velocity(Handle body) const { return linear_part(v_[checked(body)]).template cast<double>(); }
   Vec3 angular_velocity(Handle body) const { return angular_part(v_[checked(body)]).template cast<double>(); }
   double mass(Handle body) const { return state_.mass[checked(body)]; }
@@ -114,7 +114,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
 
   bool moves(Index b) const { return state_.inverse_mass[b] > T(0); }
   /// Takes a body's answer to impulses away (A⁻¹ = 0), or gives it back.
-  void hold(Index b, bool is_held) {
+  void set_fixed(Index b, bool is_held) {
     if (is_held) state_.inverse_mass[b] = T(0), state_.inverse_inertia_world[b].setZero();
     else set_mass(b);
   }
@@ -174,7 +174,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   /// The midpoint rule: x₊ = x + h (v + v_next)/2, and rotation with the angular impulse I (ω_next − ω).
   void advance_midpoint(double h) { advance_with(h, T(0.5)); }
   /// Kick and drift, where the free rotation is a splitting into turns.
-  void advance_by_turns(double h) { advance_with(h, ByTurns{}); }
+  void advance_by_rotation_splitting(double h) { advance_with(h, RotationSplitting{}); }
 
   /// One body at a time.
   struct Blocks {
@@ -189,7 +189,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   };
   Blocks by_block(SystemScale scale) {
     factor(scale);
-    held_ = {};
+    quarantine_ = {};
     return {*this};
   }
   /// No force acts between bodies: every one moves by itself.
@@ -209,22 +209,22 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     for (const Index b : slots_.active())
       if (motion_[b] != Motion::fixed) state_.displace(b, T(h) * linear_part(v_[b]), T(h) * angular_part(v_[b]));
   }
-  void restore() { state_.take_poses_back(slots_.active()); }
+  void restore() { state_.restore_poses(slots_.active()); }
 
   /// What a midpoint rule that is solved by Newton's method does with each body.
   using Midpoint = inner::RigidMidpoint<T>;
   auto& state() { return state_; }
   /// What a scheme that finds q and v of the end itself does with each body; it leaves q there, and v_next.
   using Path = inner::RigidPath<T>;
-  void arrive(double h) {
-    held_ = {};
+  void finish_step(double h) {
+    quarantine_ = {};
     for (const Index b : slots_.active()) {
       if (motion_[b] != Motion::dynamic) {
         advance_block(b, v_next[b], h, T(0));
         continue;
       }
       if (is_finite(v_next[b])) v_[b] = v_next[b];
-      else held_.leave(load_.data(), load_[b]);
+      else quarantine_.leave(load_.data(), load_[b]);
       load_[b].setZero();
     }
   }
@@ -237,7 +237,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
 
   /// What outlives a step, shapes included; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    Places::memory(archive);
+    BodyStorage::memory(archive);
     archive(state_, motion_, targets_, shapes_);
   }
 
@@ -256,7 +256,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
   }
   void set_mass(Index b) { state_.set_mass(b, motion_[b] == Motion::dynamic); }
   void advance_with(double h, auto share) {
-    held_ = {};
+    quarantine_ = {};
     for (const Index b : slots_.active()) advance_block(b, v_next[b], h, share);
   }
   /// q and v of body b from its v_next.
@@ -265,7 +265,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     const T h = T(h_);
     const bool is_done =
         motion_[b] == Motion::kinematic ? follow(b, next, h) : state_.drift(b, v_[b], next, h, share);
-    if (!is_done) [[unlikely]] return held_.leave(load_.data(), load_[b]);
+    if (!is_done) [[unlikely]] return quarantine_.leave(load_.data(), load_[b]);
     load_[b].setZero();
   }
   /// A kinematic body goes where it was told, or on with its velocity.
@@ -275,7 +275,7 @@ class BasicRigidBodies : public inner::Places<BasicRigidBodies<T>, T, 6> {
     return true;
   }
 
-  using Places::checked, Places::slots_, Places::held_, Places::v_, Places::load_;
+  using BodyStorage::checked, BodyStorage::slots_, BodyStorage::quarantine_, BodyStorage::v_, BodyStorage::load_;
   T inverse_scale_ = 1;
   inner::RigidState<T> state_;
   Array<Motion> motion_;
@@ -300,7 +300,7 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
 
   Velocity velocity = twist<T>(body.velocity.template cast<T>(), body.angular_velocity.template cast<T>());
   if (body.motion == Motion::fixed) velocity.setZero();
-  const Index b = Places::take(body, velocity);
+  const Index b = BodyStorage::take(body, velocity);
   const std::size_t n = std::size_t(slots_.size());
   state_.resize(n);
   motion_.resize(n);

@@ -5,11 +5,11 @@
 #include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/half_space.hpp>
+#include <delassus/collision/inner/fallback_normal.hpp>
 #include <delassus/collision/inner/margins.hpp>
-#include <delassus/collision/inner/parting.hpp>
 #include <delassus/collision/inner/reduce.hpp>
 #include <delassus/collision/inner/resting_pair.hpp>
-#include <delassus/collision/inner/settle.hpp>
+#include <delassus/collision/inner/snap_normal.hpp>
 #include <delassus/collision/manifold.hpp>
 #include <delassus/collision/pair_memory.hpp>
 #include <delassus/core/array.hpp>
@@ -151,14 +151,14 @@ class CollisionEngine {
     // is then put back, and the depth is within 4e-4 of the size of the least.
     const bool is_moved = is_zero(b_in_a.position) && is_zero(last.normal);
     Vec3 shift = Vec3::Zero();
-    if (is_moved) shift = a.pose.rotation.transpose() * (1e-4 * scale * inner::parting(a.key, b.key));
+    if (is_moved) shift = a.pose.rotation.transpose() * (1e-4 * scale * inner::fallback_normal(a.key, b.key));
     const Pose pose{.position = b_in_a.position + shift, .rotation = b_in_a.rotation};
     const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, pose, reach, scale, guess);
     report_.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
     if (is_moved) r.distance -= r.normal.dot(shift), r.point_b -= r.normal * r.normal.dot(shift);
     if (r.status == PairStatus::near)
-      now.owner = inner::settle_normal(a.shape, b.shape, b_in_a, scale, last.owner, r);
+      now.owner = inner::snap_normal_to_face(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
   }
 

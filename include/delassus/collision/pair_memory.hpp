@@ -1,7 +1,7 @@
 /// What is kept of a pair from step to step: its normal and its points, so that contacts keep their names.
 #pragma once
 
-#include <delassus/collision/inner/settle.hpp>
+#include <delassus/collision/inner/snap_normal.hpp>
 #include <delassus/collision/manifold.hpp>
 
 #include <array>

@@ -211,7 +211,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
           }
         add_row<a, s>(rows, i);
       });
-      inner::add_compliance(diagonal[i], pool.compliance[i], pool.softness[i]);
+      inner::add_compliance(diagonal[i], pool.compliance[i], pool.relative_compliance[i]);
       for_each_index<pools>([&](auto b) {
         if (place_[b].empty()) return;  // a pool without items costs one look
         auto& W = std::get<b>(std::get<a>(blocks_));

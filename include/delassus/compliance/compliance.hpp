@@ -43,10 +43,10 @@ void apply_mass_inverse(const Set& set, Rows& rows, S s) {
   });
 }
 
-/// W_ii + diag(R) + diag(softness · W_kk).
+/// W_ii + diag(R) + diag(relative_compliance · W_kk).
 template <int R, class T>
-void add_compliance(Mat<R, R, T>& W, const Vec<R, T>& compliance, const Vec<R, T>& softness) {
-  for (int k = 0; k < R; ++k) W(k, k) += compliance[k] + softness[k] * W(k, k);
+void add_compliance(Mat<R, R, T>& W, const Vec<R, T>& compliance, const Vec<R, T>& relative_compliance) {
+  for (int k = 0; k < R; ++k) W(k, k) += compliance[k] + relative_compliance[k] * W(k, k);
 }
 
 /// What answers with A⁻¹ for set s: the operator where it has factors of its own, else the set. An operator
@@ -68,7 +68,7 @@ auto response(const Operator& W, const Rows& rows, Index i) {
   Vec<Rows::template rows_of<p>, T> out = W.template residual<p>(rows, i) - pool.d[i];
   for (int k = 0; k < out.size(); ++k) {
     const T whole = W.template diagonal<p>(i)(k, k);
-    const T plain = (whole - pool.compliance[i][k]) / (T(1) + pool.softness[i][k]);
+    const T plain = (whole - pool.compliance[i][k]) / (T(1) + pool.relative_compliance[i][k]);
     out[k] -= (whole - plain) * pool.lambda[i][k];
   }
   return out;

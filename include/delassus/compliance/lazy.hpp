@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/compliance/inner/refine.hpp>
-#include <delassus/compliance/inner/turned_operator.hpp>
+#include <delassus/compliance/inner/rotated_operator.hpp>
 #include <delassus/core/expect.hpp>
 
 
@@ -35,12 +35,12 @@ struct BasicLazyCompliance {
     inner::expect_number(contraction > 0 && contraction < 1, "LazyCompliance: contraction", contraction,
                          "must lie in (0, 1)");
   }
-  inner::TurnedLimits limits() const {
+  inner::RotatedLimits limits() const {
     return {violation, tolerance, contraction, max_iterations, max_passes};
   }
 
   template <class Rows>
-  class Operator : public inner::TurnedOperator<S, Rows, inner::FactorOfAStep> {};
+  class Operator : public inner::RotatedOperator<S, Rows, inner::FactorOfAStep> {};
 };
 using LazyCompliance = BasicLazyCompliance<float>;
 

@@ -97,7 +97,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
           for (Index f = set.offset[i]; f < set.offset[i + 1]; ++f)
             if (set.block[e] == set.block[f]) W.noalias() += set.H[e] * set.G[f];
       });
-      compliance[i] = pool.compliance[i] + pool.softness[i].cwiseProduct(W.diagonal());
+      compliance[i] = pool.compliance[i] + pool.relative_compliance[i].cwiseProduct(W.diagonal());
       W.diagonal() += compliance[i];
     }
   }

@@ -3,7 +3,7 @@
 
 #include <delassus/compliance/inner/compliance_file.hpp>
 #include <delassus/compliance/inner/refine.hpp>
-#include <delassus/compliance/inner/turned_operator.hpp>
+#include <delassus/compliance/inner/rotated_operator.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
@@ -70,10 +70,10 @@ struct BasicPrecomputedCompliance {
                          "must lie in (0, 1)");
     DELASSUS_EXPECT(max_passes >= 0, "PrecomputedCompliance: max_passes must be >= 0");
   }
-  inner::TurnedLimits limits() const { return {violation, tolerance, 1, 0, max_passes}; }
+  inner::RotatedLimits limits() const { return {violation, tolerance, 1, 0, max_passes}; }
 
   template <class Rows>
-  class Operator : public inner::TurnedOperator<S, Rows, inner::FactorAtRest> {};
+  class Operator : public inner::RotatedOperator<S, Rows, inner::FactorAtRest> {};
 };
 using PrecomputedCompliance = BasicPrecomputedCompliance<float>;
 

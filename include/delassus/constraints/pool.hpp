@@ -79,7 +79,7 @@ struct Pool {
 
   void remove(ConstraintHandle<Law> h) {
     DELASSUS_EXPECT(contains(h), "remove: " + stale(h, "this constraint was removed before"));
-    slots.give_back(h.index);
+    slots.release(h.index);
   }
 
   /// Takes out every item one of whose anchors sits on this block: its body goes.
@@ -89,7 +89,7 @@ struct Pool {
         if (!slots.is_alive(k)) continue;
         bool sits_there = false;
         each_end(items[k], [&](const Anchor& a) { sits_there = sits_there || (a.owner == set && a.block == block); });
-        if (sits_there) slots.give_back(k);
+        if (sits_there) slots.release(k);
       }
   }
 

@@ -27,7 +27,7 @@ class Slots {
     return place;
   }
 
-  void give_back(Index place) {
+  void release(Index place) {
     alive_[place] = 0;
     ++removals_;
     ++generation_[place];
@@ -46,7 +46,7 @@ class Slots {
   bool is_current(Index place, std::uint32_t generation) const {
     return is_alive(place) && generation_[place] == generation;
   }
-  /// Has grown when places that were alive may not be any more, by `give_back` or because other slots were assigned.
+  /// Has grown when places that were alive may not be any more, by `release` or because other slots were assigned.
   std::uint32_t removals() const { return removals_.value; }
   std::uint32_t generation(Index place) const { return generation_[place]; }
   const Array<Index>& active() const {

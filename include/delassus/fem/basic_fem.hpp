@@ -80,7 +80,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------
 
   bool moves(Index b) const { return inverse_mass_[b] > T(0); }
-  void hold(Index b, bool is_held) { inverse_mass_[b] = is_held || is_fixed_[b] ? T(0) : T(1) / mass_[b]; }
+  void set_fixed(Index b, bool is_held) { inverse_mass_[b] = is_held || is_fixed_[b] ? T(0) : T(1) / mass_[b]; }
 
   void factor(SystemScale scale) {
     scale_ = scale;
@@ -191,7 +191,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   }
   /// x₊ = x + h times the mean velocity. A body with a node whose x₊ is not finite stays where it is, whole.
   void advance_with(double h, T old_share) {
-    held_ = {};
+    quarantine_ = {};
     each_body([&](const auto& body) {
       bool is_sound = true;
       for (const Index b : body.blocks()) {
@@ -209,7 +209,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
 
   using Nodes::bodies_, Nodes::body_slots_, Nodes::scale_;
   using Nodes::checked, Nodes::checked_body, Nodes::body_name, Nodes::each_body;
-  using Nodes::slots_, Nodes::held_, Nodes::v_, Nodes::load_, Nodes::is_fixed_;
+  using Nodes::slots_, Nodes::quarantine_, Nodes::v_, Nodes::load_, Nodes::is_fixed_;
   Array<Velocity> x_, shifted_x_;
   Array<T> mass_, inverse_mass_;
   Array<double> radius_;

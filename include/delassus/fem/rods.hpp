@@ -99,7 +99,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------
 
   bool moves(Index b) const { return state_.inverse_mass[b] > T(0); }
-  void hold(Index b, bool is_held) {
+  void set_fixed(Index b, bool is_held) {
     state_.inverse_mass[b] = is_held || this->is_fixed_[b] ? T(0) : T(1) / state_.mass[b];
   }
   void factor(SystemScale scale) {
@@ -158,7 +158,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
     for (const Index b : slots_.active())
       if (moves(b)) displace(b, Velocity(T(h) * v_[b]));
   }
-  void restore() { state_.take_poses_back(slots_.active()); }
+  void restore() { state_.restore_poses(slots_.active()); }
 
   /// The collider of a block is the segment after its node.
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0 && next_[b] >= 0; }
@@ -196,7 +196,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
 
   /// Kick and drift, as rigid bodies do. A rod with a velocity that is not finite stays where it is, whole.
   void advance_with(double h, T old_share) {
-    this->held_ = {};
+    this->quarantine_ = {};
     this->each_body([&](const auto& rod) {
       bool is_sound = true;
       for (const Index b : rod.blocks()) is_sound = is_sound && (!moves(b) || is_finite(v_next[b]));

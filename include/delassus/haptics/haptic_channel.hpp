@@ -144,7 +144,7 @@ class BasicHapticChannel<Solver, C>::Channel {
   struct Slot {
     Snapshot<Problem> snapshot;
     inner::ToolRows<Problem> tool;
-    LawBook<Laws, T> book{snapshot.problem.laws};
+    LawSet<Laws, T> book{snapshot.problem.laws};
     typename Timed::template Workspace<Rows> workspace;
   };
 

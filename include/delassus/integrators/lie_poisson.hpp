@@ -20,8 +20,8 @@ struct LiePoisson {
     times(p, h);
   }
   void advance(auto& set, double h) const {
-    if constexpr (requires { set.advance_by_turns(h); })
-      set.advance_by_turns(h);
+    if constexpr (requires { set.advance_by_rotation_splitting(h); })
+      set.advance_by_rotation_splitting(h);
     else
       set.advance(h);
   }

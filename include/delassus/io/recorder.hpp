@@ -44,11 +44,11 @@ class Recorder {
 
  private:
   void begin(const auto& loop) {
-    if constexpr (requires { loop.template part<role::Scheme>().tolerance; }) {
-      recording_.steps.tolerance = loop.template part<role::Scheme>().tolerance;
+    if constexpr (requires { loop.template policy<role::Scheme>().tolerance; }) {
+      recording_.steps.tolerance = loop.template policy<role::Scheme>().tolerance;
     } else if constexpr (requires { loop.island_reports(); }) {  // else there is no solver to ask
-      if constexpr (requires { loop.template part<role::Solver>().tolerance; })
-        recording_.steps.tolerance = loop.template part<role::Solver>().tolerance;
+      if constexpr (requires { loop.template policy<role::Solver>().tolerance; })
+        recording_.steps.tolerance = loop.template policy<role::Solver>().tolerance;
     }
     loop.world().each([&](const auto& set, auto s) {
       for (const Index b : alive(set)) {

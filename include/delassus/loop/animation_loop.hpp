@@ -4,7 +4,7 @@
 #include <delassus/fwd.hpp>
 #include <delassus/loop/defaults.hpp>
 #include <delassus/loop/edit.hpp>
-#include <delassus/loop/loop_parts.hpp>
+#include <delassus/loop/loop_policies.hpp>
 #include <delassus/step/plain_step.hpp>
 #include <delassus/step/step_data.hpp>
 
@@ -17,19 +17,19 @@ namespace delassus {
 /// `AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}, ...}`: policies in any order, at most one of
 /// each role, defaults where none is named. What is not named is not compiled. What it may be asked is with `StepData`,
 /// which listeners get too.
-template <class... Policies>
-class AnimationLoop : private StepData<typename inner::loop_parts<Policies...>::type> {
+template <class... Args>
+class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::type> {
  public:
-  using Data = StepData<typename inner::loop_parts<Policies...>::type>;
+  using Data = StepData<typename inner::loop_policies<Args...>::type>;
   using typename Data::Laws, typename Data::Scalar, typename Data::WorldType;
   using Data::has, Data::has_constraints, Data::has_problem, Data::moves_freely;
   using Data::channel, Data::contacts, Data::copy_problem, Data::each_constraint, Data::each_impulse, Data::each_joint,
-      Data::each_problem_part, Data::get, Data::island_reports, Data::part, Data::problem, Data::report, Data::step_size,
+      Data::each_problem_part, Data::get, Data::island_reports, Data::policy, Data::problem, Data::report, Data::step_size,
       Data::time, Data::world;
   static constexpr bool may_rest = Data::template has_state<role::Activity>;
-  static constexpr bool may_switch = requires { requires Data::Parts::Activity::switches_bodies; };
+  static constexpr bool may_switch = requires { requires Data::Policies::Activity::switches_bodies; };
 
-  explicit AnimationLoop(Policies... policies);
+  explicit AnimationLoop(Args... policies);
 
   /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0, a number of a policy was made
   /// invalid, or a body's material was never added; never for what happens inside.
@@ -117,7 +117,7 @@ class AnimationLoop : private StepData<typename inner::loop_parts<Policies...>::
     requires(may_switch)
   {
     inner::visit_body(world(), body,
-                      [&](auto& set, Index s) { activity_state().lull(world(), laws(), set, s, body.index); });
+                      [&](auto& set, Index s) { activity_state().put_to_sleep(world(), laws(), set, s, body.index); });
   }
   template <class Set>
   void switch_on(Handle<Set> body)
@@ -131,7 +131,7 @@ class AnimationLoop : private StepData<typename inner::loop_parts<Policies...>::
   void memory(auto& archive);
 
  private:
-  static constexpr bool is_sound = inner::loop_parts<Policies...>::are_sound;
+  static constexpr bool is_sound = inner::loop_policies<Args...>::are_sound;
   using Data::laws;
   auto& activity_state() { return Data::template state<role::Activity>(); }
   const auto& activity_state() const { return Data::template state<role::Activity>(); }

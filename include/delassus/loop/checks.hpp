@@ -7,6 +7,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/integrators/integrator.hpp>
+#include <delassus/loop/held_policies.hpp>
 #include <delassus/loop/inner/step_checks.hpp>
 #include <delassus/loop/order_of_overrides.hpp>
 #include <delassus/loop/pick.hpp>
@@ -14,11 +15,10 @@
 #include <delassus/rows/writer.hpp>
 #include <delassus/schemes/plain_order.hpp>
 #include <delassus/solvers/island_problem.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 #include <delassus/step/channels.hpp>
-#include <delassus/loop/held_policies.hpp>
 #include <delassus/step/row_types.hpp>
 #include <delassus/step/stage.hpp>
 
@@ -103,25 +103,25 @@ consteval bool plays_its_role() {
   }
 }
 
-template <class Role, class... Policies>
+template <class Role, class... Args>
 consteval bool at_most_one() {
-  constexpr int count = count_of<Role, Policies...>;
+  constexpr int count = count_of<Role, Args...>;
   static_assert(count <= 1,
                 "delassus: an AnimationLoop takes at most one policy of each role (listeners aside); take one out");
   return count <= 1;
 }
 
-template <class... Policies>
+template <class... Args>
 consteval bool one_of_each() {
-  return at_most_one<role::Integrator, Policies...>() && at_most_one<role::Constraints, Policies...>() &&
-         at_most_one<role::Collision, Policies...>() && at_most_one<role::Compliance, Policies...>() &&
-         at_most_one<role::Solver, Policies...>() && at_most_one<role::Stabilisation, Policies...>() &&
-         at_most_one<role::Scheme, Policies...>() && at_most_one<role::Activity, Policies...>();
+  return at_most_one<role::Integrator, Args...>() && at_most_one<role::Constraints, Args...>() &&
+         at_most_one<role::Collision, Args...>() && at_most_one<role::Compliance, Args...>() &&
+         at_most_one<role::Solver, Args...>() && at_most_one<role::Stabilisation, Args...>() &&
+         at_most_one<role::Scheme, Args...>() && at_most_one<role::Activity, Args...>();
 }
 
-template <class... Policies>
+template <class... Args>
 consteval bool has_one_world() {
-  constexpr bool has = count_of<role::World, Policies...> == 1;
+  constexpr bool has = count_of<role::World, Args...> == 1;
   static_assert(has, "delassus: an AnimationLoop needs exactly one World{...}; name the body sets of the scene in it");
   return has;
 }
@@ -215,7 +215,7 @@ consteval bool compliance_is_sound() {
 
 template <class Solver, class Laws, class Rows, class Operator>
 consteval bool solver_is_sound() {
-  using Problem = IslandProblem<LawBook<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
+  using Problem = IslandProblem<LawSet<Laws, typename Rows::Scalar>, Rows, Operator, NoObserver>;
   constexpr bool solves = requires(const Solver& solver, Problem& problem,
                                    typename Solver::template Workspace<Rows>& workspace) {
     { solver.solve(problem, workspace) } -> std::same_as<SolveReport>;
@@ -227,19 +227,19 @@ consteval bool solver_is_sound() {
 }
 
 /// The parts that meet in the rows: only a loop with constraints has them.
-template <class Parts>
+template <class Policies>
 consteval bool constraints_are_sound() {
-  using World = typename Parts::World;
-  using Laws = typename Parts::Laws;
+  using World = typename Policies::World;
+  using Laws = typename Policies::Laws;
   if constexpr (Laws::pool_count == 0) return true;
   else if constexpr (!laws_are_sound<Laws>()) return false;
   else if constexpr (!laws_linearize<World, Laws>()) return false;
   else {
     using Rows = typename rows_of<World, Laws>::type;
-    if constexpr (!compliance_is_sound<typename Parts::Compliance, World, Rows>()) return false;
+    if constexpr (!compliance_is_sound<typename Policies::Compliance, World, Rows>()) return false;
     else
-      return solver_is_sound<typename Parts::Solver, Laws, Rows,
-                             typename Parts::Compliance::template Operator<Rows>>();
+      return solver_is_sound<typename Policies::Solver, Laws, Rows,
+                             typename Policies::Compliance::template Operator<Rows>>();
   }
 }
 
@@ -255,32 +255,32 @@ consteval bool scheme_runs() {
 }
 
 /// Every publisher is asked whether it can, and says what it lacks.
-template <class Parts, class... Policies>
+template <class Policies, class... Args>
 consteval bool publishers_are_sound() {
   const auto one = []<class P>(std::type_identity<P>) {
-    if constexpr (Publisher<P>) return P::template can_publish<typename problem_of<Parts>::type>();
+    if constexpr (Publisher<P>) return P::template can_publish<typename problem_of<Policies>::type>();
     else return true;
   };
-  return (one(std::type_identity<Policies>{}) && ...);
+  return (one(std::type_identity<Args>{}) && ...);
 }
 
-template <class Parts, class... Policies>
+template <class Policies, class... Args>
 consteval bool loop_is_sound() {
-  if constexpr (!(has_role<Policies>() && ...)) return false;
-  else if constexpr (!has_one_world<Policies...>()) return false;
-  else if constexpr (!one_of_each<Policies...>()) return false;
-  else if constexpr (!(plays_its_role<Policies>() && ...)) return false;
-  else if constexpr (!has_bodies<typename Parts::World>()) return false;
-  else if constexpr (!has_one_scalar<typename Parts::World>()) return false;
-  else if constexpr (!constraints_are_sound<Parts>()) return false;
-  else if constexpr (!whole_step_fits<Parts, Policies...>()) return false;
-  else if constexpr (!visits_fit<Parts, Policies...>()) return false;
-  else if constexpr (!mean_springs_fit<Parts>()) return false;
-  else if constexpr (!refinement_fits<Parts>()) return false;
-  else if constexpr (!restitution_acts<typename Parts::Laws>()) return false;
-  else if constexpr (!substeps_fit<typename Parts::Scheme, typename Parts::Activity>()) return false;
-  else if constexpr (!publishers_are_sound<Parts, Policies...>()) return false;
-  else return collision_fits<typename Parts::Laws, typename Parts::Collision>();
+  if constexpr (!(has_role<Args>() && ...)) return false;
+  else if constexpr (!has_one_world<Args...>()) return false;
+  else if constexpr (!one_of_each<Args...>()) return false;
+  else if constexpr (!(plays_its_role<Args>() && ...)) return false;
+  else if constexpr (!has_bodies<typename Policies::World>()) return false;
+  else if constexpr (!has_one_scalar<typename Policies::World>()) return false;
+  else if constexpr (!constraints_are_sound<Policies>()) return false;
+  else if constexpr (!whole_step_fits<Policies, Args...>()) return false;
+  else if constexpr (!visits_fit<Policies, Args...>()) return false;
+  else if constexpr (!mean_springs_fit<Policies>()) return false;
+  else if constexpr (!refinement_fits<Policies>()) return false;
+  else if constexpr (!restitution_acts<typename Policies::Laws>()) return false;
+  else if constexpr (!substeps_fit<typename Policies::Scheme, typename Policies::Activity>()) return false;
+  else if constexpr (!publishers_are_sound<Policies, Args...>()) return false;
+  else return collision_fits<typename Policies::Laws, typename Policies::Collision>();
 }
 
 }  // namespace inner

@@ -9,12 +9,12 @@
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
+#include <delassus/loop/held_policies.hpp>
 #include <delassus/loop/pick.hpp>
 #include <delassus/schemes/plain_order.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/stabilisation/baumgarte.hpp>
 #include <delassus/step/notify.hpp>
-#include <delassus/loop/held_policies.hpp>
 
 #include <tuple>
 #include <type_traits>
@@ -30,10 +30,10 @@ inline constexpr bool makes_problem = !requires { requires !Scheme::makes_proble
 }  // namespace inner
 
 /// The types of a loop by role: what is named, or the default.
-template <class... Policies>
-struct Parts {
+template <class... Args>
+struct Policies {
   template <class Role, class Default>
-  using the = typename inner::pick<Role, Default, Policies...>::type;
+  using the = typename inner::pick<Role, Default, Args...>::type;
 
   using World = the<role::World, delassus::World<RigidBodies>>;
   using Laws = the<role::Constraints, Constraints<>>;
@@ -46,19 +46,19 @@ struct Parts {
   using Activity = the<role::Activity, AllActive>;
 
   template <class Stage>
-  static constexpr bool hears_stage = (inner::hears_stage<Policies, Stage> || ...);
-  static constexpr bool hears_within = (inner::hears_within<Policies> || ...);
-  static constexpr bool observes_sweeps = (inner::observes_sweeps<Policies> || ...);
+  static constexpr bool hears_stage = (inner::hears_stage<Args, Stage> || ...);
+  static constexpr bool listens_inside_step = (inner::listens_inside_step<Args> || ...);
+  static constexpr bool observes_sweeps = (inner::observes_sweeps<Args> || ...);
 };
 
 namespace inner {
 
 /// The tuple of the defaults a loop really uses: nothing for a role that is named or not needed.
-template <class... Policies>
+template <class... Args>
 struct DefaultsFor {
-  using P = Parts<Policies...>;
+  using P = Policies<Args...>;
   template <class Role, class Default, bool is_needed = true>
-  using one = std::conditional_t<is_needed && count_of<Role, Policies...> == 0, std::tuple<Default>, std::tuple<>>;
+  using one = std::conditional_t<is_needed && count_of<Role, Args...> == 0, std::tuple<Default>, std::tuple<>>;
   static constexpr bool constrained = P::Laws::pool_count > 0;
   static constexpr bool has_W = constrained && makes_problem<typename P::Scheme>;
 
@@ -72,18 +72,18 @@ struct DefaultsFor {
       std::declval<one<role::Scheme, typename P::Scheme>>(), std::declval<one<role::Activity, typename P::Activity>>()));
 };
 
-/// The type that plays `Role` in a Parts.
+/// The type that plays `Role` in a Policies.
 template <class P, class Role>
-struct part_type;
-template <class P> struct part_type<P, role::World> { using type = typename P::World; };
-template <class P> struct part_type<P, role::Constraints> { using type = typename P::Laws; };
-template <class P> struct part_type<P, role::Integrator> { using type = typename P::Integrator; };
-template <class P> struct part_type<P, role::Collision> { using type = typename P::Collision; };
-template <class P> struct part_type<P, role::Compliance> { using type = typename P::Compliance; };
-template <class P> struct part_type<P, role::Solver> { using type = typename P::Solver; };
-template <class P> struct part_type<P, role::Stabilisation> { using type = typename P::Stabilisation; };
-template <class P> struct part_type<P, role::Scheme> { using type = typename P::Scheme; };
-template <class P> struct part_type<P, role::Activity> { using type = typename P::Activity; };
+struct policy_type;
+template <class P> struct policy_type<P, role::World> { using type = typename P::World; };
+template <class P> struct policy_type<P, role::Constraints> { using type = typename P::Laws; };
+template <class P> struct policy_type<P, role::Integrator> { using type = typename P::Integrator; };
+template <class P> struct policy_type<P, role::Collision> { using type = typename P::Collision; };
+template <class P> struct policy_type<P, role::Compliance> { using type = typename P::Compliance; };
+template <class P> struct policy_type<P, role::Solver> { using type = typename P::Solver; };
+template <class P> struct policy_type<P, role::Stabilisation> { using type = typename P::Stabilisation; };
+template <class P> struct policy_type<P, role::Scheme> { using type = typename P::Scheme; };
+template <class P> struct policy_type<P, role::Activity> { using type = typename P::Activity; };
 
 }  // namespace inner
 }  // namespace delassus

@@ -20,7 +20,7 @@ inline constexpr bool holds_type<P, std::tuple<Parts...>> = (std::is_same_v<P, P
 
 /// In place of a part that is not there: the sentence has been said.
 template <class P>
-P& no_part();
+P& no_policy();
 
 /// The arguments of a loop, and in `Defaults`, a tuple, what they leave out.
 template <class Defaults, class... Policies>
@@ -33,26 +33,26 @@ class HeldPolicies {
 
   /// The one of this role, whose type is `Part`.
   template <class Role, class Part, class Self>
-  static auto& part(Self& self) {
+  static auto& policy(Self& self) {
     if constexpr (count_of<Role, Policies...> > 0) {
       return std::get<Part>(self.given_);
     } else {
       constexpr bool is_default = holds_type<Part, Defaults>;
       static_assert(is_default,
-                    "delassus: this AnimationLoop has no part of this role: without constraints, and under JointByJoint, there is no "
+                    "delassus: this AnimationLoop has no policy of this role: without constraints, and under JointByJoint, there is no "
                     "solver and no compliance; do not ask for it, or take another scheme");
       if constexpr (is_default) return std::get<Part>(self.defaults_);
-      else return no_part<Part>();
+      else return no_policy<Part>();
     }
   }
   /// The one of this type among the arguments.
   template <class P, class Self>
   static auto& get(Self& self) {
     static_assert(has<P>,
-                  "delassus: this AnimationLoop has no part of this type; name it among the arguments, or ask for the part "
-                  "of a role, loop.part<role::Solver>(), which finds the defaults too");
+                  "delassus: this AnimationLoop has no policy of this type; name it among the arguments, or ask for the policy "
+                  "of a role, loop.policy<role::Solver>(), which finds the defaults too");
     if constexpr (has<P>) return std::get<P>(self.given_);
-    else return no_part<P>();
+    else return no_policy<P>();
   }
   /// f(policy) for every argument, in their order.
   template <class F>

@@ -3,9 +3,9 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/law.hpp>
+#include <delassus/loop/states.hpp>
 #include <delassus/step/plain_stages.hpp>
 #include <delassus/step/stages_without_constraints.hpp>
-#include <delassus/loop/states.hpp>
 
 #include <type_traits>
 #include <utility>

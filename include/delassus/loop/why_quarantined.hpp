@@ -1,7 +1,7 @@
 /// Why a step ended as `quarantined`: whom to look at first, in one sentence.
 #pragma once
 
-#include <delassus/bodies/inner/held.hpp>
+#include <delassus/bodies/inner/quarantine_record.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -28,15 +28,15 @@ std::string why_quarantined(const Loop& loop) {
   if (count == 0) return {};
   std::string loaded, pulled, first;
   loop.world().each([&](const auto& set, auto) {
-    if constexpr (requires { set.who_was_held(); }) {
-      const inner::Held& held = set.who_was_held();
-      if (held.count == 0) return;
-      if (loaded.empty() && held.loaded >= 0)
-        loaded = inner::full_name(set, held.loaded) + ": the force or torque it was given for this step is not finite";
+    if constexpr (requires { set.quarantine_record(); }) {
+      const inner::QuarantineRecord& record = set.quarantine_record();
+      if (record.count == 0) return;
+      if (loaded.empty() && record.loaded >= 0)
+        loaded = inner::full_name(set, record.loaded) + ": the force or torque it was given for this step is not finite";
       if (pulled.empty() && !is_finite(set.gravity))
-        pulled = inner::full_name(set, held.first) + ": the gravity of its set is not finite";
+        pulled = inner::full_name(set, record.first) + ": the gravity of its set is not finite";
       if (first.empty())
-        first = inner::full_name(set, held.first) + ": the step found no finite velocity for it, though loads and gravity are finite";
+        first = inner::full_name(set, record.first) + ": the step found no finite velocity for it, though loads and gravity are finite";
     }
   });
   const std::string& cause = !loaded.empty() ? loaded : !pulled.empty() ? pulled : first;

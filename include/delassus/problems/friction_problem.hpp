@@ -26,8 +26,8 @@ struct GivenContact : Coulomb {
     Coulomb::project(item.parameters, c, memory);
   }
   template <class T>
-  Vec<3, T> meet(const Item& item, const Vec<3, T>& b, Memory<T>& memory) const {
-    return Coulomb::meet(item.parameters, b, memory);
+  Vec<3, T> solve_local(const Item& item, const Vec<3, T>& b, Memory<T>& memory) const {
+    return Coulomb::solve_local(item.parameters, b, memory);
   }
   template <class T>
   Vec<3, T> natural_map(const Item& item, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {

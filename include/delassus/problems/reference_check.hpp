@@ -56,7 +56,7 @@ namespace inner {
 /// f(p, i, local problem, |F|) for every constraint of every island.
 template <class Laws, class Rows, class Operator, class F>
 void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
-  LawBook<Laws, typename Rows::Scalar> book(problem.laws);
+  LawSet<Laws, typename Rows::Scalar> book(problem.laws);
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;

@@ -36,7 +36,7 @@ concept BodySet = requires(S set, const S fixed, const Anchor anchor, Index b, S
 
 /// A set whose M⁻¹ is known by its parts: 1/m, and R I⁻¹ Rᵀ about `centre(b)` (m) of what turns.
 template <class S>
-concept AnswersByParts = BodySet<S> && requires(const S set) {
+concept HasInverseInertia = BodySet<S> && requires(const S set) {
   { set.inverse_mass(0) } -> std::same_as<typename S::Scalar>;
   requires S::width == 3 || requires {
     set.inverse_inertia(0);
@@ -45,10 +45,10 @@ concept AnswersByParts = BodySet<S> && requires(const S set) {
 };
 
 /// While this stays as it is, so does who is there of a set: anchors that were current are.
-struct Census {
+struct SetVersion {
   std::uint32_t owner = 0, removals = 0;
   Index blocks = -1;
-  bool operator==(const Census&) const = default;
+  bool operator==(const SetVersion&) const = default;
 };
 
 /// A set whose blocks have orientation: joints may ask for their frames and rates of turn.
@@ -58,8 +58,8 @@ concept FramedSet = BodySet<S> && requires(const S set, const Anchor anchor, Vec
   { set.about(anchor, 0, axis) } -> std::same_as<Vec<S::width, typename S::Scalar>>;
 };
 
-/// In place of a share of velocities: bodies turn freely by exact turns about axes of their own (`advance_by_turns`).
-struct ByTurns {};
+/// In place of a share of velocities: bodies turn freely by exact turns about axes of their own (`advance_by_rotation_splitting`).
+struct RotationSplitting {};
 
 namespace inner {
 

@@ -33,7 +33,7 @@ struct SetBlocks {
 
 /// All rows of one pool: R per item. Units: phi m or rad, bias, d m/s or rad/s, lambda N·s or N·m·s.
 ///
-/// A row with stiffness or damping > 0 is soft. `compliance` (1/kg) and `softness` (in units of the row's own
+/// A row with stiffness or damping > 0 is soft. `compliance` (1/kg) and `relative_compliance` (in units of the row's own
 /// W_kk) join W's diagonal.
 template <int R, class T, int... widths>
 struct PoolRows {
@@ -41,7 +41,7 @@ struct PoolRows {
   using Scalar = T;
 
   std::tuple<SetBlocks<R, widths, T>...> sets;
-  Array<Vec<R, T>> phi, stiffness, damping, bias, compliance, softness, d, lambda;
+  Array<Vec<R, T>> phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda;
 
   Index items() const { return Index(phi.size()); }
 
@@ -70,7 +70,7 @@ struct PoolRows {
   /// The arrays with one entry an item.
   static auto fields(auto& self) {
     return std::array{&self.phi,        &self.stiffness, &self.damping, &self.bias,
-                      &self.compliance, &self.softness,  &self.d,       &self.lambda};
+                      &self.compliance, &self.relative_compliance,  &self.d,       &self.lambda};
   }
 };
 

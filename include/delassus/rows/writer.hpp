@@ -60,7 +60,7 @@ class RowEnd {
   void along_axes(double sign) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
       using Set = std::remove_cvref_t<decltype(set)>;
-      if constexpr (AnswersByParts<Set> && Set::width == 6) {
+      if constexpr (HasInverseInertia<Set> && Set::width == 6) {
         if (set.anchor_blocks(anchor_) == 0) return;
         auto& H = std::get<s>(pool_.sets).H[first_];
         const Vec3 r = sign * (point_ - set.centre(anchor_.block));

@@ -18,7 +18,7 @@ struct CollisionsFirst {
     stage::detect(step);
     if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts) {
       const SystemScale A = step.integrator().scale(step.h);
-      if (A.stiffness == 0 && A.damping == 0) push_apart(step.world(), step.laws(), step.contact_book, step.h);
+      if (A.stiffness == 0 && A.damping == 0) push_apart(step.world(), step.laws(), step.contact_cache, step.h);
     }
     stage::move(step);
   }

@@ -7,10 +7,10 @@
 #include <delassus/solvers/inner/anderson.hpp>
 #include <delassus/solvers/inner/compromise.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
-#include <delassus/solvers/inner/leap.hpp>
+#include <delassus/solvers/inner/convergence_monitor.hpp>
+#include <delassus/solvers/inner/extrapolate_to_cone_boundary.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/newton_stage.hpp>
-#include <delassus/solvers/inner/pursuit.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -21,7 +21,7 @@ namespace delassus {
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
 ///
 ///   momentum    Nesterov over exact sweeps: ends nearly every solve;
-///   leap        where sweeps only drift along impulses that move nothing: to the end of that way, where a
+///   extrapolation where sweeps only drift along impulses that move nothing: to the end of that way, where a
 ///               contact slips that had stuck, and momentum again;
 ///   anderson    forty plain sweeps, then mixes the last five: breaks limit cycles, and ends the few slow
 ///               directions that a warm start leaves;
@@ -83,10 +83,10 @@ struct BasicAcceleratedGaussSeidel {
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell: of
   /// a rough start they tell nothing, and of six orders of OneObject-i100000-499's contacts mixing at once
   /// ended none, after forty sweeps all.
-  template <class Pursuit, class Sweep>
-  static bool settle(Pursuit& pursuit, const Sweep& sweep) {
+  template <class ConvergenceMonitor, class Sweep>
+  static bool settle(ConvergenceMonitor& monitor, const Sweep& sweep) {
     for (int k = 0; k < 40; ++k)
-      if (!pursuit.goes_on(sweep())) return false;
+      if (!monitor.goes_on(sweep())) return false;
     return true;
   }
 };
@@ -94,50 +94,50 @@ struct BasicAcceleratedGaussSeidel {
 template <class Criterion, class Newton>
 template <class Problem, class Space>
 SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& problem, Space& work) const {
-  inner::Pursuit<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> pursuit(
+  inner::ConvergenceMonitor<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> monitor(
       *this, problem, work.best);
-  if (!pursuit.begin()) return pursuit.finish();
+  if (!monitor.begin()) return monitor.finish();
   const auto exact = [&](auto&... curvature) {
     return problem.template sweep<!Criterion::needs_measure>(relaxation, curvature...);
   };
   const auto one_projection = [&](auto& x, double& curvature) {
     return problem.project_once(x, curvature);
   };
-  auto newton = Newton::template stage<Criterion>(*this, problem, pursuit, work.newton);
+  auto newton = Newton::template stage<Criterion>(*this, problem, monitor, work.newton);
   const int shortest = first_patience(problem.row_count());
   for (int patience = shortest;; patience *= 2) {
     const auto open = [&](const char* name, int factor) {
-      if (pursuit.is_over()) return false;
-      if (name[0] != 'm' || patience > shortest) pursuit.back_to_best();
-      pursuit.open(name, factor * patience);
+      if (monitor.is_over()) return false;
+      if (name[0] != 'm' || patience > shortest) monitor.back_to_best();
+      monitor.open(name, factor * patience);
       return true;
     };
     const auto momentum = [&](const char* name, int factor, auto& sweep) {
       if (!open(name, factor)) return false;
       for (;;) {
         const bool circles =
-            inner::momentum(problem, pursuit, work.x, sweep, [&] { return newton.opens(); });
-        if (pursuit.is_over() || !newton.opens()) return circles;
+            inner::momentum(problem, monitor, work.x, sweep, [&] { return newton.opens(); });
+        if (monitor.is_over() || !newton.opens()) return circles;
         newton.run();
-        if (pursuit.is_over()) return false;
-        pursuit.name(name);
+        if (monitor.is_over()) return false;
+        monitor.name(name);
       }
     };
     bool is_in_circles = false;
     for (int leaps = 0;; ++leaps) {
       is_in_circles = momentum("momentum", 1, exact);
-      if (pursuit.is_over()) return pursuit.finish();
-      const inner::Drift way = inner::drift(problem, work.x);
-      if (leaps == 3 || !inner::leap(problem, pursuit, work.x, way, patience)) break;
+      if (monitor.is_over()) return monitor.finish();
+      const inner::SlowDirection way = inner::find_slow_direction(problem, work.x);
+      if (leaps == 3 || !inner::extrapolate_to_cone_boundary(problem, monitor, work.x, way, patience)) break;
     }
-    if (inner::contradicts(problem, pursuit, work.x))
-      return inner::compromise(problem, pursuit.finish(), work.best, work.x);
-    if (open("anderson", 1) && settle(pursuit, exact))
-      inner::anderson(problem, pursuit, work.history, exact);
+    if (inner::contradicts(problem, monitor, work.x))
+      return inner::compromise(problem, monitor.finish(), work.best, work.x);
+    if (open("anderson", 1) && settle(monitor, exact))
+      inner::anderson(problem, monitor, work.history, exact);
     if (!is_in_circles) momentum("momentum", 3, exact);
     momentum("projection", 4, one_projection);
     momentum("patient", 10, exact);
-    if (pursuit.is_over()) return pursuit.finish();
+    if (monitor.is_over()) return monitor.finish();
   }
 }
 

@@ -73,7 +73,7 @@ struct BasicDirectGaussSeidel {
     if (!gather(problem, joints))
       return inner::sweeps_of<Criterion>(*this, max_iterations, min_iterations)
           .solve(problem, work.contacts.newton.sweeps);
-    problem.tell(0, report.measure);
+    problem.notify(0, report.measure);
     report.ended_by = "factorization";
     bool is_contradiction = false;
     for (const double epsilon : {fine, coarse}) {
@@ -102,7 +102,7 @@ struct BasicDirectGaussSeidel {
       if (swept == Status::infeasible) return report;
       if (inner::is_done<Criterion>(*this, report.measure, problem.row_count()) || problem.is_out_of_time()) break;
     }
-    problem.tell(report.sweeps + report.factorizations, report.measure);
+    problem.notify(report.sweeps + report.factorizations, report.measure);
     report.status = is_contradiction
                         ? Status::infeasible
                         : inner::verdict<Criterion>(*this, report.measure, problem.row_count());

@@ -39,7 +39,7 @@ struct BasicGaussSeidel {
     const int rows = problem.row_count();
     SolveReport report;
     report.measure = problem.measure();
-    problem.tell(0, report.measure);
+    problem.notify(0, report.measure);
     if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
     bool is_over = max_iterations == 0;
     while (!is_over) {
@@ -52,7 +52,7 @@ struct BasicGaussSeidel {
       }
       if constexpr (Criterion::needs_measure || Problem::Observes::every_sweep) report.measure = problem.measure();
       else report.measure.last_change = problem.last_change(), report.measure.worst_change = problem.worst_change();
-      problem.tell(report.sweeps, report.measure);
+      problem.notify(report.sweeps, report.measure);
     }
     const bool is_within = inner::is_within<Criterion>(*this, report.measure, rows);
     if constexpr (!Criterion::needs_measure) report.measure = problem.measure();

@@ -143,12 +143,12 @@ class IslandProblem {
   static constexpr bool is_cut_off(int) { return false; }
   /// Before what leaves no measured best.
   static constexpr void must_complete() {}
-  /// Whether `tell` reads λ.
+  /// Whether `notify` reads λ.
   bool tells_forces() const {
     if constexpr (requires { observer_.wants_forces(); }) return observer_.wants_forces();
     return false;
   }
-  void tell(int sweeps, const Measure& m) {
+  void notify(int sweeps, const Measure& m) {
     observer_(sweeps, m);
     if (tells_forces())
       if constexpr (requires { observer_.wants_forces(); })
@@ -256,7 +256,7 @@ class IslandProblem {
   [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
     constexpr int R = Rows::template rows_of<p>;
     if constexpr (requires { requires Book::template meets<p>(); W_.template free_velocity<p>(rows_, i); }) {
-      return book_.template meet<p>(i, W_.template free_velocity<p>(rows_, i));
+      return book_.template solve_local<p>(i, W_.template free_velocity<p>(rows_, i));
     } else {
       Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
       book_.template project<p>(i, c);

@@ -62,7 +62,7 @@ struct BasicPathNewton {
     Walk<Problem, Workspace> now{problem, work.laws, work.best, max_iterations};
     now.report.measure = now.best = problem.measure();
     now.report.ended_by = "path";
-    problem.tell(0, now.best);
+    problem.notify(0, now.best);
     if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
     problem.save(work.best);
     if (!meets(now.best, problem) && work.laws.gather(problem)) {
@@ -221,7 +221,7 @@ struct BasicPathNewton {
   template <class W>
   bool is_done(W& now) const {
     const Measure m = now.problem.measure();
-    now.problem.tell(now.report.factorizations, m);
+    now.problem.notify(now.report.factorizations, m);
     if (Criterion::sum(m) < Criterion::sum(now.best)) {
       now.best = m;
       now.problem.save(now.kept);

@@ -3,7 +3,7 @@
 
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/island_problem.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <vector>
@@ -24,7 +24,7 @@ struct Problem {
 /// What `solve` keeps of problems of one type for the next of them.
 template <class Problem, class Solver>
 struct SolverWorkspace {
-  LawBook<decltype(Problem::laws), typename Problem::Rows::Scalar> book;
+  LawSet<decltype(Problem::laws), typename Problem::Rows::Scalar> book;
   typename Solver::template Workspace<typename Problem::Rows> solver;
 };
 

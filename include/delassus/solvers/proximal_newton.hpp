@@ -59,14 +59,14 @@ struct BasicProximalNewton {
     if (!work.body.gather(problem)) return sweep(problem, work, max_sweeps, min_iterations);
     Point<Problem, Workspace> now(*this, problem, work.body);
     const Measure start = now.begin();
-    problem.tell(0, start);
+    problem.notify(0, start);
     if (!std::isfinite(start.residual)) return {.status = Status::quarantined, .measure = start};
     if (min_iterations == 0 && now.is_done(start)) return finish(now);
     for (int patience = 20; now.has_time();) {
       if (now.run()) {
         if (now.is_met()) return finish(now);
       } else {
-        now.give_best();
+        now.restore_best();
         patience = std::min(2 * patience, max_sweeps - now.sweeps);
         if (patience <= 0) break;
         now.sweeps += sweep(problem, work, patience, 1).sweeps;
@@ -85,7 +85,7 @@ struct BasicProximalNewton {
   template <class P, class Workspace>
   SolveReport give_up(P& now, Workspace& work) const {
     auto& problem = now.problem();
-    now.give_best();
+    now.restore_best();
     const int left = max_sweeps - now.sweeps;
     if (!now.is_late() && left > 0) {
       const SolveReport swept = sweep(problem, work, left, 1);

@@ -72,7 +72,7 @@ struct WithDeadline {
     if (timed.has_attempted()) attempts.note(timed.was_of_use() || !is_late);
     if (!is_late) return report;
     report.status = Status::deadline;
-    if (is_half_done || timed.least().residual < report.measure.residual) report.measure = timed.give_best();
+    if (is_half_done || timed.least().residual < report.measure.residual) report.measure = timed.restore_best();
     return report;
   }
 };

@@ -37,7 +37,7 @@ struct SoftContact {
   double penetration(double phi, double h) const {
     return std::max(phi * omega() / (2 * damping_ratio + h * omega()), -max_speed);
   }
-  double softness(double h) const { return 1 / (h * omega() * (2 * damping_ratio + h * omega())); }
+  double relative_compliance(double h) const { return 1 / (h * omega() * (2 * damping_ratio + h * omega())); }
 };
 static_assert(Stabilisation<SoftContact>);
 

@@ -38,8 +38,8 @@ struct WithCompliance {
   }
   double equality(double phi, double h) const { return stabilisation.equality(phi, h); }
   double penetration(double phi, double h) const { return stabilisation.penetration(phi, h); }
-  double softness(double h) const requires requires { stabilisation.softness(h); }
-  { return stabilisation.softness(h); }
+  double relative_compliance(double h) const requires requires { stabilisation.relative_compliance(h); }
+  { return stabilisation.relative_compliance(h); }
   double push(double phi, double h) const requires requires { stabilisation.push(phi, h); }
   { return stabilisation.push(phi, h); }
   double close(double phi, double h) const requires requires { stabilisation.close(phi, h); }

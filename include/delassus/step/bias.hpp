@@ -35,7 +35,7 @@ constexpr bool has_slip(const std::array<RowKind, rows>& kinds) {
 /// slip without friction. It is of order h, as the turn of the slip is. Slips that may end within the step keep the
 /// direction of u⁺, which alone can be held at rest.
 template <class T>
-Vec<2, T> turned_slip(const Vec<2, T>& u, const Vec<2, T>& free, double theta) {
+Vec<2, T> rotated_slip(const Vec<2, T>& u, const Vec<2, T>& free, double theta) {
   const T size = free.squaredNorm();
   if (!(u.squaredNorm() > (free - u).squaredNorm()) || !(size > 0)) return Vec<2, T>::Zero();
   return T(1 - theta) * (u - u.dot(free) / size * free);
@@ -78,8 +78,8 @@ void drive(Pool& pool, Index i, double speed, double h) {
 
 }  // namespace inner
 
-/// bias, compliance, softness, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
-/// as do springs that ask for it and the direction of friction (`inner::turned_slip`), all other rows for v_next.
+/// bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
+/// as do springs that ask for it and the direction of friction (`inner::rotated_slip`), all other rows for v_next.
 template <class World, class Laws, class Rows, class S>
 void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h, double theta) {
   using T = typename Rows::Scalar;
@@ -96,7 +96,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
       if constexpr (inner::has_slip(kinds))
         if (theta != 1)
           pool.d[i].template segment<2>(1) +=
-              inner::turned_slip<T>(start.template segment<2>(1), free.template segment<2>(1), theta);
+              inner::rotated_slip<T>(start.template segment<2>(1), free.template segment<2>(1), theta);
       for (int k = 0; k < Law::rows; ++k) {
         if (kinds[k] == RowKind::friction) continue;
         if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) {
@@ -117,7 +117,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
           if constexpr (requires { stabilisation.contact_compliance(h); })
             pool.compliance[i][k] = T(stabilisation.contact_compliance(h));
           // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
-          if constexpr (requires { stabilisation.softness(h); }) pool.softness[i][k] = T(stabilisation.softness(h));
+          if constexpr (requires { stabilisation.relative_compliance(h); }) pool.relative_compliance[i][k] = T(stabilisation.relative_compliance(h));
         }
       }
       if constexpr (requires { constraints.law.speed(constraints.item(i)); })

@@ -19,14 +19,14 @@ concept Publisher = Plays<P, role::Listener> && requires { typename P::template 
 namespace inner {
 
 /// The constraint problem of a loop; void where there are no constraints.
-template <class Parts>
+template <class Policies>
 struct problem_of {
-  using Rows = typename rows_of<typename Parts::World, typename Parts::Laws>::type;
-  using type = Problem<typename Parts::Laws, Rows, typename Parts::Compliance::template Operator<Rows>>;
+  using Rows = typename rows_of<typename Policies::World, typename Policies::Laws>::type;
+  using type = Problem<typename Policies::Laws, Rows, typename Policies::Compliance::template Operator<Rows>>;
 };
-template <class Parts>
-  requires(Parts::Laws::pool_count == 0)
-struct problem_of<Parts> {
+template <class Policies>
+  requires(Policies::Laws::pool_count == 0)
+struct problem_of<Policies> {
   using type = void;
 };
 
@@ -34,8 +34,8 @@ struct problem_of<Parts> {
 template <class Problem, class... Publishers>
 class Channels {
  public:
-  template <class Policies>
-  explicit Channels(const Policies& policies)
+  template <class Args>
+  explicit Channels(const Args& policies)
       : channels_{std::make_unique<typename Publishers::template Channel<Problem>>(std::get<Publishers>(policies))...} {}
 
   template <class P>
@@ -53,22 +53,22 @@ class Channels<Problem> {
 };
 
 /// The channels of the publishers among `Policies`.
-template <class Problem, class... Policies>
+template <class Problem, class... Args>
 struct channels_of {
   template <class... P>
   static Channels<Problem, P...> gather(const std::tuple<std::type_identity<P>...>*);
   template <class P>
   using one = std::conditional_t<Publisher<P>, std::tuple<std::type_identity<P>>, std::tuple<>>;
-  using type = decltype(gather(static_cast<decltype(std::tuple_cat(one<Policies>{}...))*>(nullptr)));
+  using type = decltype(gather(static_cast<decltype(std::tuple_cat(one<Args>{}...))*>(nullptr)));
 };
 
 /// The same for a loop; one that is not sound has none.
-template <bool is_sound, class Parts, class... Policies>
+template <bool is_sound, class Policies, class... Args>
 struct channels_of_loop {
   using type = Channels<void>;
 };
-template <class Parts, class... Policies>
-struct channels_of_loop<true, Parts, Policies...> : channels_of<typename problem_of<Parts>::type, Policies...> {};
+template <class Policies, class... Args>
+struct channels_of_loop<true, Policies, Args...> : channels_of<typename problem_of<Policies>::type, Args...> {};
 
 }  // namespace inner
 }  // namespace delassus

@@ -33,13 +33,13 @@ void drop_rounding(V& v_next, const V& v_free) {
 /// number, are all made so: `advance` leaves such bodies where they were, and no other island notices.
 template <class World, class Rows, class Operator, class Scratch, int pools>
 void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, const Islands<pools>& islands,
-             std::span<const SolveReport> reports, Array<char>& is_sick) {
-  is_sick.assign(islands.count(), 0);
+             std::span<const SolveReport> reports, Array<char>& is_nonfinite) {
+  is_nonfinite.assign(islands.count(), 0);
   Index first = 0;
   bool any = false;
-  for (std::size_t k = 0; k < std::min(reports.size(), is_sick.size()); ++k)
+  for (std::size_t k = 0; k < std::min(reports.size(), is_nonfinite.size()); ++k)
     if (reports[k].status == Status::quarantined) {
-      is_sick[k] = 1;
+      is_nonfinite[k] = 1;
       any = true;
     }
   world.each([&](auto& set, auto s) {
@@ -52,7 +52,7 @@ void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, cons
         inner::drop_rounding(set.v_next[b], set.v_free[b]);
         continue;
       }
-      is_sick[island] = 1;
+      is_nonfinite[island] = 1;
       any = true;
     }
     first += set.blocks();
@@ -63,7 +63,7 @@ void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, cons
     using T = typename std::remove_reference_t<decltype(set)>::Scalar;
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);
-      if (island >= 0 && is_sick[island]) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
+      if (island >= 0 && is_nonfinite[island]) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
     }
     first += set.blocks();
   });

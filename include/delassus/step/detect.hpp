@@ -6,7 +6,7 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/expect.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void check_materials(const World& world, const Materials& materials) {
 
 /// Gives each record to the first contact law that takes its materials; returns how many nobody took.
 template <class Laws>
-Index route_contacts(Laws& laws, const ContactBook& book, const Materials& materials) {
+Index route_contacts(Laws& laws, const ContactCache& book, const Materials& materials) {
   each_contact_pool(laws, [](auto, auto& pool) { pool.items.clear(); });
   Index unclaimed = 0;
   for (Index r = 0; r < Index(book.results.size()); ++r) {
@@ -52,7 +52,7 @@ Index route_contacts(Laws& laws, const ContactBook& book, const Materials& mater
 
 /// The contacts may have moved or been copied with their loop.
 template <class Laws>
-void attach_contacts(Laws& laws, const ContactBook& book) {
+void attach_contacts(Laws& laws, const ContactCache& book) {
   each_contact_pool(laws, [&](auto, auto& pool) {
     for (auto& item : pool.items) item.record = &book.results[item.result].record;
   });

@@ -18,18 +18,18 @@ void drop_stale(const World& world, Laws& laws) {
     for (Index i = 0; i < pool.count(); ++i) {
       bool is_stale = false;
       each_end(pool.item(i), [&](const Anchor& end) { is_stale = is_stale || !world.is_current(end); });
-      if (is_stale) pool.slots.give_back(pool.slots.active()[i--]);
+      if (is_stale) pool.slots.release(pool.slots.active()[i--]);
     }
   });
 }
 
 /// The same, where bodies may have gone since the last call: `seen` is what the sets were then.
 template <class World, class Laws>
-void drop_stale(const World& world, Laws& laws, std::array<Census, std::size_t(World::set_count)>& seen) {
+void drop_stale(const World& world, Laws& laws, std::array<SetVersion, std::size_t(World::set_count)>& seen) {
   bool may_be_stale = false;
   world.each([&](const auto& set, auto s) {
-    if constexpr (requires { set.census(); }) {
-      const Census now = set.census();
+    if constexpr (requires { set.version(); }) {
+      const SetVersion now = set.version();
       may_be_stale = may_be_stale || now != seen[s];
       seen[s] = now;
     } else {
@@ -59,7 +59,7 @@ void note_broken(auto& laws, double h) {
 void drop_broken(auto& laws) {
   each_breakable_pool(laws, [&](auto& pool) {
     for (const auto& joint : pool.broken)
-      if (pool.slots.is_current(joint.index, joint.generation)) pool.slots.give_back(joint.index);
+      if (pool.slots.is_current(joint.index, joint.generation)) pool.slots.release(joint.index);
     pool.broken.clear();
   });
 }

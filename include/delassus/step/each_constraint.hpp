@@ -14,7 +14,7 @@ template <class Step, class Laws, class F>
 void each_constraint(const Step& step, const Laws& laws, double h, F&& f) {
   using Rows = typename Step::Rows;
   using T = typename Rows::Scalar;
-  auto book = step.book;
+  auto book = step.law_set;
   book.attach(laws);  // the loop may be a copy
   for_each_index<Rows::pool_count>([&](auto p) {
     const auto& pool = step.rows.template pool<p>();

@@ -23,10 +23,10 @@ struct OneBlock {
   }
   void advance(double h) { blocks.advance(b, v_next, h, 0); }
   void advance_midpoint(double h) { blocks.advance(b, v_next, h, 0.5); }
-  void advance_by_turns(double h)
-    requires requires { blocks.advance(b, v_next, h, ByTurns{}); }
+  void advance_by_rotation_splitting(double h)
+    requires requires { blocks.advance(b, v_next, h, RotationSplitting{}); }
   {
-    blocks.advance(b, v_next, h, ByTurns{});
+    blocks.advance(b, v_next, h, RotationSplitting{});
   }
 };
 
@@ -96,7 +96,7 @@ void move_freely(Step& step) {
       set.v_next = set.v_free;
       step.integrator().advance(set, step.h);
     }
-    step.summary.quarantined += set.held();
+    step.summary.quarantined += set.quarantined();
   });
   step.end_clock();
 }

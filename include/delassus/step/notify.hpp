@@ -11,10 +11,10 @@ namespace delassus::inner {
 
 /// A listener that hears a stage between Begin and Step.
 template <class P>
-inline constexpr bool hears_within = false;
+inline constexpr bool listens_inside_step = false;
 template <class P>
   requires requires { typename P::listens; }
-inline constexpr bool hears_within<P> = P::listens::within;
+inline constexpr bool listens_inside_step<P> = P::listens::inside_step;
 
 /// A listener that hears this stage.
 template <class P, class Stage>
@@ -40,7 +40,7 @@ consteval bool hears() {
 template <class Stage>
 void notify(auto& step) {
   using Step = std::remove_reference_t<decltype(step)>;
-  if constexpr (Step::Parts::template hears_stage<Stage>)
+  if constexpr (Step::Policies::template hears_stage<Stage>)
     step.policies.each([&](auto& policy) {
       using P = std::remove_reference_t<decltype(policy)>;
       if constexpr (hears_stage<P, Stage>)

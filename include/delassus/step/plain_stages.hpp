@@ -32,36 +32,36 @@ struct PlainStages {
     step.begin_clock(h);
     // Before all else: Detect and Linearize ask how fast kinematic bodies go.
     step.world().each([&](auto& set, auto) { set.begin_step(h); });
-    step.book.attach(step.laws());
-    attach_contacts(step.laws(), step.contact_book);
+    step.law_set.attach(step.laws());
+    attach_contacts(step.laws(), step.contact_cache);
     inner::drop_broken(step.laws());
-    inner::drop_stale(std::as_const(step).world(), step.laws(), step.census);
+    inner::drop_stale(std::as_const(step).world(), step.laws(), step.versions);
   }
 
   static void detect(auto& step) {
     using Step = std::remove_reference_t<decltype(step)>;
     if constexpr (Step::Laws::has_contacts) {
-      step.contact_book.gather(std::as_const(step).world());
-      if constexpr (requires { Step::Parts::Collision::asks_for_joints; })
+      step.contact_cache.gather(std::as_const(step).world());
+      if constexpr (requires { Step::Policies::Collision::asks_for_joints; })
         step.collision().refresh(std::as_const(step).world(), [&](const auto& f) { step.each_joint(f); });
       inner::show_world(step.collision(), std::as_const(step).world());
       const CollisionReport found = Step::Stages::find_contacts(step);
-      step.contact_book.record();
-      inner::place_ends(step.collision(), step.contact_book.results);
-      const Index unclaimed = route_contacts(step.laws(), step.contact_book, step.material_pairs);
-      report_contacts(found, step.contact_book.points, unclaimed, step.summary);
+      step.contact_cache.record();
+      inner::place_ends(step.collision(), step.contact_cache.results);
+      const Index unclaimed = route_contacts(step.laws(), step.contact_cache, step.material_pairs);
+      report_contacts(found, step.contact_cache.points, unclaimed, step.summary);
     }
   }
   /// Contact points of the colliders that were gathered.
   static CollisionReport find_contacts(auto& step) {
-    auto& book = step.contact_book;
+    auto& book = step.contact_cache;
     return step.collision().detect(std::span<const Collider>(book.colliders), step.h, book.points);
   }
 
   static void linearize(auto& step) {
     follow(std::as_const(step).world(), step.laws());
     delassus::linearize(std::as_const(step).world(), step.laws(), step.rows);
-    warm_start(step.laws(), step.rows, step.contact_book, step.h, step.last_h);
+    warm_start(step.laws(), step.rows, step.contact_cache, step.h, step.last_h);
     step.summary.rows = step.rows.row_count();
     step.summary.max_joint_violation = std::max(step.summary.max_joint_violation, worst_equality(step.laws(), step.rows));
   }
@@ -84,7 +84,7 @@ struct PlainStages {
 
   static void build(auto& step) {
     step.W.build(std::as_const(step).world(), step.rows);
-    step.book.prepare(step.W, step.rows, step.h);
+    step.law_set.prepare(step.W, step.rows, step.h);
   }
 
   static void solve(auto& step) {
@@ -105,25 +105,25 @@ struct PlainStages {
     }
   }
   static void solve_island(auto& step, Index island, auto& observer) {
-    step.reports[island] = delassus::solve_island(step.book, step.rows, step.W, step.islands, island, step.solver(),
+    step.reports[island] = delassus::solve_island(step.law_set, step.rows, step.W, step.islands, island, step.solver(),
                                                   step.solver_workspace, step.h, observer);
   }
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {
-    delassus::keep_impulses(step.laws(), step.rows, step.contact_book);
+    delassus::keep_impulses(step.laws(), step.rows, step.contact_cache);
     inner::note_broken(step.laws(), step.h);
-    forget_lost_islands(step.laws(), step.rows, step.W, step.contact_book, step.islands, step.reports);
-    step.contact_book.remember();
+    forget_lost_islands(step.laws(), step.rows, step.W, step.contact_cache, step.islands, step.reports);
+    step.contact_cache.remember();
   }
 
   static void correct(auto& step) {
-    delassus::correct(step.world(), step.rows, step.W, step.scratch, step.islands, step.reports, step.is_sick);
+    delassus::correct(step.world(), step.rows, step.W, step.scratch, step.islands, step.reports, step.is_nonfinite);
   }
 
   static void advance(auto& step) {
     step.world().each([&](auto& set, auto) {
       step.integrator().advance(set, step.h);
-      step.summary.quarantined += set.held();
+      step.summary.quarantined += set.quarantined();
     });
     step.end_clock();
   }

@@ -43,7 +43,7 @@ void move(auto& step) {
   if constexpr (Step::moves_freely) {
     move_freely(step);
   } else {
-    if constexpr (MovesAtOnce<typename Step::Parts::Integrator>) {
+    if constexpr (MovesAtOnce<typename Step::Policies::Integrator>) {
       step.integrator().move(step);
     } else {
       linearize(step);

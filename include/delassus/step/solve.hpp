@@ -25,7 +25,7 @@ inline void summarise(std::span<const SolveReport> islands, StepReport& step) {
     step.status = worse(step.status, r.status);
     step.sweeps = std::max(step.sweeps, r.sweeps);
     step.residual = std::max(step.residual, r.measure.residual);
-    step.siconos_error = std::max(step.siconos_error, r.measure.siconos);
+    step.natural_map_error = std::max(step.natural_map_error, r.measure.siconos);
   }
 }
 

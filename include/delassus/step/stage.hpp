@@ -26,7 +26,7 @@ struct Listens {
   template <class Stage>
   static constexpr bool to = (std::is_same_v<Stage, Stages> || ...);
   /// Some stage between Begin and Step.
-  static constexpr bool within = ((!std::is_same_v<stage::Begin, Stages> && !std::is_same_v<stage::Step, Stages>) || ...);
+  static constexpr bool inside_step = ((!std::is_same_v<stage::Begin, Stages> && !std::is_same_v<stage::Step, Stages>) || ...);
 };
 using ListensToAll = Listens<stage::Begin, stage::Detect, stage::Linearize, stage::FreeMotion, stage::Islands, stage::Bias,
                              stage::Build, stage::Solve, stage::Correct, stage::Advance, stage::Step>;

@@ -30,7 +30,7 @@ struct StagesWithoutConstraints {
   static void advance(auto& step) {
     step.world().each([&](auto& set, auto) {
       step.integrator().advance(set, step.h);
-      step.summary.quarantined += set.held();
+      step.summary.quarantined += set.quarantined();
     });
     step.end_clock();
   }

@@ -8,11 +8,11 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/islands.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/channels.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 #include <delassus/step/each_constraint.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/step_report.hpp>
@@ -35,12 +35,12 @@ struct RowData {
   Rows rows;
   Islands<P::Laws::pool_count> islands;
   Operator W;
-  LawBook<typename P::Laws, typename P::World::Scalar> book;
+  LawSet<typename P::Laws, typename P::World::Scalar> law_set;
   typename P::Solver::template Workspace<Rows> solver_workspace;
   Array<SolveReport> reports;  ///< of the islands, in their order
-  Array<char> is_sick;         ///< islands with a velocity that is not finite
-  std::array<Census, std::size_t(P::World::set_count)> census;
-  ContactBook contact_book;
+  Array<char> is_nonfinite;         ///< islands with a velocity that is not finite
+  std::array<SetVersion, std::size_t(P::World::set_count)> versions;
+  ContactCache contact_cache;
   Materials material_pairs;
 };
 
@@ -54,11 +54,11 @@ using RowDataOf = typename std::conditional_t<P::has_rows, std::type_identity<Ro
 
 }  // namespace inner
 
-/// The plain stages write the members; what else a policy keeps is its `State`. P has the types of the parts of the loop,
-/// see `Parts`. A scheme gets it as it is, a listener const.
+/// The plain stages write the members; what else a policy keeps is its `State`. P has the types of all policies of the loop,
+/// see `Policies`. A scheme gets it as it is, a listener const.
 template <class P>
 struct StepData : inner::RowDataOf<P> {
-  using Parts = P;
+  using Policies = P;
   using WorldType = typename P::World;
   using Laws = typename P::Laws;
   using Stages = typename P::Stages;
@@ -67,7 +67,7 @@ struct StepData : inner::RowDataOf<P> {
   /// Rows and W of the last step are there to be asked for.
   static constexpr bool has_problem = P::has_problem;
   /// No constraint, nobody who listens between Begin and Step, and parts that treat each block by itself.
-  static constexpr bool moves_freely = !has_constraints && EachBlockAlone<typename P::Integrator> && !P::hears_within &&
+  static constexpr bool moves_freely = !has_constraints && EachBlockAlone<typename P::Integrator> && !P::listens_inside_step &&
                                        inner::steps_by_block<WorldType>;
   static constexpr bool observes_sweeps = P::observes_sweeps;
   /// A policy of the list, by type.
@@ -87,20 +87,20 @@ struct StepData : inner::RowDataOf<P> {
   double start = 0;          ///< the time when steps of h began, s
   long steps = 0;            ///< since then
 
-  [[gnu::always_inline]] WorldType& world() { return part<role::World>(); }
-  [[gnu::always_inline]] const WorldType& world() const { return part<role::World>(); }
-  [[gnu::always_inline]] Laws& laws() { return part<role::Constraints>(); }
-  [[gnu::always_inline]] const Laws& laws() const { return part<role::Constraints>(); }
+  [[gnu::always_inline]] WorldType& world() { return policy<role::World>(); }
+  [[gnu::always_inline]] const WorldType& world() const { return policy<role::World>(); }
+  [[gnu::always_inline]] Laws& laws() { return policy<role::Constraints>(); }
+  [[gnu::always_inline]] const Laws& laws() const { return policy<role::Constraints>(); }
   /// The policy of a role, its default included.
   template <class Role>
-  [[gnu::always_inline]] auto& part() {
-    return P::Held::template part<Role, typename P::template of<Role>>(policies);
+  [[gnu::always_inline]] auto& policy() {
+    return P::Held::template policy<Role, typename P::template of<Role>>(policies);
   }
   template <class Role>
-  [[gnu::always_inline]] const auto& part() const {
-    return P::Held::template part<Role, typename P::template of<Role>>(policies);
+  [[gnu::always_inline]] const auto& policy() const {
+    return P::Held::template policy<Role, typename P::template of<Role>>(policies);
   }
-  /// The part of this type among the arguments; `has` asks whether there is one.
+  /// The policy of this type among the arguments; `has` asks whether there is one.
   template <class Policy>
   auto& get() {
     return P::Held::template get<Policy>(policies);
@@ -109,13 +109,13 @@ struct StepData : inner::RowDataOf<P> {
   const auto& get() const {
     return P::Held::template get<Policy>(policies);
   }
-  [[gnu::always_inline]] auto& integrator() { return part<role::Integrator>(); }
-  [[gnu::always_inline]] auto& collision() { return part<role::Collision>(); }
-  [[gnu::always_inline]] auto& compliance() { return part<role::Compliance>(); }
-  [[gnu::always_inline]] auto& solver() { return part<role::Solver>(); }
-  [[gnu::always_inline]] auto& stabilisation() { return part<role::Stabilisation>(); }
-  [[gnu::always_inline]] auto& scheme() { return part<role::Scheme>(); }
-  [[gnu::always_inline]] auto& activity() { return part<role::Activity>(); }
+  [[gnu::always_inline]] auto& integrator() { return policy<role::Integrator>(); }
+  [[gnu::always_inline]] auto& collision() { return policy<role::Collision>(); }
+  [[gnu::always_inline]] auto& compliance() { return policy<role::Compliance>(); }
+  [[gnu::always_inline]] auto& solver() { return policy<role::Solver>(); }
+  [[gnu::always_inline]] auto& stabilisation() { return policy<role::Stabilisation>(); }
+  [[gnu::always_inline]] auto& scheme() { return policy<role::Scheme>(); }
+  [[gnu::always_inline]] auto& activity() { return policy<role::Activity>(); }
   /// What the policy of a role keeps, or what a law overrides does: state<role::Activity>(), state<NewtonImpact>().
   template <class Key>
     requires has_state<Key>
@@ -143,7 +143,7 @@ struct StepData : inner::RowDataOf<P> {
   std::span<const ContactResult> contacts() const
     requires(Laws::has_contacts)
   {
-    return this->contact_book.results;
+    return this->contact_cache.results;
   }
   /// Solve reports of the islands of the last step.
   std::span<const SolveReport> island_reports() const

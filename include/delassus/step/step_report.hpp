@@ -12,7 +12,7 @@ struct StepReport {
   Status status = Status::converged;
   int sweeps = 0;                 ///< of the island that took most
   double residual = 0;            ///< err_s, largest of the islands
-  double siconos_error = 0;       ///< err, largest of the islands
+  double natural_map_error = 0;       ///< err, largest of the islands
   double max_penetration = 0;     ///< m, at the start of the step
   double max_joint_violation = 0; ///< m or rad, at the start of the step
   Index contacts = 0;

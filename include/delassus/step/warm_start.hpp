@@ -5,7 +5,7 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -16,7 +16,7 @@ namespace delassus {
 /// λ ← h/h_last · λ of the last step, by contact id or by item; contacts carry theirs as a world vector, brought back
 /// into the cone of the new frame. h and h_last are this step and the last one, s.
 template <class Laws, class Rows>
-void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double h, double last_h) {
+void warm_start(const Laws& laws, Rows& rows, ContactCache& book, double h, double last_h) {
   const double step_ratio = h / last_h;
   using T = typename Rows::Scalar;
   each_kept_pool(laws, [&](auto p, const auto& pool) {
@@ -42,7 +42,7 @@ void warm_start(const Laws& laws, Rows& rows, ContactBook& book, double h, doubl
 
 /// Hands the impulses back: to the items of the pools, and to the contacts as world vectors.
 template <class Laws, class Rows>
-void keep_impulses(Laws& laws, const Rows& rows, ContactBook& book) {
+void keep_impulses(Laws& laws, const Rows& rows, ContactCache& book) {
   each_kept_pool(laws, [&](auto p, auto& pool) {
     const auto& lambda = rows.template pool<p>().lambda;
     for (Index i = 0; i < pool.count(); ++i) {
@@ -71,7 +71,7 @@ void keep_impulses(Laws& laws, const Rows& rows, ContactBook& book) {
 ///
 /// at most; an island whose solve ended far from its laws and beyond that starts from zero.
 template <class Laws, class Rows, class Operator, int pools>
-void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, ContactBook& book, const Islands<pools>& islands,
+void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, ContactCache& book, const Islands<pools>& islands,
                          std::span<const SolveReport> reports) {
   constexpr double far = 0.05;  // of the largest velocity of the island
   for (Index k = 0; k < islands.count(); ++k) {

@@ -159,7 +159,7 @@ class Audit {
       use.has_restitution = true;
       // Without it the bias is φ/h for an open contact and the stabilisation's for one that overlaps.
       const double phi = double(rows.phi[i][0]), h = loop.step_size();
-      const double plain = phi < 0 ? loop.template part<role::Stabilisation>().penetration(phi, h) : 0;
+      const double plain = phi < 0 ? loop.template policy<role::Stabilisation>().penetration(phi, h) : 0;
       use.bounced += normal > 0 && double(rows.bias[i][0]) < plain - threshold;
     }
   }

@@ -52,7 +52,7 @@ class Dormant {
     groups[block] = group;
     const Pose pose = set.pose(block);
     bodies_.push_back({s, block, group, set.handle(block).generation, pose, box_of(set, block, pose)});
-    set.lull(block);
+    set.put_to_sleep(block);
   }
 
   /// The awake items of pool p whose ends all lie in `group` or do not move.
@@ -90,7 +90,7 @@ class Dormant {
     for (auto b = gone; b != bodies_.end(); ++b) {
       group_[b->set][b->block] = awake;
       world.each([&](auto& set, auto s) {
-        if (s == b->set && is_same(set, *b)) set.rouse(b->block);
+        if (s == b->set && is_same(set, *b)) set.wake(b->block);
       });
     }
     bodies_.erase(gone, bodies_.end());

@@ -3,7 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 
 #include <utility>
 
@@ -11,7 +11,7 @@ namespace delassus {
 
 /// Detection while some sleep: the sleepers near are obstacles, and whom an awake body reaches wakes before the step goes on.
 template <class World, class Laws, class State, class Detect>
-CollisionReport detect_awake(World& world, Laws& laws, State& activity, ContactBook& book, double h, const Detect& detect) {
+CollisionReport detect_awake(World& world, Laws& laws, State& activity, ContactCache& book, double h, const Detect& detect) {
   CollisionReport found;
   for (bool again = true; again;) {
     if (!activity.add_obstacles(world, book)) {
@@ -36,7 +36,7 @@ struct DormantStages : Base {
     own(step).begin(step.world(), step.laws(), h);
   }
   static CollisionReport find_contacts(auto& step) {
-    return detect_awake(step.world(), step.laws(), own(step), step.contact_book, step.h,
+    return detect_awake(step.world(), step.laws(), own(step), step.contact_cache, step.h,
                         [&] { return Base::find_contacts(step); });
   }
   static void correct(auto& step) {

@@ -83,10 +83,10 @@ struct RigidState {
     kept_x = x;
     kept_q = q;
   }
-  void take_poses_back(const Array<Index>& blocks) {
-    for (const Index b : blocks) take_pose_back(b);
+  void restore_poses(const Array<Index>& blocks) {
+    for (const Index b : blocks) restore_pose(b);
   }
-  void take_pose_back(Index b) {
+  void restore_pose(Index b) {
     x[b] = kept_x[b];
     q[b] = kept_q[b];
     turn(b);
@@ -116,7 +116,7 @@ struct RigidState {
   bool drift(Index b, Velocity& v, const Velocity& next, T h, T old_share);
 
   /// Kick and drift: the same after the impulses, the free rotation by turns.
-  bool drift(Index b, Velocity& v, const Velocity& next, T h, ByTurns) {
+  bool drift(Index b, Velocity& v, const Velocity& next, T h, RotationSplitting) {
     const Vec3 moved = x[b] + Vector(h * linear_part(next)).template cast<double>();
     const Vector spatial = R[b] * (inertia[b] * (R[b].transpose() * angular_part(next)));
     const Eigen::Quaternion<T> turned = turn_freely<T>(inverse_inertia[b], q[b], spatial, h);

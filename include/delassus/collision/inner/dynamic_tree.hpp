@@ -68,7 +68,7 @@ class BasicDynamicTree {
   void erase(Index leaf) {
     const Index parent = node_[leaf].parent;
     --leaf_count_;
-    give_back(leaf);
+    release(leaf);
     if (parent < 0) {
       root_ = -1;
       return;
@@ -78,7 +78,7 @@ class BasicDynamicTree {
     surface_ -= half_surface(node_[parent].box);
     node_[sibling].parent = above;
     replace_child(above, parent, sibling);
-    give_back(parent);
+    release(parent);
     refit(above);
   }
 
@@ -94,7 +94,7 @@ class BasicDynamicTree {
     for (Index n = 0; n < Index(node_.size()); ++n)
       if (node_[n].is_used && is_leaf(n)) leaves_.push_back(n);
     for (Index n = 0; n < Index(node_.size()); ++n)
-      if (node_[n].is_used && !is_leaf(n)) give_back(n);
+      if (node_[n].is_used && !is_leaf(n)) release(n);
     surface_ = 0;
     root_ = build(0, leaf_count_, -1);
     surface_when_built_ = surface_;
@@ -142,7 +142,7 @@ class BasicDynamicTree {
     node_[n] = node;
     return n;
   }
-  void give_back(Index n) {
+  void release(Index n) {
     node_[n].is_used = false;
     free_.push_back(n);
   }

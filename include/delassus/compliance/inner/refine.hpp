@@ -23,7 +23,7 @@ bool refine(Step& step) {
     for (auto& v : set.v_next) v.setZero();
     add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(step.scratch));
   });
-  if (W.renew(world, rows)) step.book.prepare(W, rows, step.h);
+  if (W.renew(world, rows)) step.law_set.prepare(W, rows, step.h);
   double miss = 0;
   each_pool(rows, [&](auto p, auto& pool) {
     auto& missed = W.template missed<p>();

@@ -93,10 +93,10 @@ struct Contact {
     inner::project(local(), item.parameters, c, memory);
   }
   template <class T>
-  Vec<rows, T> meet(const Item& item, const Vec<rows, T>& b, Memory<T>& memory) const
-    requires requires { local().meet(item.parameters, b, memory); }
+  Vec<rows, T> solve_local(const Item& item, const Vec<rows, T>& b, Memory<T>& memory) const
+    requires requires { local().solve_local(item.parameters, b, memory); }
   {
-    return local().meet(item.parameters, b, memory);
+    return local().solve_local(item.parameters, b, memory);
   }
   template <class T>
   Mat<rows, rows, T> tangent(const Item& item, Local<rows, T>& c) const

@@ -68,11 +68,11 @@ struct Coulomb {
 
   template <class T>
   void project(const Parameters& p, Local<3, T>& c, Memory<T>& memory) const {
-    c.lambda = meet(p, c.free_velocity(), memory);
+    c.lambda = solve_local(p, c.free_velocity(), memory);
   }
   /// λ from b = u − W λ, the velocity without this contact.
   template <class T>
-  Vec<3, T> meet(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
+  Vec<3, T> solve_local(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
     if (b[0] >= -inner::negligible_approach<T>) return Vec<3, T>::Zero();
     const T mu = T(p.friction);
     const Vec<3, T> stick = -(memory.inverse * b);

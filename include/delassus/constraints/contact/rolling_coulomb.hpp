@@ -81,17 +81,17 @@ struct RollingCoulomb {
 
   template <class T>
   void project(const Parameters& p, Local<6, T>& c, Memory<T>& memory) const {
-    c.lambda = meet(p, c.free_velocity(), memory);
+    c.lambda = solve_local(p, c.free_velocity(), memory);
   }
   /// λ from b = u − W λ, the velocity without this contact.
   template <class T>
-  Vec<6, T> meet(const Parameters& p, const Vec<6, T>& b, Memory<T>& memory) const {
+  Vec<6, T> solve_local(const Parameters& p, const Vec<6, T>& b, Memory<T>& memory) const {
     if (b[0] >= -inner::negligible_approach<T>) return memory.last = Vec<6, T>::Zero();
     const Cones<T> cones{T(p.friction), T(p.rolling) / memory.length, T(p.torsional) / memory.length};
     const Vec<6, T> scaled = measured_in(memory.length, b);
     Vec<6, T> lambda = -scaled;
     memory.whole.solve(lambda);
-    if (!memory.may_stick || !cones.hold(lambda)) lambda = slip_somewhere(cones, scaled, memory);
+    if (!memory.may_stick || !cones.contains(lambda)) lambda = slip_somewhere(cones, scaled, memory);
     memory.last = lambda;
     return measured_in(memory.length, lambda);
   }
@@ -161,7 +161,7 @@ struct RollingCoulomb {
       const auto narrowed = [share](T slope) { return std::tan(share * std::atan(slope)); };
       return {narrowed(slide), narrowed(roll), narrowed(spin)};
     }
-    bool hold(const Vec<6, T>& x) const {
+    bool contains(const Vec<6, T>& x) const {
       bool is_inside = x[0] >= T(0);
       for (int k = 0; k < 3; ++k) is_inside = is_inside && length(x, k) <= slope(k) * x[0];
       return is_inside;
@@ -246,11 +246,11 @@ struct RollingCoulomb {
         if (j < from || j > to) sum += W(i, j) * lambda[j];
       return sum;
     };
-    const Vec<3, T> slide = Coulomb{}.meet(
+    const Vec<3, T> slide = Coulomb{}.solve_local(
         {double(cones.slide)}, Vec<3, T>(free(0, 0, 2), free(1, 0, 2), free(2, 0, 2)), memory.slide);
     for (int i = 0; i < 3; ++i) lambda[i] = slide[i];
     // The roll is friction under a normal impulse that does not answer to it: b_n = −W_nn λ_n.
-    const Vec<3, T> roll = Coulomb{}.meet(
+    const Vec<3, T> roll = Coulomb{}.solve_local(
         {double(cones.roll)}, Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)),
         memory.roll);
     lambda[3] = roll[1], lambda[4] = roll[2];

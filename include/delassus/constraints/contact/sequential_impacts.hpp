@@ -136,13 +136,13 @@ struct SequentialImpacts {
   struct stages : Base {
     static void free_motion(auto& step) {
       pass_on_impacts(step.world(), step.laws(), step.rows, step.template state<SequentialImpacts>().impulses,
-                      step.contact_book.results.size(), step.h);
+                      step.contact_cache.results.size(), step.h);
       Base::free_motion(step);
     }
     static void keep_impulses(auto& step) {
       Base::keep_impulses(step);  // impacts are no start for the next step
       const auto& impulses = step.template state<SequentialImpacts>().impulses;
-      for (std::size_t i = 0; i < impulses.size(); ++i) step.contact_book.results[i].impulse += impulses[i];
+      for (std::size_t i = 0; i < impulses.size(); ++i) step.contact_cache.results[i].impulse += impulses[i];
     }
   };
 };

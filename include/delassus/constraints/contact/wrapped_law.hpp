@@ -7,7 +7,7 @@
 namespace delassus::inner {
 
 /// The law inside all wrappers. A wrapper says `using wraps = Law;`, holds it as `law`, and adds to what a
-/// contact is: parameters, a target velocity, a softness. Its `Parameters` are the law's or derive from them,
+/// contact is: parameters, a target velocity, a relative compliance. Its `Parameters` are the law's or derive from them,
 /// so that the law inside takes them as its own; the solution at fixed neighbours stays that law's, and
 /// `Contact` asks it at once.
 template <class Law>

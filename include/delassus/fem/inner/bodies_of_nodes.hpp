@@ -1,7 +1,7 @@
 /// What sets of deformable bodies share: bodies of nodes, whose blocks are the nodes.
 #pragma once
 
-#include <delassus/bodies/inner/places.hpp>
+#include <delassus/bodies/inner/body_storage.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/rows/body_set.hpp>
 
@@ -16,24 +16,24 @@ namespace delassus::inner {
 /// new one; a `Handle` names a node, a `BodyHandle` a body. `Set` holds nodes by `hold` and knows what
 /// `moves`.
 template <class Set, class T, int width, class Body_, class Elastic>
-class BodiesOfNodes : public Places<Set, T, width> {
-  using Places = inner::Places<Set, T, width>;
+class BodiesOfNodes : public BodyStorage<Set, T, width> {
+  using BodyStorage = inner::BodyStorage<Set, T, width>;
 
  public:
   using Body = Body_;
   using BodyHandle = delassus::Handle<Body>;
-  using typename Places::Handle, typename Places::Velocity;
+  using typename BodyStorage::Handle, typename BodyStorage::Velocity;
   static constexpr const char* kind = "node";
 
   /// Takes a body out, all its nodes with it.
   void remove(BodyHandle body) {
     const Index k = checked_body(body);
     for (const Index b : bodies_[k].blocks()) {
-      self().hold(b, true);
-      slots_.give_back(b);
+      self().set_fixed(b, true);
+      slots_.release(b);
     }
     bodies_[k] = {};
-    body_slots_.give_back(k);
+    body_slots_.release(k);
   }
 
   /// Holds a node where it is, as the clamped end of a beam.
@@ -41,7 +41,7 @@ class BodiesOfNodes : public Places<Set, T, width> {
     const Index b = this->checked(node);
     is_fixed_[b] = is_fixed;
     if (is_fixed) v_[b].setZero();
-    self().hold(b, false);
+    self().set_fixed(b, false);
   }
   void release(Handle node) { fix(node, false); }
   /// Fixes the nodes of a body for whose position (world, m) `where` is true; returns how many.
@@ -114,7 +114,7 @@ class BodiesOfNodes : public Places<Set, T, width> {
   }
   /// A block for node `node` of body k; the arrays of its state are the set's to fit to `blocks()`.
   Index take_node(const Body& body, Index k, Index node, const Velocity& velocity) {
-    const Index b = Places::take(body, velocity);
+    const Index b = BodyStorage::take(body, velocity);
     const std::size_t n = std::size_t(slots_.size());
     is_fixed_.resize(n), body_.resize(n), node_.resize(n);
     is_fixed_[b] = 0;
@@ -124,16 +124,16 @@ class BodiesOfNodes : public Places<Set, T, width> {
   }
   BodyHandle give(Index k, Elastic body) {
     bodies_[k] = std::move(body);
-    for (const Index b : bodies_[k].blocks()) self().hold(b, false);
+    for (const Index b : bodies_[k].blocks()) self().set_fixed(b, false);
     return {k, body_slots_.generation(k), this->owner()};
   }
 
   /// A body is held whole: of its nodes those that were loaded badly are noted first.
   void note_held(const Elastic& body) {
-    ++this->held_.count;
+    ++this->quarantine_.count;
     for (const Index b : body.blocks())
-      if (!is_finite(this->load_[b])) this->held_.note(b, false);
-    this->held_.note(body.blocks().front(), true);
+      if (!is_finite(this->load_[b])) this->quarantine_.note(b, false);
+    this->quarantine_.note(body.blocks().front(), true);
   }
 
   void each_body(auto&& f) const {
@@ -146,11 +146,11 @@ class BodiesOfNodes : public Places<Set, T, width> {
 
   /// What outlives a step; the handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    Places::memory(archive);
+    BodyStorage::memory(archive);
     archive(body_slots_, is_fixed_, body_, node_, bodies_);
   }
 
-  using Places::slots_, Places::v_;
+  using BodyStorage::slots_, BodyStorage::v_;
   SystemScale scale_;
   Slots body_slots_;
   std::vector<Elastic> bodies_;

@@ -17,7 +17,7 @@
 namespace delassus {
 namespace inner {
 
-/// H v of item i where a step starts; zero where it holds a body that is led, whose v is the mean of the step to come.
+/// H v of item i where a step starts; zero where it holds a kinematic body, whose v is the mean of the step to come.
 template <int R, class T, int... w, class World>
 Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& world) {
   bool is_led = false;
@@ -33,7 +33,7 @@ Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& 
 /// A tenth of u, H v at the start, less where the rows of the middle have s, H v too, that is smaller: min(1, s²/u²) of it.
 /// Rows that depend on each other in the middle, and not at the start, could follow the rest of u by enormous impulses alone.
 template <class V>
-V fading(const V& u, const V& s) {
+V joint_velocity_damping(const V& u, const V& s) {
   using T = typename V::Scalar;
   const T at_start = u.squaredNorm(), in_middle = s.squaredNorm();
   return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
@@ -62,8 +62,8 @@ void linearize_at_midpoint(World& world, const Laws& laws, Rows& rows, Rows& at_
 }
 
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there without a tenth
-/// of what it has across the joints at the start (`inner::fading`), which is of order h² and for which only the rows of
-/// the start will do: d ← d − `fade`. Where that gives energy it is withheld, see `withhold_fade`.
+/// of what it has across the joints at the start (`inner::joint_velocity_damping`), which is of order h² and for which only the rows of
+/// the start will do: d ← d − `fade`. Where that gives energy it is withheld, see `reject_damping`.
 template <class World, class Laws, class Rows>
 void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& at_start, double theta, Impulses<Rows>& fade) {
   using T = typename Rows::Scalar;
@@ -77,7 +77,7 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
       own.setZero();
       if constexpr (ContactLaw<Law>) continue;
       const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
-      const auto fades = inner::fading(inner::rate_at_start(at_start.template pool<p>(), i, world), u);
+      const auto fades = inner::joint_velocity_damping(inner::rate_at_start(at_start.template pool<p>(), i, world), u);
       for (int k = 0; k < Law::rows; ++k) {
         if (kinds[k] != RowKind::equality || pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) continue;
         own[k] = T((1 - theta) / theta) * fades[k];
@@ -97,7 +97,7 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
 /// see across a chain drawn straight the other way round than those of the start, f makes grow what it should
 /// take. There f is put back into d, and the joints do no work. True: the island has to be solved again.
 template <class Rows, class Operator, int pools>
-bool withhold_fade(Rows& rows, const Operator& W, const Islands<pools>& islands, Index island,
+bool reject_damping(Rows& rows, const Operator& W, const Islands<pools>& islands, Index island,
                    Impulses<Rows>& fade) {
   double work = 0, effort = 0;
   inner::each_item(islands, island, [&](auto p, Index i) {
@@ -137,7 +137,7 @@ struct MidpointStages : Base {
   }
   static void solve_island(auto& step, Index island, auto& observer) {
     Base::solve_island(step, island, observer);
-    if (withhold_fade(step.rows, step.W, step.islands, island, own(step).fade)) Base::solve_island(step, island, observer);
+    if (reject_damping(step.rows, step.W, step.islands, island, own(step).fade)) Base::solve_island(step, island, observer);
   }
 
  private:

@@ -6,13 +6,13 @@
 
 namespace delassus {
 
-template <class... Policies>
-AnimationLoop<Policies...>::AnimationLoop(Policies... policies) : Data(typename Data::Parts::Held(std::move(policies)...)) {
+template <class... Args>
+AnimationLoop<Args...>::AnimationLoop(Args... policies) : Data(typename Data::Policies::Held(std::move(policies)...)) {
   if constexpr (is_sound) check_policies();
 }
 
-template <class... Policies>
-void AnimationLoop<Policies...>::memory(auto& archive) {
+template <class... Args>
+void AnimationLoop<Args...>::memory(auto& archive) {
   archive(world(), this->h, this->last_h, this->start, this->steps);
   this->states.template memory<false>(archive);
   each_kept_pool(laws(), [&](auto, auto& pool) {
@@ -20,7 +20,7 @@ void AnimationLoop<Policies...>::memory(auto& archive) {
     if constexpr (std::remove_reference_t<decltype(archive)>::reads) inner::adopt(world(), pool);
   });
   if constexpr (has_constraints) {
-    archive(this->contact_book, this->material_pairs);
+    archive(this->contact_cache, this->material_pairs);
     this->states.template memory<true>(archive);  // it names constraints
     if constexpr (requires { this->solver_workspace.memory(archive); }) this->solver_workspace.memory(archive);
     if constexpr (Laws::has_contacts) {
@@ -32,8 +32,8 @@ void AnimationLoop<Policies...>::memory(auto& archive) {
   }
 }
 
-template <class... Policies>
-void AnimationLoop<Policies...>::check_policies() const {
+template <class... Args>
+void AnimationLoop<Args...>::check_policies() const {
   const auto check = [](const auto& part) {
     if constexpr (requires { part.check(); }) part.check();
   };
@@ -41,19 +41,19 @@ void AnimationLoop<Policies...>::check_policies() const {
   for_each_index<Laws::pool_count>([&](auto p) { check(laws().template pool<p>().law); });
 }
 
-template <class... Policies>
-StepReport AnimationLoop<Policies...>::step(double h) {
+template <class... Args>
+StepReport AnimationLoop<Args...>::step(double h) {
   if constexpr (is_sound)
-    if constexpr (inner::scheme_runs<typename Data::Parts::Scheme, Data>()) {
+    if constexpr (inner::scheme_runs<typename Data::Policies::Scheme, Data>()) {
       check_policies();  // their numbers may have been edited since
       take_step(data(), h);
     }
   return report();
 }
 
-template <class... Policies>
+template <class... Args>
 template <class Item>
-auto AnimationLoop<Policies...>::add(Item item) {
+auto AnimationLoop<Args...>::add(Item item) {
   using Law = typename Laws::template law_of<Item>::type;
   static_assert(!std::is_void_v<Law>,
                 "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");

@@ -7,6 +7,7 @@
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/constraints/law.hpp>
 #include <delassus/loop/defaults.hpp>
+#include <delassus/loop/held_policies.hpp>
 #include <delassus/loop/order_of_overrides.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/schemes/plain_order.hpp>
@@ -14,7 +15,6 @@
 #include <delassus/step/channels.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/plain_step.hpp>
-#include <delassus/loop/held_policies.hpp>
 #include <delassus/step/theta.hpp>
 
 #include <type_traits>
@@ -34,20 +34,20 @@ template <class Scheme>
 inline constexpr bool takes_whole_steps = requires { requires Scheme::takes_whole_steps; };
 
 /// An integrator that solves for joints and bodies together leaves no room for parts between FreeMotion and Correct.
-template <class Parts, class... Policies>
+template <class Policies, class... Args>
 consteval bool whole_step_fits() {
-  using I = typename Parts::Integrator;
+  using I = typename Policies::Integrator;
   if constexpr (!MovesAtOnce<I>) {
     return true;
   } else {
     constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
       return (holds_exactly<L>() && ...);
-    }(static_cast<const typename Parts::Laws*>(nullptr));
+    }(static_cast<const typename Policies::Laws*>(nullptr));
     constexpr bool can_move = []<class... S>(const delassus::World<S...>*) {
       return (I::template can_move<S> && ...);
-    }(static_cast<const typename Parts::World*>(nullptr));
-    constexpr bool is_plain = takes_whole_steps<typename Parts::Scheme> &&
-                              std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...);
+    }(static_cast<const typename Policies::World*>(nullptr));
+    constexpr bool is_plain = takes_whole_steps<typename Policies::Scheme> &&
+                              std::is_same_v<typename Policies::Activity, AllActive> && !(Publisher<Args> || ...);
     static_assert(are_equal,
                   "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, "
                   "motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson");
@@ -72,30 +72,30 @@ consteval bool substeps_fit() {
 }
 
 /// Joint by joint there is neither W nor a problem, and every body answers alone.
-template <class Parts, class... Policies>
+template <class Policies, class... Args>
 consteval bool visits_fit() {
-  if constexpr (makes_problem<typename Parts::Scheme> || Parts::Laws::pool_count == 0) {
+  if constexpr (makes_problem<typename Policies::Scheme> || Policies::Laws::pool_count == 0) {
     return true;
   } else {
-    using I = typename Parts::Integrator;
+    using I = typename Policies::Integrator;
     constexpr bool are_joints = []<class... L>(const Constraints<L...>*) {
       return (JointOfTwoEnds<L> && ...);
-    }(static_cast<const typename Parts::Laws*>(nullptr));
+    }(static_cast<const typename Policies::Laws*>(nullptr));
     static_assert(are_joints,
                   "delassus: JointByJoint takes joints with two ends that hold exactly or by springs (no contacts, "
                   "limits, motors, drives and couplings); take the other laws out of Constraints{...}, or use PlainOrder");
     constexpr bool answer_alone = []<class... S>(const delassus::World<S...>*) {
       return EachBlockAlone<I> && (requires { requires I::takes_masses_alone; }) &&
-             ((StepsByBlock<S> && AnswersByParts<S>) && ...);
-    }(static_cast<const typename Parts::World*>(nullptr));
+             ((StepsByBlock<S> && HasInverseInertia<S>) && ...);
+    }(static_cast<const typename Policies::World*>(nullptr));
     if constexpr (are_joints)
       static_assert(answer_alone,
                     "delassus: JointByJoint moves rigid bodies and particles, by SymplecticEuler or LiePoisson; take "
                     "the other sets and the integrator out, or use PlainOrder");
     constexpr bool is_plain =
-        count_of<role::Solver, Policies...> == 0 && count_of<role::Compliance, Policies...> == 0 &&
-        std::is_same_v<typename Parts::Activity, AllActive> && !(Publisher<Policies> || ...) &&
-        !OverridesStages<typename Parts::Stabilisation>;
+        count_of<role::Solver, Args...> == 0 && count_of<role::Compliance, Args...> == 0 &&
+        std::is_same_v<typename Policies::Activity, AllActive> && !(Publisher<Args> || ...) &&
+        !OverridesStages<typename Policies::Stabilisation>;
     if constexpr (are_joints && answer_alone)
       static_assert(is_plain,
                     "delassus: JointByJoint solves without W and without a solver; take out the solver, the compliance, "
@@ -105,24 +105,24 @@ consteval bool visits_fit() {
 }
 
 /// Springs that see the mean velocity need an integrator that goes with it, and gaps of each step.
-template <class Parts>
+template <class Policies>
 consteval bool mean_springs_fit() {
   constexpr bool has_none = []<class... L>(const Constraints<L...>*) {
     return !(has_mean_springs<L> || ...);
-  }(static_cast<const typename Parts::Laws*>(nullptr));
-  constexpr bool fit = has_none || (theta<typename Parts::Integrator>() != 1 &&
-                                    !(requires { requires Parts::Scheme::divides_step; }));
+  }(static_cast<const typename Policies::Laws*>(nullptr));
+  constexpr bool fit = has_none || (theta<typename Policies::Integrator>() != 1 &&
+                                    !(requires { requires Policies::Scheme::divides_step; }));
   static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, "
                      "and gaps of each step, which Substeps has not; use ImplicitMidpoint and no Substeps, or leave AtMean{} out");
   return fit;
 }
 
 /// Solves that are repeated until W is near enough know nothing of what the impulses did before, or of bounces.
-template <class Parts>
+template <class Policies>
 consteval bool refinement_fits() {
-  constexpr bool is_refined = requires { requires Parts::Compliance::refines; };
-  constexpr bool fit = !is_refined || Parts::Laws::pool_count == 0 ||
-                       !(OverridesStages<typename Parts::Scheme> || names_override<NewtonImpact>(typename order_of_overrides<Parts>::type{}));
+  constexpr bool is_refined = requires { requires Policies::Compliance::refines; };
+  constexpr bool fit = !is_refined || Policies::Laws::pool_count == 0 ||
+                       !(OverridesStages<typename Policies::Scheme> || names_override<NewtonImpact>(typename order_of_overrides<Policies>::type{}));
   static_assert(fit,
                 "delassus: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with "
                 "restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance");

@@ -144,7 +144,7 @@ class JointVisits<World<Sets...>, Laws> {
     sums.violation = std::max(sums.violation, visit.violation);
     sums.rows += rows_of<decltype(visit)>;
   }
-  /// Whether some end answers: what holds two bodies that are led has no impulse, and nothing to measure.
+  /// Whether some end answers: what holds two kinematic bodies has no impulse, and nothing to measure.
   bool see(const World& world, const auto& visit) {
     bool answers = false;
     visit.each_moving(world, [&](auto s, Index block) {

@@ -86,7 +86,7 @@ class PointVisit {
   };
   template <int s>
   static constexpr bool turns = World::template width_of<s> == 6;
-  /// A body that is led has no 1/m.
+  /// A kinematic body has no 1/m.
   template <int s>
   static bool does_answer(const End& end) {
     if constexpr (s < 0) return false;

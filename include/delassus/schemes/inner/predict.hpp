@@ -38,7 +38,7 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
 
 /// λ ← λ − λ₀ for the corrective motion; `predicted` keeps the total.
 template <class Rows, class Kept>
-void take_change(Rows& rows, Kept& predicted) {
+void subtract_predicted(Rows& rows, Kept& predicted) {
   for_each_index<Rows::pool_count>([&](auto p) {
     auto& lambda = rows.template pool<p>().lambda;
     auto& kept = std::get<p>(predicted.pools);
@@ -52,7 +52,7 @@ void take_change(Rows& rows, Kept& predicted) {
 
 /// λ ← the total again.
 template <class Rows, class Kept>
-void give_back_total(Rows& rows, const Kept& predicted) {
+void add_predicted(Rows& rows, const Kept& predicted) {
   predicted.give_to(rows);
 }
 
@@ -70,9 +70,9 @@ struct PredictiveStages : Base {
     Base::solve(step);
   }
   static void correct(auto& step) {
-    take_change(step.rows, predicted(step));
+    subtract_predicted(step.rows, predicted(step));
     Base::correct(step);
-    give_back_total(step.rows, predicted(step));
+    add_predicted(step.rows, predicted(step));
   }
 
  private:

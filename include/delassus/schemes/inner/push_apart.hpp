@@ -29,7 +29,7 @@ void each_block_at(World& world, const Anchor& anchor, const Vec3& point, const 
 /// Every contact of a `Penalty` law gives its bodies ±f for this step and leaves the pool: it has no row. The impulse h f
 /// stands in the list of contacts.
 template <class World, class Laws>
-void push_apart(World& world, Laws& laws, ContactBook& book, double h) {
+void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
   each_pool(laws, [&](auto, auto& pool) {
     if constexpr (requires { pool.law.law.stiffness; pool.items.clear(); }) {
       constexpr int rows = std::remove_cvref_t<decltype(pool.law)>::rows;

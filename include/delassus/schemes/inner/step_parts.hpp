@@ -8,7 +8,7 @@
 #include <delassus/math/linear.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/row_system.hpp>
-#include <delassus/step/contact_book.hpp>
+#include <delassus/step/contact_cache.hpp>
 
 #include <cstddef>
 #include <tuple>
@@ -46,13 +46,13 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   }
   /// After a part, of which `left` are to come; after the last h is that of the step again.
   void end_part(auto& step, int left) {
-    if constexpr (sizeof...(L) > 0) add_impulses(step.laws(), step.contact_book);
+    if constexpr (sizeof...(L) > 0) add_impulses(step.laws(), step.contact_cache);
     if (left > 0) {
       go_on(step.world(), left);
       if constexpr (Laws::has_contacts) follow(step);
       step.last_h = step.h;
     } else {
-      if constexpr (sizeof...(L) > 0) give_impulses(step.laws(), step.contact_book);
+      if constexpr (sizeof...(L) > 0) store_impulses(step.laws(), step.contact_cache);
       step.h = h_;
       step.start = start_;
       step.steps = steps_ + 1;
@@ -67,14 +67,14 @@ class StepParts<World<Sets...>, Constraints<L...>> {
     });
     stay_on_the_way(world, left > 1);
   }
-  void add_impulses(const Laws& laws, const ContactBook& book) {
+  void add_impulses(const Laws& laws, const ContactCache& book) {
     each_kept_pool(laws, [&](auto p, const auto& pool) {
       add(std::get<p>(sums_), pool.impulse, [](const auto& x) -> const auto& { return x; });
     });
     add(pushed_, book.results, [](const ContactResult& r) -> const Vec3& { return r.impulse; });
     is_first_ = false;
   }
-  void give_impulses(Laws& laws, ContactBook& book) const {
+  void store_impulses(Laws& laws, ContactCache& book) const {
     each_kept_pool(laws, [&](auto p, auto& pool) { pool.impulse = std::get<p>(sums_); });
     for (std::size_t i = 0; i < pushed_.size(); ++i) book.results[i].impulse = pushed_[i];
     book.remember();

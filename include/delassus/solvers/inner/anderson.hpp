@@ -59,8 +59,8 @@ void solve_gram(const double (&gram)[n][n], double (&g)[n], int count) {
 /// grew to twice its least the history is dropped and the last good z taken. A mixture ten times larger than the first z is
 /// not taken: where the laws contradict each other λ has no limit, and mixing would run there at once.
 /// Source: [WalkerNi2011].
-template <class Problem, class Pursuit, class Sweep>
-void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
+template <class Problem, class ConvergenceMonitor, class Sweep>
+void anderson(Problem& problem, ConvergenceMonitor& monitor, History& h, Sweep&& sweep) {
   constexpr int depth = History::depth;
   h.resize(std::size_t(problem.row_count()));
   double gram[depth][depth] = {};
@@ -69,7 +69,7 @@ void anderson(Problem& problem, Pursuit& pursuit, History& h, Sweep&& sweep) {
   double least = 0, limit = -1;
   for (;;) {
     problem.gather(h.x);
-    if (!pursuit.goes_on(sweep())) return;
+    if (!monitor.goes_on(sweep())) return;
     problem.gather(h.z);
     if (limit < 0) limit = 100 * dot(h.z, h.z);
     for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];

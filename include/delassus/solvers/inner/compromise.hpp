@@ -2,14 +2,14 @@
 #pragma once
 
 #include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/convergence_monitor.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
-#include <delassus/solvers/inner/pursuit.hpp>
 #include <delassus/solvers/inner/softened.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 namespace delassus::inner {
 
-/// How far `compromise` goes, for `Pursuit`.
+/// How far `compromise` goes, for `ConvergenceMonitor`.
 struct CompromiseLimits {
   double tolerance = 1e-6;
   int max_iterations = 1000, min_iterations = 1;
@@ -23,12 +23,12 @@ SolveReport compromise(Problem& problem, SolveReport report, Impulses& best, Imp
   problem.must_complete();
   Softened<Problem> soft(problem);
   const CompromiseLimits limits;
-  Pursuit<Residual, CompromiseLimits, Softened<Problem>, Impulses> pursuit(limits, soft, best);
-  if (pursuit.begin()) {
-    pursuit.open("compromise", limits.max_iterations);
-    momentum(soft, pursuit, last, [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });
+  ConvergenceMonitor<Residual, CompromiseLimits, Softened<Problem>, Impulses> monitor(limits, soft, best);
+  if (monitor.begin()) {
+    monitor.open("compromise", limits.max_iterations);
+    momentum(soft, monitor, last, [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });
   }
-  report.sweeps += pursuit.finish().sweeps;
+  report.sweeps += monitor.finish().sweeps;
   soft.restore();
   report.measure = problem.measure();
   report.status = Status::infeasible;

@@ -178,10 +178,10 @@ class Contradiction {
 /// Whether λ runs away because the rows contradict each other: asked where sweeps have stalled, a few after λ
 /// was `before`. Costs little where λ does not, forty sweeps where the rows agree, and at most some three
 /// hundred.
-template <class Problem, class Pursuit, class Impulses>
-bool contradicts(Problem& problem, Pursuit& pursuit, Impulses& before) {
+template <class Problem, class ConvergenceMonitor, class Impulses>
+bool contradicts(Problem& problem, ConvergenceMonitor& monitor, Impulses& before) {
   if (!problem.is_cut_off(0) && Contradiction<Problem>(problem).is_proved(before)) return true;
-  pursuit.back_to_best();
+  monitor.back_to_best();
   return false;
 }
 

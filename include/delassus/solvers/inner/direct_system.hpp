@@ -95,7 +95,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     node.last = Index(sides_.size());
     measure(node);
     for (int k = 0; k < r; ++k) {
-      node.compliance[k] = double(pool.compliance[i][k]) + double(pool.softness[i][k]) * node.scale[k];
+      node.compliance[k] = double(pool.compliance[i][k]) + double(pool.relative_compliance[i][k]) * node.scale[k];
       node.scale[k] = std::abs(node.scale[k]) + node.compliance[k];
     }
     nodes_.push_back(node);

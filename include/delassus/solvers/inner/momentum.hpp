@@ -54,20 +54,20 @@ class RestartRule {
 /// futile and the error stands. `x` is room for the impulses before; sweep(x, curvature) sets that product
 /// and returns how much it moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
 /// gradient restart.
-template <class Problem, class Pursuit, class Impulses, class Sweep,
+template <class Problem, class ConvergenceMonitor, class Impulses, class Sweep,
           class Pause = decltype([] { return false; })>
-bool momentum(Problem& problem, Pursuit& pursuit, Impulses& x, Sweep&& sweep, Pause&& pause = {}) {
+bool momentum(Problem& problem, ConvergenceMonitor& monitor, Impulses& x, Sweep&& sweep, Pause&& pause = {}) {
   RestartRule rule;
   double theta = 1;
   problem.save(x);
   while (!pause()) {
     double curvature = 0;
     const double moved = sweep(x, curvature);  // λ is z now
-    if (!pursuit.goes_on(moved)) return false;
+    if (!monitor.goes_on(moved)) return false;
     if (rule.asks(curvature, moved)) {
       problem.save(x);
       theta = std::max(1.0, 0.5 * theta);
-      if (rule.is_futile() && pursuit.stands()) return true;
+      if (rule.is_futile() && monitor.is_stagnating()) return true;
     } else {
       const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
       if (theta > 1)

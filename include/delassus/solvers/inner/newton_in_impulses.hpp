@@ -69,7 +69,7 @@ struct NewtonInImpulses {
       const double fall = approach(problem, space, epsilon, report);
       space.give(problem);
       const Measure now = problem.measure();
-      problem.tell(report.sweeps + report.factorizations, now);
+      problem.notify(report.sweeps + report.factorizations, now);
       const bool is_better = Criterion::sum(now) < Criterion::sum(report.measure);
       if (is_better) {
         report.measure = now;

@@ -42,37 +42,37 @@ struct NewtonLimits {
 /// before the sweeps: they leave it where each step of Newton's method changes which rows carry, and ten
 /// boxes cost 29 factorizations in place of two. Warm they have helped, and λ from before them is for the
 /// second opening. From the sweeps' λ ε begins large, and grows where it stalls.
-template <class Criterion, class Problem, class Pursuit>
+template <class Criterion, class Problem, class ConvergenceMonitor>
 class NewtonStage {
  public:
   using Space = NewtonSpace<typename Problem::RowsType>;
   using Body = BodySpace<typename Problem::RowsType>;
 
   template <class Chain>
-  NewtonStage(const Chain& chain, Problem& problem, Pursuit& pursuit, Space& space)
+  NewtonStage(const Chain& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space)
       : limits_{.tolerance = chain.tolerance,
                 .scale_tolerance = chain.scale_tolerance,
                 .all_verified = chain.all_verified},
         problem_(problem),
-        pursuit_(pursuit),
+        monitor_(monitor),
         space_(space) {
     problem.save(space.start);
   }
 
   /// Asked before each sweep of momentum. The island is gathered when it has been swept for a while, and
   /// where Newton's method cannot act nothing is changed.
-  bool opens() { return pursuit_.sweeps() >= opening_ && is_due(); }
+  bool opens() { return monitor_.sweeps() >= opening_ && is_due(); }
 
   /// The rows keep the better of what they had and what was found.
   [[gnu::noinline]] void run() {
-    pursuit_.back_to_best();
-    pursuit_.name("newton");
-    const double before = Criterion::sum(pursuit_.best());
+    monitor_.back_to_best();
+    monitor_.name("newton");
+    const double before = Criterion::sum(monitor_.best());
     ProximalPoint<Criterion, NewtonLimits, Problem, Body> point(limits_, problem_, space_.body);
-    point.sweeps = pursuit_.sweeps();
+    point.sweeps = monitor_.sweeps();
     point.work = around * cost_;
     const double allowed = 100 * std::max(energy(), space_.body.energy_of_stopping(problem_));
-    const bool from_start = openings_++ == (pursuit_.first_error() > cold ? 0 : 1);
+    const bool from_start = openings_++ == (monitor_.first_error() > cold ? 0 : 1);
     if (from_start)
       problem_.load(space_.start);
     else
@@ -80,11 +80,11 @@ class NewtonStage {
     if (space_.body.restart(problem_)) {
       space_.body.keep(problem_);
       point.begin();
-      const int share = std::max(2 * likely, int(pursuit_.sweeps() / cost_));
-      double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(pursuit_.best()));
+      const int share = std::max(2 * likely, int(monitor_.sweeps() / cost_));
+      double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(monitor_.best()));
       limits_.max_iterations = share;
       while (!(point.run() && point.is_met())) {
-        point.give_best();
+        point.restore_best();
         if (!point.restart()) break;
         if (point.has_time()) continue;
         const double error = Criterion::sum(point.measure);
@@ -92,15 +92,15 @@ class NewtonStage {
         smallest = error;
         limits_.max_iterations += share;
       }
-      if (!(energy() <= allowed)) pursuit_.back_to_best();
+      if (!(energy() <= allowed)) monitor_.back_to_best();
       point.measure = problem_.measure();
-      pursuit_.take(point.measure, point.factorizations);
+      monitor_.take(point.measure, point.factorizations);
       if (!from_start) epsilon_ = point.epsilon;
     }
-    if (!pursuit_.is_over()) pursuit_.back_to_best();
-    problem_.attempted(Criterion::sum(pursuit_.best()) < 0.5 * before);
+    if (!monitor_.is_over()) monitor_.back_to_best();
+    problem_.attempted(Criterion::sum(monitor_.best()) < 0.5 * before);
     wait_ *= 2;
-    open_after(pursuit_.sweeps() + std::max(double(wait_), 2 * point.factorizations * cost_));
+    open_after(monitor_.sweeps() + std::max(double(wait_), 2 * point.factorizations * cost_));
   }
 
  private:
@@ -117,7 +117,7 @@ class NewtonStage {
       }
     }
     const double work = likely * cost_;
-    return pursuit_.sweeps() >= opening_ && pursuit_.likely_left() >= work &&
+    return monitor_.sweeps() >= opening_ && monitor_.likely_left() >= work &&
            problem_.may_attempt(around * work);
   }
 
@@ -143,7 +143,7 @@ class NewtonStage {
 
   NewtonLimits limits_;
   Problem& problem_;
-  Pursuit& pursuit_;
+  ConvergenceMonitor& monitor_;
   Space& space_;
   double cost_ = 0;  ///< of a factorization, in sweeps
   double epsilon_ = 1e-5;
@@ -165,8 +165,8 @@ struct SweepsAlone {
     static constexpr bool opens() { return false; }
     static void run() {}
   };
-  template <class Criterion, class Chain, class Problem, class Pursuit, class Body>
-  static Stage stage(const Chain&, Problem&, Pursuit&, Body&) {
+  template <class Criterion, class Chain, class Problem, class ConvergenceMonitor, class Body>
+  static Stage stage(const Chain&, Problem&, ConvergenceMonitor&, Body&) {
     return {};
   }
 };
@@ -177,10 +177,10 @@ struct ThenNewton {
   template <class Rows>
   using Space =
       std::conditional_t<inner::knows_bodies<Rows>, inner::NewtonSpace<Rows>, SweepsAlone::Space<Rows>>;
-  template <class Criterion, class Chain, class Problem, class Pursuit, class Space>
-  static auto stage(const Chain& chain, Problem& problem, Pursuit& pursuit, Space& space) {
+  template <class Criterion, class Chain, class Problem, class ConvergenceMonitor, class Space>
+  static auto stage(const Chain& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space) {
     if constexpr (Criterion::needs_measure && inner::knows_bodies<typename Problem::RowsType>)
-      return inner::NewtonStage<Criterion, Problem, Pursuit>(chain, problem, pursuit, space);
+      return inner::NewtonStage<Criterion, Problem, ConvergenceMonitor>(chain, problem, monitor, space);
     else
       return SweepsAlone::Stage{};
   }

@@ -251,9 +251,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     const Local<r, T> local = problem.template local<p>(i);
     auto& sides = std::get<p>(sides_);
     Item<r> c = item_of(local, i, Index(sides.size()));
-    for (int k = 0; k < r; ++k) {  // W_kk = (H A⁻¹ Hᵀ)_kk (1 + softness) + compliance
-      const double whole = double(local.W(k, k)), softness = double(pool.softness[i][k]);
-      c.compliance[k] = (whole * softness + double(pool.compliance[i][k])) / (1 + softness);
+    for (int k = 0; k < r; ++k) {  // W_kk = (H A⁻¹ Hᵀ)_kk (1 + relative_compliance) + compliance
+      const double whole = double(local.W(k, k)), relative_compliance = double(pool.relative_compliance[i][k]);
+      c.compliance[k] = (whole * relative_compliance + double(pool.compliance[i][k])) / (1 + relative_compliance);
     }
     each_side(pool, i, [&](auto s, Index e) {
       const auto& set = std::get<s>(pool.sets);

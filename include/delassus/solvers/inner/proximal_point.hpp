@@ -52,7 +52,7 @@ class ProximalPoint {
     return is_done(measure);
   }
   /// The rows take the λ of the smallest measured error.
-  void give_best() {
+  void restore_best() {
     body_.hand_over(problem_, [](const auto& c) { return c.best; });
   }
 
@@ -99,7 +99,7 @@ class ProximalPoint {
       measure = body_.measure(problem_);
       if (problem_.tells_forces())
         body_.hand_over(problem_, [](const auto& c) { return c.lambda; });
-      problem_.tell(sweeps + factorizations, measure);
+      problem_.notify(sweeps + factorizations, measure);
       if (is_done(measure) || size < 1e-4 * first) break;
       if (!(size <= 0.99 * before)) return false;
     }

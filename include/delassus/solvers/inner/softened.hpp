@@ -77,7 +77,7 @@ class Softened : private SoftenedRoom<Problem>, public SoftenedIsland<Problem> {
     this->each([&](auto p, Index i) { whole_.template prepare<p>(i, whole_.template local<p>(i).W); });
   }
   bool is_out_of_time() { return whole_.is_out_of_time(); }
-  void tell(int, const Measure&) const {}
+  void notify(int, const Measure&) const {}
 
  private:
   Problem& whole_;

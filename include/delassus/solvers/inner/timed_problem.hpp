@@ -126,8 +126,8 @@ class TimedProblem : public Problem {
     watch_.let_go(has_due_sweeps_ && !must_complete_ && least_.residual < infinity);
     return m;
   }
-  void tell(int sweeps, const Measure& m) {
-    if (!watch_.lets_go()) Problem::tell(sweeps, m);
+  void notify(int sweeps, const Measure& m) {
+    if (!watch_.lets_go()) Problem::notify(sweeps, m);
   }
   void save(Best& to) {
     if (!watch_.lets_go()) Problem::save(to);
@@ -140,7 +140,7 @@ class TimedProblem : public Problem {
   /// Whether λ is unfit for use.
   bool has_let_go() const { return watch_.has_let_go(); }
   /// λ ← the best measured.
-  const Measure& give_best() {
+  const Measure& restore_best() {
     Problem::load(best_);
     return least_;
   }

@@ -15,9 +15,9 @@ namespace delassus {
 /// The laws of the position problem: equalities stay equalities, bounds stay bounds, friction rows are locked at zero.
 /// One projected Gauss-Seidel pass over the rows of each block.
 template <class Constraints, class T>
-class PositionBook;
+class PositionLawSet;
 template <class... Laws, class T>
-class PositionBook<Constraints<Laws...>, T> {
+class PositionLawSet<Constraints<Laws...>, T> {
  public:
   template <int p, int R>
   void project(Index, Local<R, T>& c) const {
@@ -169,12 +169,12 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   });
   make_position_bias(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
   step.W.reset(rows);
-  PositionBook<Laws, typename Step::Scalar> book;
+  PositionLawSet<Laws, typename Step::Scalar> book;
   NoObserver nobody;
   Status worst = Status::converged;
   constexpr double far = 0.05;  // of the largest velocity that closes a gap
   for (Index k = 0; k < step.islands.count(); ++k)
-    if (!step.is_sick[k]) {
+    if (!step.is_nonfinite[k]) {
       const SolveReport r =
           solve_island(book, rows, step.W, step.islands, k, step.solver(), step.solver_workspace, step.h, nobody);
       if (r.measure.residual > far) worst = worse(worst, r.status);

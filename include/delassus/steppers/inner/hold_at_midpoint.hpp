@@ -107,7 +107,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   void begin_again(World& world, const Laws& laws, Rows& rows) {
     world.each([&](auto& set, auto s) {
       set.velocity() = std::get<s>(velocity_);
-      for (const Index b : set.active()) set.state().take_pose_back(b);
+      for (const Index b : set.active()) set.state().restore_pose(b);
     });
     linearize(world, laws, rows);
     total_.set_zero();
@@ -128,7 +128,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
         set.v_next[b] = v;
         v = std::get<s>(velocity_)[b];
         if (!is_done && set.moves(b)) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
-        if (!is_done || !set.moves(b)) set.state().take_pose_back(b);
+        if (!is_done || !set.moves(b)) set.state().restore_pose(b);
       }
     });
     if (!is_done) total_.set_zero();

@@ -29,8 +29,8 @@ void kick(const auto& set, auto& p, double h) {
 }
 
 /// The step has put the bodies where they are; their velocity is v_next.
-void arrive(auto& set, double h) {
-  if constexpr (requires { set.arrive(h); }) set.arrive(h);
+void finish_step(auto& set, double h) {
+  if constexpr (requires { set.finish_step(h); }) set.finish_step(h);
 }
 
 /// Linearize to Correct by the state of the integrator, whose solve(world, laws, rows, integrator, h) leaves v_next and λ,
@@ -43,10 +43,10 @@ void solve_at_once(auto& step) {
     step.summary.status = worse(step.summary.status, step.reports[0].status);
     step.summary.residual = std::max(step.summary.residual, step.reports[0].measure.residual);
     step.summary.islands = 1;
-    keep_impulses(step.laws(), step.rows, step.contact_book);
+    keep_impulses(step.laws(), step.rows, step.contact_cache);
     note_broken(step.laws(), step.h);
   } else {
-    typename std::remove_reference_t<decltype(step)>::Parts::Rows none;
+    typename std::remove_reference_t<decltype(step)>::Policies::Rows none;
     const SolveReport report = own.solve(step.world(), step.laws(), none, step.integrator(), step.h);
     step.summary.status = worse(step.summary.status, report.status);
   }

@@ -15,13 +15,13 @@ inline constexpr int drift_sweeps = 16;
 
 /// √Σ w_i |z_i|² of a way z, zero where it was not straight or the pace not even, and √Σ w_i |λ_i|² at its
 /// end.
-struct Drift {
+struct SlowDirection {
   double length, size;
 };
 
 /// Plain sweeps, `before` being λ before them, z = λ − `before`.
 template <class Problem, class Impulses>
-[[gnu::noinline]] Drift drift(Problem& problem, Impulses& before) {
+[[gnu::noinline]] SlowDirection find_slow_direction(Problem& problem, Impulses& before) {
   problem.save(before);
   double moved = 0, square = 0, size = 0;
   for (int k = 0; k < drift_sweeps; ++k) moved = problem.sweep();
@@ -79,24 +79,24 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
 ///
 /// An impulse that begins to slip so is no larger than those that carry: a way of more than twice the length
 /// of λ is none of these, but one of rows that contradict each other, and λ runs away along it. To be called
-/// where sweeps have stalled, after `drift`, which gives `way`. True where λ has gone so, and settled: from
+/// where sweeps have stalled, after `find_slow_direction`, which gives `way`. True where λ has gone so, and settled: from
 /// there momentum goes on. What that would reach by itself within `patience` sweeps, which is patience²/4
 /// plain ones, is left to it.
-template <class Problem, class Pursuit, class Impulses>
-[[gnu::noinline]] bool leap(Problem& problem, Pursuit& pursuit, Impulses& before, Drift way, int patience) {
+template <class Problem, class ConvergenceMonitor, class Impulses>
+[[gnu::noinline]] bool extrapolate_to_cone_boundary(Problem& problem, ConvergenceMonitor& monitor, Impulses& before, SlowDirection way, int patience) {
   constexpr int settling = 40, in_a_row = 8;
   double far = 0.25 * patience * patience / drift_sweeps;
   bool has_leapt = false;
   for (int k = 0; k < in_a_row && way.length > 0; ++k) {
     const double beta = reach(problem, before, way.length, 2 * way.size / way.length);
     if (!(beta > far)) break;
-    if (!has_leapt) pursuit.open("leap", in_a_row * settling);
+    if (!has_leapt) monitor.open("extrapolation", in_a_row * settling);
     has_leapt = true;
     far = 1;  // the rest of the way
     problem.extrapolate(before, beta);
     for (int n = 0; n < settling; ++n)
-      if (!pursuit.goes_on(problem.sweep())) return true;
-    way = drift(problem, before);
+      if (!monitor.goes_on(problem.sweep())) return true;
+    way = find_slow_direction(problem, before);
   }
   return has_leapt;
 }

@@ -14,9 +14,9 @@ namespace delassus::inner {
 /// stalled when the best measured error did not halve within `patience` sweeps, or half as many as it took to
 /// get there if that is more.
 template <class Criterion, class Solver, class Problem, class Impulses>
-class Pursuit {
+class ConvergenceMonitor {
  public:
-  Pursuit(const Solver& solver, Problem& problem, Impulses& best)
+  ConvergenceMonitor(const Solver& solver, Problem& problem, Impulses& best)
       : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {
     tolerance_ = solver.tolerance * (solver.scale_tolerance ? rows_ : 1);
     reach_ = near * tolerance_;
@@ -30,7 +30,7 @@ class Pursuit {
     if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !Problem::Observes::every_sweep)
       return true;
     report_.measure = best_ = problem_.measure();
-    problem_.tell(0, report_.measure);
+    problem_.notify(0, report_.measure);
     if (is_not_finite()) return false;
     is_met_ = solver_.min_iterations == 0 && is_done(best_);
     return !is_met_ && solver_.max_iterations > 0;
@@ -53,7 +53,7 @@ class Pursuit {
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
     per_root_of_movement_ = Criterion::sum(report_.measure) / std::sqrt(moved);
-    problem_.tell(report_.sweeps, report_.measure);
+    problem_.notify(report_.sweeps, report_.measure);
     if (std::isinf(best_.residual) && is_not_finite()) return false;
     is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
     if (is_met_) return false;
@@ -74,7 +74,7 @@ class Pursuit {
 
   /// The best error did not halve within 60 sweeps, or half as many as it took to get there: a stage that has
   /// another sign of going round in circles need not wait for the end of its patience.
-  bool stands() const {
+  bool is_stagnating() const {
     return Criterion::needs_measure &&
            report_.sweeps - progressed_ > std::max(60, (progressed_ - opened_) / 2);
   }

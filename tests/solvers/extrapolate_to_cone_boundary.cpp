@@ -1,8 +1,8 @@
 // Where two contacts push against each other and move nothing, and yet cannot both stick.
 #include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/inner/leap.hpp>
-#include <delassus/solvers/law_book.hpp>
+#include <delassus/solvers/inner/extrapolate_to_cone_boundary.hpp>
+#include <delassus/solvers/law_set.hpp>
 
 #include "catch.hpp"
 
@@ -122,7 +122,7 @@ TEST_CASE("the reach of a way is to where it leaves a cone first") {
   before.resize_like(p.rows);
   std::get<0>(before.pools) = {Vec3(1, 0.1, 0), Vec3(1, 0, 0)};
   lambda[0] = Vec3(1, 0.101, 0), lambda[1] = Vec3(1, -0.001, 0);
-  LawBook<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double> book(p.laws);
+  LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double> book(p.laws);
   book.prepare(p.W, p.rows, p.h);
   NoObserver nobody;
   const IslandProblem problem(book, p.rows, p.W, p.islands, 0, p.h, nobody);
@@ -140,18 +140,18 @@ TEST_CASE("sweeps that have ended do not drift") {
   FrictionProblem p = lying({{1e-6, 1e-6}});
   Impulses<FrictionProblem::Rows> before;
   before.resize_like(p.rows);
-  LawBook<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double> book(p.laws);
+  LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double> book(p.laws);
   book.prepare(p.W, p.rows, p.h);
   NoObserver nobody;
   IslandProblem problem(book, p.rows, p.W, p.islands, 0, p.h, nobody);
   for (int k = 0; k < 200; ++k) problem.sweep();
-  REQUIRE(inner::drift(problem, before).length == 0);
+  REQUIRE(inner::find_slow_direction(problem, before).length == 0);
   FrictionProblem q = lying({{3e-6, -3e-6}});
   book = decltype(book)(q.laws);
   book.prepare(q.W, q.rows, q.h);
   IslandProblem drifting(book, q.rows, q.W, q.islands, 0, q.h, nobody);
   for (int k = 0; k < 200; ++k) drifting.sweep();
-  REQUIRE(inner::drift(drifting, before).length > 0);
+  REQUIRE(inner::find_slow_direction(drifting, before).length > 0);
 }
 
 }  // namespace leap_tests

@@ -1,7 +1,7 @@
 /// What every set keeps of a body besides its state: its place, its velocities and load, and whom it meets.
 #pragma once
 
-#include <delassus/bodies/inner/held.hpp>
+#include <delassus/bodies/inner/quarantine_record.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
@@ -20,7 +20,7 @@ namespace delassus::inner {
 /// A set of bodies derives from it. `Set` is that set: it types the handles, and `Set::kind` is the word for
 /// its bodies.
 template <class Set, class T, int width_>
-class Places {
+class BodyStorage {
  public:
   using Scalar = T;
   using Handle = delassus::Handle<Set>;
@@ -38,17 +38,17 @@ class Places {
   std::string who(Index b) const { return std::string(Set::kind) + " #" + std::to_string(b); }
 
   Index blocks() const { return slots_.size(); }
-  Census census() const { return {owner_, slots_.removals(), slots_.size()}; }
+  SetVersion version() const { return {owner_, slots_.removals(), slots_.size()}; }
   const Array<Index>& active() const { return slots_.active(); }
   bool is_alive(Index b) const { return slots_.is_alive(b); }
   bool is_awake(Index b) const { return slots_.is_awake(b); }
   /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
-  void lull(Index b) {
+  void put_to_sleep(Index b) {
     slots_.set_awake(b, false);
     v_[b].setZero();
     v_free[b] = v_next[b] = v_[b];
   }
-  void rouse(Index b) { slots_.set_awake(b, true); }
+  void wake(Index b) { slots_.set_awake(b, true); }
 
   const Velocity& load(Index b) const { return load_[b]; }
   /// N and N·m; each is taken when its body has moved.
@@ -57,8 +57,8 @@ class Places {
   const Array<Velocity>& velocity() const { return v_; }
   Array<Velocity>& velocity() { return v_; }
   /// How many bodies the last advance left where they were.
-  Index held() const { return held_.count; }
-  const Held& who_was_held() const { return held_; }
+  Index quarantined() const { return quarantine_.count; }
+  const QuarantineRecord& quarantine_record() const { return quarantine_; }
 
   Index material(Index b) const { return material_[b]; }
   /// Whether every body that was ever added has a material from 0 to `count`.
@@ -101,7 +101,7 @@ class Places {
   }
 
   Slots slots_;
-  Held held_;
+  QuarantineRecord quarantine_;
   Array<Velocity> v_, load_;
 
  private:

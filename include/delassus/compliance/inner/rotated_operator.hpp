@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/compliance/assembled.hpp>
-#include <delassus/compliance/inner/turned_inverse.hpp>
+#include <delassus/compliance/inner/rotated_inverse.hpp>
 #include <delassus/core/array.hpp>
 
 #include <cmath>
@@ -33,7 +33,7 @@ concept AssembledSet = NodeCompliantSet<S> && requires(S set, const S fixed, Sys
 namespace inner {
 
 /// When to stop, and when a factor is old.
-struct TurnedLimits {
+struct RotatedLimits {
   double violation, tolerance, contraction;
   int max_iterations, max_passes;
 };
@@ -43,7 +43,7 @@ struct FactorOfAStep {
   static constexpr bool is_at_rest = false;
 };
 
-/// W̃ = H R F⁻¹ Rᵀ Hᵀ of `TurnedInverse`. What W̃ misses goes into d: with d₀ what the free motion gives and
+/// W̃ = H R F⁻¹ Rᵀ Hᵀ of `RotatedInverse`. What W̃ misses goes into d: with d₀ what the free motion gives and
 /// Δv = A⁻¹ Hᵀ λ by conjugate gradients,
 ///
 ///   d = d₀ + H Δv − W̃ λ,
@@ -51,10 +51,10 @@ struct FactorOfAStep {
 /// so that after the next solve the rows are off by (W − W̃) Δλ alone, Δλ being what it changed. `Origin` says
 /// of which A the factors are; one that `is_at_rest` completes each new one by complete(k, inverse, body).
 template <class S, class Rows, class Origin>
-class TurnedOperator;
+class RotatedOperator;
 
 template <class S, class T, int... w, int... R, class Origin>
-class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
+class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
     : public AssembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
   using Rows = RowSystem<T, Widths<w...>, R...>;
@@ -67,7 +67,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
     using Scalar = T;
     using Velocity = typename Set::Velocity;
     Set& set;
-    TurnedOperator& own;
+    RotatedOperator& own;
     int guess;
 
     Index blocks() const { return set.blocks(); }
@@ -139,7 +139,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
 
  private:
   struct Body {
-    TurnedInverse<S, T> inverse;
+    RotatedInverse<S, T> inverse;
     std::uint32_t number = 0;  ///< of the body that it is of
   };
 
@@ -178,7 +178,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   template <class World>
   struct ThroughAll {
     const World& world;
-    TurnedOperator& own;
+    RotatedOperator& own;
     template <class F>
     void each(F&& f) const {
       world.each([&](const auto& set, auto s) {
@@ -247,7 +247,7 @@ class TurnedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   }
 
   static constexpr int most_iterations = 60;
-  TurnedLimits limits_{};
+  RotatedLimits limits_{};
   [[no_unique_address]] Origin origin_;
   ComplianceReport report_;
   double last_miss_ = 0;

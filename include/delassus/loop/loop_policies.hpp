@@ -3,10 +3,10 @@
 
 #include <delassus/loop/checks.hpp>
 #include <delassus/loop/defaults.hpp>
+#include <delassus/loop/held_policies.hpp>
 #include <delassus/loop/order_of_overrides.hpp>
 #include <delassus/step/channels.hpp>
 #include <delassus/step/plain_step.hpp>
-#include <delassus/loop/held_policies.hpp>
 #include <delassus/step/row_types.hpp>
 
 #include <tuple>
@@ -15,45 +15,45 @@
 namespace delassus {
 
 /// Parts that fit together.
-template <class... Policies>
-struct SoundParts : Parts<Policies...> {
-  using Base = Parts<Policies...>;
+template <class... Args>
+struct SoundPolicies : Policies<Args...> {
+  using Base = Policies<Args...>;
   template <class Role>
-  using of = typename inner::part_type<Base, Role>::type;
+  using of = typename inner::policy_type<Base, Role>::type;
   using Scratch = typename inner::widths_of<typename Base::World>::Scratch;
-  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Policies...>::type, Policies...>;
+  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Args...>::type, Args...>;
   using Rows = typename inner::rows_of<typename Base::World, typename Base::Laws>::type;
   using Operator = typename Base::Compliance::template Operator<Rows>;
   using Stages = typename inner::stages_of<Base>::type;
-  using States = typename inner::states_of<SoundParts, Base>::type;
+  using States = typename inner::states_of<SoundPolicies, Base>::type;
   static constexpr bool has_rows = Base::Laws::pool_count > 0;
   static constexpr bool has_problem = has_rows && inner::makes_problem<typename Base::Scheme> && !MovesAtOnce<typename Base::Integrator>;
-  using Channels = typename inner::channels_of<typename inner::problem_of<Base>::type, Policies...>::type;
+  using Channels = typename inner::channels_of<typename inner::problem_of<Base>::type, Args...>::type;
 };
 
 /// Parts that do not: the sentence has been said, and the loop never steps.
-template <class... Policies>
-struct UnsoundParts : Parts<Policies...> {
-  using Base = Parts<Policies...>;
+template <class... Args>
+struct UnsoundPolicies : Policies<Args...> {
+  using Base = Policies<Args...>;
   template <class Role>
-  using of = typename inner::part_type<Base, Role>::type;
+  using of = typename inner::policy_type<Base, Role>::type;
   using Scratch = std::tuple<>;
-  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Policies...>::type, Policies...>;
+  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Args...>::type, Args...>;
   using Rows = void;
   using Operator = void;
   using Stages = StagesWithoutConstraints;
-  using States = inner::States<UnsoundParts>;
+  using States = inner::States<UnsoundPolicies>;
   static constexpr bool has_rows = false, has_problem = false;
   using Channels = inner::Channels<void>;
 };
 
 namespace inner {
 
-template <class... Policies>
-struct loop_parts {
-  static constexpr bool are_sound = loop_is_sound<Parts<Policies...>, Policies...>();
-  using type = typename std::conditional_t<are_sound, std::type_identity<SoundParts<Policies...>>,
-                                  std::type_identity<UnsoundParts<Policies...>>>::type;
+template <class... Args>
+struct loop_policies {
+  static constexpr bool are_sound = loop_is_sound<Policies<Args...>, Args...>();
+  using type = typename std::conditional_t<are_sound, std::type_identity<SoundPolicies<Args...>>,
+                                  std::type_identity<UnsoundPolicies<Args...>>>::type;
 };
 
 }  // namespace inner

@@ -14,16 +14,16 @@
 namespace delassus {
 
 template <class Constraints, class T>
-class LawBook;
+class LawSet;
 
 /// Calls each law with its item and its memory. `prepare` runs once a step, when W is built.
 template <class... Laws, class T>
-class LawBook<Constraints<Laws...>, T> {
+class LawSet<Constraints<Laws...>, T> {
   using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<Laws, T>>...>;
 
  public:
-  LawBook() = default;  ///< of nothing, before it is attached
-  explicit LawBook(const Constraints<Laws...>& constraints) : constraints_(&constraints) {}
+  LawSet() = default;  ///< of nothing, before it is attached
+  explicit LawSet(const Constraints<Laws...>& constraints) : constraints_(&constraints) {}
 
   /// The constraints may have moved with their loop.
   void attach(const Constraints<Laws...>& constraints) { constraints_ = &constraints; }
@@ -62,13 +62,13 @@ class LawBook<Constraints<Laws...>, T> {
     using Pool = std::remove_cvref_t<decltype(std::declval<const Constraints<Laws...>&>().template pool<p>())>;
     using Memory = typename std::tuple_element_t<p, Memories>::value_type;
     return requires(const Pool& pool, const Vec<Pool::rows, T>& b, Memory& memory) {
-      { pool.law.meet(pool.item(0), b, memory) } -> std::same_as<Vec<Pool::rows, T>>;
+      { pool.law.solve_local(pool.item(0), b, memory) } -> std::same_as<Vec<Pool::rows, T>>;
     };
   }
   template <int p, int R>
-  Vec<R, T> meet(Index i, const Vec<R, T>& b) {
+  Vec<R, T> solve_local(Index i, const Vec<R, T>& b) {
     const auto& pool = constraints_->template pool<p>();
-    return pool.law.meet(pool.item(i), b, std::get<p>(memory_)[i]);
+    return pool.law.solve_local(pool.item(i), b, std::get<p>(memory_)[i]);
   }
 
   /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.

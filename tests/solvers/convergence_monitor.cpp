@@ -1,6 +1,6 @@
 // When the stages of a solve look at the error, on errors that are given.
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/inner/pursuit.hpp>
+#include <delassus/solvers/inner/convergence_monitor.hpp>
 
 #include "catch.hpp"
 
@@ -30,21 +30,21 @@ struct Given {
   }
   void save(int& to) const { to = sweeps; }
   void load(int) {}
-  void tell(int, const Measure&) const {}
+  void notify(int, const Measure&) const {}
   static constexpr bool is_out_of_time() { return false; }
   static constexpr bool is_measure_due() { return false; }
 };
 
-/// Sweeps that move as far as the error says, until the pursuit ends.
+/// Sweeps that move as far as the error says, until the monitor ends it.
 SolveReport follow(Given& problem, double tolerance) {
   const AcceleratedGaussSeidel solver{.tolerance = tolerance};
   int best = 0;
-  inner::Pursuit<Residual, AcceleratedGaussSeidel, Given, int> pursuit(solver, problem, best);
-  REQUIRE(pursuit.begin());
-  pursuit.open("sweeps", 1000);
+  inner::ConvergenceMonitor<Residual, AcceleratedGaussSeidel, Given, int> monitor(solver, problem, best);
+  REQUIRE(monitor.begin());
+  monitor.open("sweeps", 1000);
   do ++problem.sweeps;
-  while (pursuit.goes_on(std::pow(7 * problem.error(problem.sweeps), 2)));
-  return pursuit.finish();
+  while (monitor.goes_on(std::pow(7 * problem.error(problem.sweeps), 2)));
+  return monitor.finish();
 }
 
 }  // namespace
@@ -82,12 +82,12 @@ TEST_CASE("a movement that foretells a large error does not keep the solve from 
   Given problem{[](int k) { return std::pow(0.5, k); }};
   const AcceleratedGaussSeidel solver{.tolerance = 1e-9};
   int best = 0;
-  inner::Pursuit<Residual, AcceleratedGaussSeidel, Given, int> pursuit(solver, problem, best);
-  REQUIRE(pursuit.begin());
-  pursuit.open("sweeps", 1000);
+  inner::ConvergenceMonitor<Residual, AcceleratedGaussSeidel, Given, int> monitor(solver, problem, best);
+  REQUIRE(monitor.begin());
+  monitor.open("sweeps", 1000);
   do ++problem.sweeps;
-  while (pursuit.goes_on(1));
-  REQUIRE(pursuit.finish().status == Status::converged);
+  while (monitor.goes_on(1));
+  REQUIRE(monitor.finish().status == Status::converged);
   REQUIRE(problem.sweeps <= 30 + 16);  // 2^-30 = 9.3e-10, and twice an interval of 8
 }
 

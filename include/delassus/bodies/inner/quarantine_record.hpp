@@ -7,7 +7,7 @@
 namespace delassus::inner {
 
 /// All blocks of an island are held when one is sick: `loaded` is the one to blame, where there is one.
-struct Held {
+struct QuarantineRecord {
   Index count = 0;    ///< of bodies
   Index first = -1;   ///< a block of the first of them
   Index loaded = -1;  ///< the first block held whose force or torque was not finite

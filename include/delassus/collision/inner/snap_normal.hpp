@@ -17,7 +17,7 @@ enum class NormalOwner : std::uint8_t { kernel, a, b };
 /// parallel faces do not take turns. Afterwards the normal of a flat contact is exact, whatever the kernel's
 /// rounding.
 template <std::same_as<Shape> S>
-NormalOwner settle_normal(const S& a, const S& b, const Pose& b_in_a, double scale, NormalOwner last,
+NormalOwner snap_normal_to_face(const S& a, const S& b, const Pose& b_in_a, double scale, NormalOwner last,
                           SignedPair& r) {
   const double advance = 1e-5 * scale;
   const SignedPair kernel = r;

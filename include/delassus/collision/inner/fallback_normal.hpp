@@ -26,6 +26,6 @@ inline Vec3 place_of_key(std::uint32_t key) {
 /// From A to B, as if both were moved apart a little, each to a place of its own: then many bodies in one point
 /// part in all directions, by normals that do not contradict each other, for v = s · place with s large enough
 /// meets all. One direction for all would make a row of n, whose ends part n times as fast as neighbours.
-inline Vec3 parting(std::uint32_t a, std::uint32_t b) { return place_of_key(b) - place_of_key(a); }
+inline Vec3 fallback_normal(std::uint32_t a, std::uint32_t b) { return place_of_key(b) - place_of_key(a); }
 
 }  // namespace delassus::inner

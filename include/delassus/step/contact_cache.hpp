@@ -25,7 +25,7 @@ struct ContactResult {
 
 /// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.
 template <class Scalar>
-class BasicContactBook {
+class BasicContactCache {
  public:
   Array<Collider> colliders;
   std::vector<ContactPoint> points;
@@ -115,6 +115,6 @@ class BasicContactBook {
   BasicContactMemory<Scalar> memory_;
 };
 
-using ContactBook = BasicContactBook<double>;
+using ContactCache = BasicContactCache<double>;
 
 }  // namespace delassus

@@ -18,7 +18,7 @@ namespace {
 double nearest_places(std::uint32_t first, std::uint32_t count) {
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t a = first; a < first + count; ++a)
-    for (std::uint32_t b = first; b < a; ++b) least = std::min(least, inner::parting(a, b).norm());
+    for (std::uint32_t b = first; b < a; ++b) least = std::min(least, inner::fallback_normal(a, b).norm());
   return least;
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("bodies in one place part by normals that do not contradict each other
     int against = 0;
     for (const ContactPoint& c : scene.contacts) {
       CHECK((c.point_b - c.point_a - c.gap * c.normal).norm() < 1e-13);
-      against += !(c.normal.dot(inner::parting(scene.colliders[c.a].key, scene.colliders[c.b].key)) > 0);
+      against += !(c.normal.dot(inner::fallback_normal(scene.colliders[c.a].key, scene.colliders[c.b].key)) > 0);
     }
     CHECK(against == 0);
   }

@@ -23,11 +23,11 @@ namespace delassus::inner {
 /// conjugate gradients on A; `compliance` takes it as it is. S is the scalar of the factor. Warm calls with
 /// as many nodes allocate nothing. Source: [CourtecuisseAllard2014].
 template <class S, class T>
-class TurnedInverse {
+class RotatedInverse {
  public:
   using FactorScalar = S;
   using Velocity = Vec<3, T>;
-  using Places = Array<Velocity>;
+  using NodeVectors = Array<Velocity>;
 
   Index nodes() const { return Index(slot_.size()); }
   /// There is no factor, or it is of other held nodes, or of another step or damping.
@@ -40,7 +40,7 @@ class TurnedInverse {
   void analyse(const auto& body) {
     factor_.analyse(Index(body.blocks().size()), body.pairs(), body.mesh().points);
     const std::size_t n = body.blocks().size();
-    for (Places* list : {&x_, &r_, &z_, &p_, &q_, &then_}) list->assign(n, Velocity::Zero());
+    for (NodeVectors* list : {&x_, &r_, &z_, &p_, &q_, &then_}) list->assign(n, Velocity::Zero());
     for (auto& guess : guess_) guess.assign(n, Velocity::Zero());
     turned_.assign(n, Vec<3, S>::Zero());
     slot_.assign(n, -1);
@@ -79,8 +79,8 @@ class TurnedInverse {
 
   /// x ← A⁻¹ x by nodes, from the answer that `guess` (0 or 1) had last, until |x − A y| ≤ tolerance |x|;
   /// returns the iterations, or −1 when `most` did not do.
-  int solve(const auto& body, Places& x, double tolerance, int most, int guess) {
-    Places& y = guess_[guess];
+  int solve(const auto& body, NodeVectors& x, double tolerance, int most, int guess) {
+    NodeVectors& y = guess_[guess];
     const double goal = tolerance * tolerance * dot(x, x);
     if (!(goal > 0) || !is_factored_) {  // zero, or not a number: the answer is the same
       if (goal != 0)
@@ -151,14 +151,14 @@ class TurnedInverse {
   }
 
  private:
-  static double dot(const Places& a, const Places& b) {
+  static double dot(const NodeVectors& a, const NodeVectors& b) {
     const Eigen::Index n = 3 * Eigen::Index(a.size());
     using Flat = Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>;
     return double(Flat(a[0].data(), n).dot(Flat(b[0].data(), n)));
   }
 
   /// z = R F⁻¹ Rᵀ r.
-  void precondition(const Places& r, Places& z) {
+  void precondition(const NodeVectors& r, NodeVectors& z) {
     for (std::size_t k = 0; k < r.size(); ++k)
       turned_[k] = Velocity(turn_[k].transpose() * r[k]).template cast<S>();
     factor_.solve(turned_);
@@ -185,14 +185,14 @@ class TurnedInverse {
 
   MultifrontalCholesky<3, S> factor_;
   bool is_factored_ = false;
-  Places then_;  ///< where the nodes were
+  NodeVectors then_;  ///< where the nodes were
   Array<Eigen::Quaternion<T>> rotation_;
   Array<Mat<3, 3, T>> turn_, spread_;
   Array<char> is_held_;
   SystemScale scale_;
   Array<Index> known_, slot_;
   Array<S> kept_;
-  Places x_, r_, z_, p_, q_, guess_[2];
+  NodeVectors x_, r_, z_, p_, q_, guess_[2];
   Array<Vec<3, S>> turned_;
 };
 
