@@ -1,13 +1,10 @@
 /// Positions projected after the step, the midpoint rule, and restitution between them.
-#include <delassus/bodies/anchor_at.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/contact/penalty.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
 #include <delassus/constraints/contact/sequential_restitution.hpp>
 #include <delassus/constraints/joints/ball_joint.hpp>
-#include <delassus/constraints/joints/hinge.hpp>
-#include <delassus/constraints/joints/limit.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
 #include <delassus/schemes/collisions_first.hpp>
 #include <delassus/schemes/substeps.hpp>
@@ -28,10 +25,6 @@ auto midpoint_projected() {
   return AnimationLoop{World{RigidBodies{}},
                        Constraints{Contact{Restitution{Coulomb{.friction = 0.3}, 0.5}}, BallJoint{}},
                        ImplicitMidpoint{}, PositionProjection{}};
-}
-auto midpoint_stop() {
-  return AnimationLoop{World{RigidBodies{}}, Constraints{Hinge{}, Limit<Turn>{}}, ImplicitMidpoint{},
-                       AcceleratedGaussSeidel{.tolerance = 1e-10}};
 }
 auto in_turn() {
   return AnimationLoop{World{RigidBodies{}},
@@ -62,16 +55,6 @@ int main(int argc, char** argv) {
   const Options faces{.h = 0.01, .is_redundant = true};
   all.add("projection", faces, [] { return with_chain(projected()); });
   all.add("midpoint_projection_restitution", faces, [] { return with_chain(midpoint_projected()); });
-  all.add("midpoint_stop", {.h = 0.01}, [] {
-    auto loop = midpoint_stop();
-    auto& set = rigid_of(loop);
-    const Quat axis = frame_along({0, -1, 0});
-    const auto arm = set.add({.position = {0.5, 0, 0}, .mass = 1.0, .shape = Box{1, 0.1, 0.1}});
-    const Anchor a = world_anchor({0, 0, 0}, axis), b = anchor_at(set, arm, {0, 0, 0}, axis);
-    loop.add(Hinge::Item{a, b});
-    loop.add(Limit<Turn>::Item{.a = a, .b = b, .lower = -0.6, .upper = 0.2, .restitution = 0.6});
-    return loop;
-  });
   all.add("impacts_in_turn", {.h = 0.005}, [] {
     auto loop = in_turn();
     auto& set = rigid_of(loop);
