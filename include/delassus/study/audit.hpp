@@ -140,10 +140,10 @@ class Audit {
         else
           see_joint(use, pool, rows.lambda[i].template cast<double>().norm(), i, w, threshold);
         if constexpr (ContactLaw<Law> && R >= 3) {
-          if (i > 0 && pool.item(i).record.pair == pool.item(i - 1).record.pair)
+          if (i > 0 && pool.item(i).record->pair == pool.item(i - 1).record->pair)
             continue;  // contacts are sorted by pair
           Index end = i + 1;
-          while (end < rows.items() && pool.item(end).record.pair == pool.item(i).record.pair) ++end;
+          while (end < rows.items() && pool.item(end).record->pair == pool.item(i).record->pair) ++end;
           see_friction(use, pool, rows, i, end, w, threshold);
         }
       }
