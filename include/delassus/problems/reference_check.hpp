@@ -97,8 +97,8 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable
 
 }  // namespace inner
 
-/// Solves a problem anew from λ = 0 by `inner::ConvexNewton`, where that does not get there by `PathNewton` without
-/// its sweeps; neither shares a local solve with the sweeping solvers. Compares constraint by constraint. With
+/// Solves a problem anew from λ = 0 by `inner::ConvexNewton`, islands that resist by `PathNewton` without its
+/// sweeps; neither shares a local solve with the sweeping solvers. Compares constraint by constraint. With
 /// friction even the velocities can have more than one solution: the slips |u_t| of λ are where the first
 /// attempt begins, so that what it finds, if λ is one, is that one. The given slips make the law a convex
 /// problem with one u; that it is a solution of the law is then measured.
@@ -138,10 +138,14 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
     for (const int patience : {50, 0}) {  // wedged bodies may need either, and not bear the other
       if (has_slips) break;
       auto of_slips = problem;
-      has_slips = try_with(of_slips, inner::ConvexNewton{.tolerance = tolerance, .patience = patience});
+      has_slips = try_with(of_slips, inner::ConvexNewton{.tolerance = tolerance,
+                                                         .max_iterations = 200,
+                                                         .from_slips = true,
+                                                         .patience = patience});
       if (has_slips) other = std::move(of_slips);
     }
-    if (!has_slips) try_with(other, inner::path_alone(tolerance));
+    if (!has_slips && !try_with(other, inner::ConvexNewton{.tolerance = tolerance}))
+      try_with(other, inner::path_alone(tolerance));
     // Islands that are none, since W has entries between them, would undo each other's solutions.
     const Measure end = inner::measure_of(other);
     check.reached = check.reference.status == Status::converged && end.residual <= tolerance + end.floor;

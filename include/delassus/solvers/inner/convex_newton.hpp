@@ -14,19 +14,16 @@
 
 namespace delassus::inner {
 
-/// The convex problem of the slips that the given λ has, from λ = 0, by proximal points of `ConvexSpace`, each found by
-/// Newton's method with a search for the minimum along its directions. No law is solved for one constraint with
-/// the others held. It converges when its solution is one of the law.
-///
-/// Those slips are known to the λ's own tolerance, and where bodies are wedged |u_t| ↦ |u_t| magnifies what is
-/// missing: from the solution, after a while from less than what the law is missed by, the slips follow for some
-/// turns, s ← |u_t|. Where impulses are redundant and gaps do not fit, proximal points go a long way by small
-/// steps: `polish` may jump to its end. Source: [AcaryEtAl2011] for the fixed point, [Rockafellar1976] for the
+/// Proximal points of `ConvexSpace`, each found by Newton's method with a search for the minimum along its
+/// directions; then λ̂ ← λ(u) and s ← |u_t|. At the fixed point nothing is left of ε, nor of the given s. Now
+/// and then proximal points of the laws as they are take over, as far as they lead. No law is solved for one
+/// constraint with the others held. Source: [AcaryEtAl2011] for the fixed point, [Rockafellar1976] for the
 /// proximal point.
 struct ConvexNewton {
   double tolerance = 1e-10;
-  int max_iterations = 200;   ///< convex problems
+  int max_iterations = 2000;  ///< convex problems
   double least = 1e-6;        ///< ε where the residual is small: less would magnify the rounding of u
+  bool from_slips = false;    ///< of the given λ, and nothing else of it; else from all of λ
   int patience = 50;          ///< convex problems before the slips follow one that is half solved
 
   template <class Rows>
@@ -35,10 +32,33 @@ struct ConvexNewton {
   template <class Problem, class Work>
   SolveReport solve(Problem& problem, Work& work) const {
     Search<Problem, Work> now{problem, work};
-    now.report.measure = problem.measure();
+    now.report.measure = now.best = problem.measure();
     now.report.status = Status::max_iterations;
-    if (!std::isfinite(now.report.measure.residual)) return {.status = Status::quarantined, .measure = now.report.measure};
-    if (work.gather(problem)) follow_slips(now);
+    if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
+    if (!work.gather(problem)) return now.report;
+    work.keep(problem);
+    if (from_slips && solve_of_slips(now)) return now.report;
+    double epsilon = coarse, far = 1, last = 1, polished = 1;
+    for (int k = 0, since = 0; k < max_iterations; ++k) {
+      now.report.factorizations += work.descend(problem, epsilon);
+      if (is_done(now)) return now.report;
+      const double residual = now.report.measure.residual;
+      const bool drifts = residual < 1e-4 && residual > 0.8 * last && residual < 1.05 * last;
+      if (drifts)
+        work.extrapolate(problem, far);
+      else
+        work.template recentre<Problem>();
+      far = drifts ? 2 * far : std::max(0.25 * far, 1.0);
+      last = residual;
+      epsilon = std::clamp(residual, least, coarse);
+      if (drifts || (residual > 0.1 * polished && ++since < 8)) continue;
+      since = 0;
+      polished = residual;
+      if (polish(now)) return now.report;
+    }
+    work.hand_over(
+        problem, [](const auto& c) -> const auto& { return c.best; });
+    now.report.measure = problem.measure();
     return now.report;
   }
 
@@ -53,18 +73,24 @@ struct ConvexNewton {
     Problem& problem;
     Work& work;
     SolveReport report{};
-    double best = std::numeric_limits<double>::infinity();  ///< residual
+    Measure best{};
   };
 
+  /// The convex problem of the slips that the given λ has, from λ = 0; true when its solution is one of the
+  /// law. Those slips are known to the λ's own tolerance, and where bodies are wedged |u_t| ↦ |u_t| magnifies
+  /// what is missing: from the solution, after a while from less than what the law is missed by, the slips
+  /// follow for some turns. Where impulses are redundant and gaps do not fit, proximal points go a long way by
+  /// small steps: `polish` may jump to its end.
   template <class S>
-  void follow_slips(S& now) const {
+  bool solve_of_slips(S& now) const {
     constexpr int turns = 20, between_turns = 10, between_polishes = 20, between_marks = 50;
     now.work.forget(now.problem);
     now.work.keep(now.problem);
+    now.best.residual = std::numeric_limits<double>::infinity();
     double epsilon = coarse, marked = epsilon;
     for (int k = 1, turned = 0; k <= max_iterations && turned <= turns; ++k) {
       now.report.factorizations += now.work.descend(now.problem, epsilon);
-      if (is_done(now)) return;
+      if (is_done(now)) return true;
       const double left = now.work.distance(epsilon), residual = now.report.measure.residual;
       const bool is_near = left < std::min(10 * tolerance, 0.5 * residual);
       const bool is_solved =
@@ -75,12 +101,13 @@ struct ConvexNewton {
         if (turned == 0 && left > std::max(0.8 * marked, tolerance)) break;
         marked = left;
       }
-      if (k % between_polishes == 0 && polish(now)) return;
+      if (k % between_polishes == 0 && polish(now, true)) return true;
       epsilon = std::clamp(std::min(left, residual), least, coarse);
     }
-    if (!(now.best <= tolerance)) return;
-    now.work.hand_over(now.problem, [](const auto& c) { return c.best; });
-    is_done(now, now.problem.measure());
+    if (!(now.best.residual <= tolerance)) return false;
+    now.work.hand_over(
+        now.problem, [](const auto& c) -> const auto& { return c.best; });
+    return is_done(now, now.problem.measure());
   }
 
   /// Hands λ over, measures it by W itself, and keeps the best; true when that is within the tolerance.
@@ -91,8 +118,8 @@ struct ConvexNewton {
   template <class S>
   bool is_done(S& now, const Measure& measure) const {
     now.report.measure = measure;
-    if (now.report.measure.residual < now.best) {
-      now.best = now.report.measure.residual;
+    if (now.report.measure.residual < now.best.residual) {
+      now.best = now.report.measure;
       now.work.keep(now.problem);
     }
     if (!(now.report.measure.residual <= tolerance)) return false;
@@ -103,14 +130,14 @@ struct ConvexNewton {
   /// Proximal points of the laws as they are, while each halves the residual; where that does not end it, or with
   /// other slips than those that stay, which is another motion, λ is what it was.
   template <class S>
-  bool polish(S& now) const {
+  bool polish(S& now, bool keeps_slips = false) const {
     now.work.mark(now.problem);
     double before = now.report.measure.residual, epsilon = 1e-3;
     for (int k = 0; k < 12; ++k) {
-      now.work.restart(now.problem);
+      now.work.restart(now.problem, keeps_slips);
       now.report.factorizations += now.work.polish(now.problem, epsilon);
       if (is_done(now)) {
-        if (now.work.slip_change(now.problem) < same_slips) return true;
+        if (!keeps_slips || now.work.slip_change(now.problem) < same_slips) return true;
         now.report.status = Status::max_iterations;
         break;
       }
@@ -119,8 +146,9 @@ struct ConvexNewton {
       now.work.mark(now.problem);
       epsilon = std::max(0.03 * epsilon, 1e-7);
     }
-    now.work.hand_over(now.problem, [](const auto& c) { return c.before; });
-    now.work.restart(now.problem);
+    now.work.hand_over(
+        now.problem, [](const auto& c) -> const auto& { return c.before; });
+    now.work.restart(now.problem, keeps_slips);
     return false;
   }
 };

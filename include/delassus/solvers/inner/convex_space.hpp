@@ -83,14 +83,27 @@ class ConvexSpace {
     is_exact_ = false;
     return k;
   }
-  /// Begins anew from the λ that the rows have; the slips stay.
+  /// Where points of contact are redundant and their gaps do not fit, λ drifts along a line that leaves the
+  /// bodies alone, the same way at each proximal point, until a contact opens: goes `factor` times that way
+  /// at once.
   template <class Problem>
-  void restart(const Problem& problem) {
+  void extrapolate(Problem& problem, double factor) {
+    each([&](auto p, auto& c, auto&) {
+      Vec<Rows::template rows_of<p>, T> next = (c.lambda + factor * (c.lambda - c.centre)).template cast<T>();
+      problem.book().template clamp<p>(c.item, next);
+      problem.template assign<p>(c.item, next);
+    });
+    restart(problem);
+  }
+  /// Begins anew from the λ that the rows have, with its slips unless those stay.
+  template <class Problem>
+  void restart(const Problem& problem, bool keeps_slips = false) {
     each([&](auto p, auto& c, auto&) {
       const auto local = problem.template local<p>(c.item);
       c.centre = c.lambda = local.lambda.template cast<double>();
       c.velocity = local.d.template cast<double>();
       c.total.setZero();
+      if (!keeps_slips) c.slip = slip_of<Problem, p>(c.velocity);
     });
     for (auto* array : {&y_, &change_})
       for (auto& x : *array) x.setZero();
@@ -107,7 +120,7 @@ class ConvexSpace {
 
   /// λ̂ ← λ(u), s ← |u_t| unless the slips stay.
   template <class Problem>
-  void recentre(bool keeps_slips) {
+  void recentre(bool keeps_slips = false) {
     each([&](auto p, auto& c, auto&) {
       c.velocity += -c.error + c.move + c.compliance.cwiseProduct(c.lambda - c.centre);
       c.centre = c.lambda;
