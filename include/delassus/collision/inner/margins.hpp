@@ -22,10 +22,11 @@ struct CollisionSettings {
   int max_points = 4;  ///< of one pair, at most 8
 
   void check(const char* who) const {
-    inner::expect_number(std::isfinite(margin), std::string(who) + ": margin", margin, "m must be finite");
-    inner::expect_not_negative(std::string(who) + ": contact_distance", contact_distance, "m");
-    inner::expect_number(max_points >= 1 && max_points <= 8, std::string(who) + ": max_points", max_points,
-                         "must be in [1, 8]");
+    const auto refuse = [&](const std::string& sentence) { inner::refuse(std::string(who) + ": " + sentence); };
+    if (!std::isfinite(margin)) refuse("margin " + inner::text(margin) + " m must be finite");
+    if (!(std::isfinite(contact_distance) && contact_distance >= 0))
+      refuse("contact_distance " + inner::text(contact_distance) + " m must be finite and >= 0");
+    if (max_points < 1 || max_points > 8) refuse("max_points " + inner::text(max_points) + " must be in [1, 8]");
   }
 };
 

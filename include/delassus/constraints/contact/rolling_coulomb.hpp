@@ -50,10 +50,9 @@ struct RollingCoulomb {
   };
 
   void check() const {
-    for (const auto& [what, value] :
-         {std::pair{"friction", friction}, std::pair{"rolling_friction", rolling_friction},
-          std::pair{"torsional_friction", torsional_friction}})
-      inner::expect_not_negative(std::string("RollingCoulomb: ") + what, value);
+    inner::expect_not_negative("RollingCoulomb: friction", friction);
+    inner::expect_not_negative("RollingCoulomb: rolling_friction", rolling_friction);
+    inner::expect_not_negative("RollingCoulomb: torsional_friction", torsional_friction);
   }
 
   Parameters parameters() const { return {friction, rolling_friction, torsional_friction}; }

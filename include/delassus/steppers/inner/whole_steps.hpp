@@ -18,8 +18,8 @@ namespace delassus::inner {
 
 /// The numbers of a Newton's method, of the integrator `name`.
 inline void check_newton(const std::string& name, double tolerance, int max_iterations) {
-  expect_at_least_zero(name + ": tolerance", tolerance);
-  expect_above_zero(name + ": max_iterations", max_iterations);
+  DELASSUS_EXPECT(tolerance >= 0, name + ": tolerance " + text(tolerance) + " must be >= 0");
+  DELASSUS_EXPECT(max_iterations > 0, name + ": max_iterations " + text(max_iterations) + " must be > 0");
 }
 
 /// p += f(q, v), and all of it times h: N·s.
