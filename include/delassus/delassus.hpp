@@ -1,4 +1,4 @@
-/// Everything up to the loop and its listeners; study, io and the adapters have their own headers.
+/// Everything up to the loop, its listeners and the haptic device; study/, io/, problems/ and adapters/ have their own headers.
 #pragma once
 
 #include <delassus/activity/hand_picked.hpp>

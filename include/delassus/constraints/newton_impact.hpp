@@ -25,7 +25,7 @@ double restitution_of(const Law& law, const Item& item) {
 
 }  // namespace inner
 
-/// A lower row that closes within the step with u⁻ < 0 gets the stronger of e u⁻ and the push-out speed, never their sum.
+/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step with u⁻ < 0 gets the stronger of e u⁻ and the push-out speed, never their sum.
 /// Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that symplectic Euler itself
 /// keeps. `bounce` takes what this added to the bias.
 template <class World, class Laws, class Rows>

@@ -3,13 +3,13 @@
 
 #include <delassus/core/archive.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/io/inner/text_reader.hpp>
 #include <delassus/rows/alive.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -101,12 +101,7 @@ void save_checkpoint(Loop& loop, const std::string& path) {
 /// Restores from a file of `save_checkpoint`.
 template <class Loop>
 void load_checkpoint(Loop& loop, const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  DELASSUS_EXPECT(file != nullptr, "checkpoint: cannot read '" + path + "'");
-  std::vector<char> bytes;
-  char block[65536];
-  for (std::size_t n; (n = std::fread(block, 1, sizeof block, file.get())) > 0;) bytes.insert(bytes.end(), block, block + n);
-  restore(loop, bytes);
+  restore(loop, inner::read_text(path));
 }
 
 /// A number for the bits of all velocities and places and of the joints' impulses: equal states, equal numbers.

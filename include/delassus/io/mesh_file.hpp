@@ -102,12 +102,6 @@ class GmshReader {
       in_.refuse_here("the file is binary; save the mesh as ASCII");
   }
 
-  Vec3 point() {
-    Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = in_.number("a coordinate");
-    return p;
-  }
-
   void nodes() {
     const int blocks = is_in_blocks_ ? in_.integer("the number of blocks of nodes", 0, most) : 1;
     int count = in_.integer("the number of nodes", 0, most);
@@ -124,10 +118,10 @@ class GmshReader {
       const std::size_t first = mesh_.points.size();
       for (int i = 0; i < count; ++i) {
         tags_.emplace_back(in_.integer("the tag of a node", 0, most), Index(first) + i);
-        if (!is_in_blocks_) mesh_.points.push_back(point());
+        if (!is_in_blocks_) mesh_.points.push_back(in_.vector("a coordinate"));
       }
       for (int i = 0; is_in_blocks_ && i < count; ++i) {
-        mesh_.points.push_back(point());
+        mesh_.points.push_back(in_.vector("a coordinate"));
         for (int k = 0; is_parametric && k < dimension; ++k) in_.number("a parameter");
       }
     }
@@ -222,8 +216,7 @@ Mesh vtk_mesh(std::string_view text, const std::string& path) {
       if (!mesh.points.empty()) in.refuse_here("POINTS stand there a second time");
       mesh.points.resize(in.integer("the number of points", 0, most));
       in.word("the type of the coordinates");
-      for (Vec3& p : mesh.points)
-        for (int k = 0; k < 3; ++k) p[k] = in.number("a coordinate");
+      for (Vec3& p : mesh.points) p = in.vector("a coordinate");
     } else if (word == "CELLS") {
       if (start.size() != 1 || !corners.empty()) in.refuse_here("CELLS stand there a second time");
       const int count = in.integer("the number of cells", 0, most),

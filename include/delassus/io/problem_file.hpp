@@ -43,11 +43,7 @@ inline FrictionProblem parse_problem(std::string_view text, const std::string& p
     friction.push_back(in.number("a friction coefficient"));
     if (friction.back() < 0) in.refuse_here("friction " + inner::text(friction.back()) + " must be >= 0");
   }
-  for (Index i = 0; i < n; ++i) {
-    Vec3 velocity;
-    for (int k = 0; k < 3; ++k) velocity[k] = in.number("a velocity");
-    q.push_back(velocity);
-  }
+  for (Index i = 0; i < n; ++i) q.push_back(in.vector("a velocity"));
   std::vector<GivenBlock> blocks;
   for (Index b = 0; b < count; ++b) {
     GivenBlock given;
@@ -78,8 +74,7 @@ inline FrictionProblem parse_problem(std::string_view text, const std::string& p
 inline std::vector<Vec3> parse_impulses(std::string_view text, const std::string& path, Index contacts) {
   inner::TextReader in(text, path);
   std::vector<Vec3> lambda(contacts);
-  for (Vec3& x : lambda)
-    for (int k = 0; k < 3; ++k) x[k] = in.number("one of " + std::to_string(contacts) + " × 3 impulses");
+  for (Vec3& x : lambda) x = in.vector("one of " + std::to_string(contacts) + " × 3 impulses");
   if (!in.is_at_end())
     in.refuse_here("the file goes on after the impulses of " + std::to_string(contacts) + " contacts");
   return lambda;
@@ -160,11 +155,8 @@ inline std::string problem_text(const FrictionProblem& p) {
 
 inline std::string impulses_text(std::span<const Vec3> lambda) {
   std::string out;
-  for (const Vec3& x : lambda)
-    for (int k = 0; k < 3; ++k) {
-      inner::append_exact(out, x[k]);
-      out += '\n';
-    }
+  for (const Vec3& impulse : lambda)
+    for (const double x : impulse) inner::append_exact(out, x), out += '\n';
   return out;
 }
 

@@ -115,12 +115,6 @@ struct Compared {
     return inner::largest_distance(own, reference, between);
   }
 };
-template <class Look>
-Compared(const char*, const char*, Look) -> Compared<Look>;
-template <class Look, class Exact>
-Compared(const char*, const char*, Look, Exact) -> Compared<Look, Exact>;
-template <class Look, class Exact, class Between>
-Compared(const char*, const char*, Look, Exact, Between) -> Compared<Look, Exact, Between>;
 
 /// An orientation, look(loop) being a Quat, against the reference of the study.
 template <class Look>
@@ -183,14 +177,6 @@ inline auto energy_change() {
         loop.world().each([&](const auto& set, auto) { sum += kinetic_energy(set) + potential_energy(set); });
         return sum;
       }};
-}
-/// The change of linear momentum: of a scene that nothing outside acts on.
-inline auto momentum_change() {
-  return Kept{"momentum change", "kg m/s", [](const auto& loop) {
-                Vec3 sum = Vec3::Zero();
-                loop.world().each([&](const auto& set, auto) { sum += momentum(set); });
-                return sum;
-              }};
 }
 
 /// `Measures{Compared{...}, energy_change()}`: every run is measured by all of them.

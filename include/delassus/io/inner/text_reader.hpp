@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/math/linear.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -53,6 +54,13 @@ class TextReader {
       refuse_here("'" + std::string(text.substr(0, 40)) + "' is no finite number, but " + what +
                   " should stand there");
     return value;
+  }
+
+  /// Three finite numbers.
+  Vec3 vector(const std::string& what) {
+    Vec3 v;
+    for (double& x : v) x = number(what);
+    return v;
   }
 
   /// A whole number in [low, high].
