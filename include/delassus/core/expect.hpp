@@ -25,11 +25,15 @@ inline std::string text(double value) {
   return buffer;
 }
 
-/// Refuses a number with the sentence "`what` `value` `unit` `rule`" unless the rule holds.
-inline void expect_number(bool holds, std::string_view what, double value, const char* rule, const char* unit = "") {
-  if (holds) return;
+/// The sentence "`what` `value` `unit` `rule`".
+[[noreturn, gnu::cold]] inline void refuse_number(std::string_view what, double value, const char* rule, const char* unit) {
   const std::string space = *unit ? " " : "";
   refuse(std::string(what) + " " + text(value) + space + unit + " " + rule);
+}
+
+/// Refuses a number unless the rule holds. Policies are checked before each step, so what holds costs its comparison alone.
+inline void expect_number(bool holds, std::string_view what, double value, const char* rule, const char* unit = "") {
+  if (!holds) refuse_number(what, value, rule, unit);
 }
 inline void expect_positive(std::string_view what, double value, const char* unit = "") {
   expect_number(std::isfinite(value) && value > 0, what, value, "must be finite and > 0", unit);
