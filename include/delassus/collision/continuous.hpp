@@ -38,6 +38,8 @@ template <class Backend = inner::Absent>
 struct Continuous {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::continuous;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::continuous>;
 
   Backend backend{};
 
@@ -74,8 +76,6 @@ struct Continuous {
     return report;
   }
 
-  void memory(auto& archive) { inner::remember(backend, archive); }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   static bool is_asked(const Collider& c) {
@@ -87,7 +87,7 @@ struct Continuous {
   /// that do not are seen; or than the ball of half its size, since what is thin is then seen on its far
   /// side.
   void find_fast(std::span<const Collider> colliders, double h) {
-    const CollisionSettings s = settings();
+    const CollisionSettings s = inner::settings_of(backend);
     double way = 0.5 * s.margin;
     if (s.margin < 0) {
       double smallest = std::numeric_limits<double>::infinity();
@@ -139,7 +139,7 @@ struct Continuous {
   void meet(std::span<const Collider> colliders, Index place_a, Index place_b, double h,
             std::vector<ContactPoint>& out) {
     const Collider &a = colliders[place_a], &b = colliders[place_b];
-    const double scale = inner::pair_scale(a.shape, b.shape), thickness = settings().contact_distance;
+    const double scale = inner::pair_scale(a.shape, b.shape), thickness = inner::settings_of(backend).contact_distance;
     const inner::Impact hit = inner::time_of_impact(a, b, h, scale, thickness + 1e-3 * scale);
     if (!hit.is_found) return;
     const Pose b_in_a = inner::relative(hit.a, hit.b);
@@ -182,7 +182,7 @@ struct Continuous {
 
   /// All points of the patch, or the four that span it.
   inner::Choice chosen(const Vec3& n) const {
-    const int limit = std::clamp(settings().max_points, 1, 4);
+    const int limit = std::clamp(inner::settings_of(backend).max_points, 1, 4);
     if (patch_.count > limit) return inner::choose_anew(patch_, n, limit);
     inner::Choice all;
     for (int i = 0; i < patch_.count; ++i) all.add(i);
@@ -276,16 +276,5 @@ struct Continuous {
   std::vector<bool> is_fast_;
   Patch patch_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::continuous>)
-struct Continuous<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-Continuous(Backend) -> Continuous<Backend>;
 
 }  // namespace delassus

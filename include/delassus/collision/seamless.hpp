@@ -29,6 +29,8 @@ template <class Backend = inner::Absent>
 struct Seamless {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::seamless;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::seamless>;
 
   Backend backend{};
   double level = 1e-3;  ///< m
@@ -50,8 +52,6 @@ struct Seamless {
     return report;
   }
 
-  void memory(auto& archive) { inner::remember(backend, archive); }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`, of the nearest of them the
@@ -122,18 +122,5 @@ struct Seamless {
   Array<Side> sides_;
   Array<char> is_seam_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::seamless>)
-struct Seamless<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-Seamless(Backend) -> Seamless<Backend>;
-template <class Backend>
-Seamless(Backend, double) -> Seamless<Backend>;
 
 }  // namespace delassus

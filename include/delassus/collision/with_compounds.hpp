@@ -22,6 +22,8 @@ template <class Backend = inner::Absent>
 struct WithCompounds {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::compounds;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::compounds>;
 
   Backend backend{};
 
@@ -69,7 +71,6 @@ struct WithCompounds {
     archive(compounds_, names_, next_name_);
     inner::remember(backend, archive);
   }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   /// The keys of a body's parts: `first` and those that follow. They stay as long as the body has this
@@ -156,16 +157,5 @@ struct WithCompounds {
   std::vector<Collider> parts_;
   Array<Owner> owners_, by_key_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::compounds>)
-struct WithCompounds<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithCompounds(Backend) -> WithCompounds<Backend>;
 
 }  // namespace delassus

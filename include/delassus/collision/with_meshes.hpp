@@ -25,6 +25,8 @@ template <class Backend = inner::Absent>
 struct WithMeshes {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::meshes;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::meshes>;
 
   Backend backend{};
 
@@ -70,7 +72,7 @@ struct WithMeshes {
         if (colliders[job.other].shape.kind == ShapeKind::mesh)
           report.queries += cross(surface, colliders, job, h, contacts);
         else
-          report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, settings(), contacts);
+          report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, inner::settings_of(backend), contacts);
       });
     pairs_.end();
     if (!jobs_.empty()) inner::sort_by_name(contacts);
@@ -82,7 +84,6 @@ struct WithMeshes {
     archive(meshes_, fields_, kinds_, pairs_);
     inner::remember(backend, archive);
   }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   struct Job {
@@ -147,7 +148,7 @@ struct WithMeshes {
       constexpr bool is_field_on_mesh = std::is_same_v<Surface, HeightField> &&
                                         std::is_same_v<std::remove_cvref_t<decltype(other)>, TriangleMesh>;
       if constexpr (!is_field_on_mesh)  // the mesh goes first
-        queries = pairs_.cross(surface, other, colliders, job.mesh, job.other, h, settings(), contacts);
+        queries = pairs_.cross(surface, other, colliders, job.mesh, job.other, h, inner::settings_of(backend), contacts);
     });
     return queries;
   }
@@ -156,7 +157,7 @@ struct WithMeshes {
   bool is_near(const Collider& mesh, const Collider& other) const {
     if (other.shape.kind == ShapeKind::half_space) return true;
     const double own = outer_radius(other.shape),
-                 margin = std::max(settings().margin, own) + settings().contact_distance;
+                 margin = std::max(inner::settings_of(backend).margin, own) + inner::settings_of(backend).contact_distance;
     const double reach = outer_radius(mesh.shape) + own + margin;
     return (mesh.pose.position - other.pose.position).squaredNorm() <= reach * reach;
   }
@@ -168,16 +169,5 @@ struct WithMeshes {
   Array<Job> jobs_;
   inner::SurfacePairs pairs_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::meshes>)
-struct WithMeshes<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithMeshes(Backend) -> WithMeshes<Backend>;
 
 }  // namespace delassus

@@ -23,6 +23,8 @@ template <class Backend = inner::Absent>
 struct WithSurfaces {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::surfaces;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::surfaces>;
 
   Backend backend{};
   bool self_contact = true;
@@ -32,7 +34,6 @@ struct WithSurfaces {
       : backend(std::move(b)), self_contact(meets_itself) {}
 
   void check() const { inner::check_inside(backend); }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
   /// The loop shows its world before each detection: bodies come and go, nodes have moved.
   template <class World>
@@ -211,7 +212,7 @@ struct WithSurfaces<Backend>::Pairing {
     return (a_moves || b_moves) && (a.group & b.collides_with) != 0 && (b.group & a.collides_with) != 0;
   }
   double widest(double speed, double scale) const {
-    const CollisionSettings settings = all.settings();
+    const CollisionSettings settings = inner::settings_of(all);
     return settings.contact_distance +
            (settings.margin >= 0 ? settings.margin : inner::limited_margin(speed * h, scale));
   }
@@ -230,7 +231,7 @@ struct WithSurfaces<Backend>::Pairing {
     const inner::SoftSurface& s = all.surfaces_[i];
     const inner::SoftSurface* o = j >= 0 ? &all.surfaces_[j] : nullptr;
     const Collider &a = colliders[all.place_[i]], &b = colliders[other];
-    const CollisionSettings settings = all.settings();
+    const CollisionSettings settings = inner::settings_of(all);
     all.pairs_.name_apart();
     for (const inner::FeatureContact& c : all.pairs_.found) {
       if (c.point.gap < 0 && is_other_side(s, o, c.point.name)) continue;
@@ -288,18 +289,5 @@ struct WithSurfaces<Backend>::Pairing {
     return true;
   }
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::surfaces>)
-struct WithSurfaces<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithSurfaces(Backend) -> WithSurfaces<Backend>;
-template <class Backend>
-WithSurfaces(Backend, bool) -> WithSurfaces<Backend>;
 
 }  // namespace delassus
