@@ -63,20 +63,6 @@ inline Vec3 gauss_point(int g) {
   return {at * hexahedron_corner[g][0], at * hexahedron_corner[g][1], at * hexahedron_corner[g][2]};
 }
 
-/// The least of 8 det J at corners and Gauss's points, m³: of a box its volume.
-inline double least_determinant(const HexahedralMesh& mesh, Index e) {
-  const EightPoints x = corners(mesh, e);
-  double least = std::numeric_limits<double>::infinity();
-  for (int a = 0; a < 8; ++a) {
-    const Vec3 corner(hexahedron_corner[a][0], hexahedron_corner[a][1], hexahedron_corner[a][2]);
-    for (const Vec3& xi : {corner, gauss_point(a)}) {
-      const double d = 8 * determinant(jacobian(x, xi));
-      if (!(d >= least)) least = d;
-    }
-  }
-  return least;
-}
-
 /// ∫ N_a dV over hexahedron e, m³.
 inline double corner_share(const HexahedralMesh& mesh, Index e, int a) {
   const EightPoints x = corners(mesh, e);
@@ -98,6 +84,21 @@ inline double volume(const HexahedralMesh& mesh, Index e) {
   return sum;
 }
 
+/// The least of 8 det J at corners and Gauss's points, m³: of a box its volume. What
+/// must stay above zero wherever the body is put.
+inline double least_volume(const HexahedralMesh& mesh, Index e) {
+  const inner::EightPoints x = inner::corners(mesh, e);
+  double least = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 8; ++a) {
+    const Vec3 corner(inner::hexahedron_corner[a][0], inner::hexahedron_corner[a][1], inner::hexahedron_corner[a][2]);
+    for (const Vec3& xi : {corner, inner::gauss_point(a)}) {
+      const double d = 8 * inner::determinant(inner::jacobian(x, xi));
+      if (!(d >= least)) least = d;
+    }
+  }
+  return least;
+}
+
 /// Refuses a mesh that is no body: points that are not finite or in no hexahedron, numbers of points that are
 /// not there, hexahedra that are flat or folded (det J below 1e-9 of the size at a corner or at a Gauss
 /// point), inside out or there twice.
@@ -105,7 +106,7 @@ inline void check_mesh(const HexahedralMesh& mesh, const std::string& who) {
   inner::check_points(mesh, who);
   for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e) {
     const std::string name = inner::name_of_cell<HexahedralMesh>(who, e);
-    const double V = volume(mesh, e), least = inner::least_determinant(mesh, e),
+    const double V = volume(mesh, e), least = least_volume(mesh, e),
                  longest = inner::longest_edge(mesh, e), rounding = 1e-9 * longest * longest * longest;
     DELASSUS_EXPECT(std::abs(V) > rounding, name + " is flat: its volume is " + inner::text(V) +
                                                 " m³, its longest diagonal " + inner::text(longest) + " m");
@@ -143,13 +144,5 @@ inline std::vector<OuterFace> outer_faces(const HexahedralMesh& mesh) {
   }
   return out;
 }
-
-/// The triangles of `outer_faces`.
-inline std::vector<std::array<Index, 3>> surface(const HexahedralMesh& mesh) {
-  return triangles_of(outer_faces(mesh));
-}
-
-/// What must stay above zero wherever the body is put, m³.
-inline double least_volume(const HexahedralMesh& mesh, Index e) { return inner::least_determinant(mesh, e); }
 
 }  // namespace delassus

@@ -65,13 +65,14 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
                     who + ": triangles #" + std::to_string(a[3]) + " and #" + std::to_string(b[3]) +
                         " have the same points; drop one of them, since a sheet has both its sides anyway");
   }
-  inner::SurfaceTopology(mesh.triangles, Index(mesh.points.size())).each_fault([&](const inner::SharedEdge& e, bool is_crowded) {
+  const inner::SurfaceTopology topology(mesh.triangles, Index(mesh.points.size()));
+  for (const inner::SharedEdge& e : topology.faults()) {
     const std::string which =
         who + ": triangles #" + std::to_string(e.first) + " and #" + std::to_string(e.second);
-    DELASSUS_EXPECT(!is_crowded, which + " share an edge with #" + std::to_string(e.third) +
+    DELASSUS_EXPECT(e.third < 0, which + " share an edge with #" + std::to_string(e.third) +
                                      "; at most two may, so make each sheet a body and tie them by joints");
     inner::refuse(which + " are turned to different sides; exchange two points of one of them");
-  });
+  }
 }
 
 /// Where corner k is in the coordinates by which an element weighs its corners.
