@@ -52,7 +52,6 @@ struct Seamless {
     return report;
   }
 
-
  private:
   /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`, of the nearest of them the
   /// gap and the point on `other`.
@@ -107,11 +106,7 @@ struct Seamless {
   bool is_level(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
     const Collider& c = colliders[next.other];
     const Vec3& n = lain_on.normal;
-    return reaches(c) && std::abs(-reach(c, -n) - n.dot(lain_on.point)) <= level;
-  }
-  static bool reaches(const Collider& c) {
-    return c.shape.kind != ShapeKind::half_space && c.shape.kind != ShapeKind::mesh && c.shape.kind != ShapeKind::compound &&
-           c.shape.kind != ShapeKind::none;
+    return c.shape.has_volume() && std::abs(-reach(c, -n) - n.dot(lain_on.point)) <= level;
   }
   /// max n·x over the body, m.
   static double reach(const Collider& c, const Vec3& n) {

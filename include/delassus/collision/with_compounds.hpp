@@ -55,10 +55,7 @@ struct WithCompounds {
       p.a = body_of(p.a, bodies);
       p.b = body_of(p.b, bodies);
       p.pair = pair_key(colliders[p.a].key, colliders[p.b].key);
-      if (colliders[p.a].key < colliders[p.b].key) continue;
-      std::swap(p.a, p.b);
-      std::swap(p.point_a, p.point_b);
-      p.normal = -p.normal;
+      if (colliders[p.a].key >= colliders[p.b].key) p.exchange_bodies();
     }
     inner::sort_by_name(contacts);
     for (std::size_t i = 1; i < contacts.size(); ++i)
@@ -129,8 +126,7 @@ struct WithCompounds {
         part.shape = compound.shape(k);
         part.pose = {body.pose.to_world(compound.pose(k).position),
                      body.pose.rotation * compound.pose(k).rotation};
-        part.velocity =
-            body.velocity + body.angular_velocity.cross(Vec3(part.pose.position - body.pose.position));
+        part.velocity = body.velocity_at(part.pose.position);
         part.key = first + std::uint32_t(k);
         parts_.push_back(part);
         owners_.push_back({i, k, part.key, body.key});

@@ -5,6 +5,7 @@
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 
 #include <array>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -51,24 +52,21 @@ inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& ce
                                 CellSplit split = CellSplit::six) {
   TetrahedralMesh mesh{inner::box_points(size, cells), {}};
   const auto point = [&](Index i, Index j, Index k) { return i + (cells[0] + 1) * (j + (cells[1] + 1) * k); };
+  std::span<const int[4]> pieces = inner::six_tetrahedra;
+  if (split == CellSplit::five) pieces = inner::five_tetrahedra;
   for (Index k = 0; k < cells[2]; ++k)
     for (Index j = 0; j < cells[1]; ++j)
       for (Index i = 0; i < cells[0]; ++i) {
         // A mirrored cell has its corners exchanged along x, so that its diagonals meet those of its
         // neighbours.
         const int mirror = split == CellSplit::five && (i + j + k) % 2 == 1 ? 1 : 0;
-        const auto add = [&](const int(&corners)[4]) {
-          std::array<Index, 4> t;
+        for (const auto& corners : pieces) {
+          auto& t = mesh.tetrahedra.emplace_back();
           for (int a = 0; a < 4; ++a) {
             const int c = corners[a] ^ mirror;
             t[a] = point(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2 & 1));
           }
-          mesh.tetrahedra.push_back(t);
-        };
-        if (split == CellSplit::five)
-          for (const auto& t : inner::five_tetrahedra) add(t);
-        else
-          for (const auto& t : inner::six_tetrahedra) add(t);
+        }
       }
   return oriented(std::move(mesh));
 }

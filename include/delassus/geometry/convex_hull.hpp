@@ -5,7 +5,6 @@
 #include <delassus/core/bits.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
-#include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
 #include <delassus/math/linear.hpp>
@@ -126,10 +125,15 @@ Scalar BasicConvexHull<Scalar>::check_points(std::span<const Vector> points) {
                   "a convex hull needs at least 4 points, got " + std::to_string(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
     DELASSUS_EXPECT(is_finite(points[i]), "convex hull point #" + std::to_string(i) + " is not finite");
-  inner::Bounds box;
-  for (const Vector& p : points) box.add(p);
-  const Vector edges = box.high - box.low;
-  const Scalar extent = edges[largest_entry(edges)];
+  Scalar extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    Scalar low = points[0][k], high = low;
+    for (const Vector& p : points) {
+      low = std::min(low, p[k]);
+      high = std::max(high, p[k]);
+    }
+    extent = std::max(extent, high - low);
+  }
   DELASSUS_EXPECT(
       std::isfinite(extent) && extent > 0,
       "the points of a convex hull span " + inner::text(extent) + " m; give points that span a volume");

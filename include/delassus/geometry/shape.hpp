@@ -112,6 +112,8 @@ struct Shape {
 
   /// True for what a backend keeps; `number` says which.
   constexpr bool is_kept() const { return kind >= ShapeKind::mesh; }
+  /// What takes the box for a kept shape asks this for the kind.
+  constexpr ShapeKind outline() const { return is_kept() ? ShapeKind::box : kind; }
   constexpr int number() const { return int(size[3]); }
   constexpr bool has_volume() const {
     return kind != ShapeKind::none && kind != ShapeKind::half_space && !is_kept();
