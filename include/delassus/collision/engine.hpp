@@ -40,8 +40,6 @@ class CollisionEngine {
     return report_;
   }
 
-  /// Forgets every pair, as after a jump in time.
-  void reset() { memory_.clear(); }
 
   Kernel& kernel() { return kernel_; }
   /// What outlives a step: with it restored, the next step is the same to the bit.

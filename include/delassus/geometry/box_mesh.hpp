@@ -26,16 +26,7 @@ inline constexpr int six_tetrahedra[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 
 
 /// The points of a box in cells: (i, j, k) has number i + (cells[0] + 1)(j + (cells[1] + 1) k).
 inline std::vector<Vec3> box_points(const Vec3& size, const std::array<Index, 3>& cells) {
-  const auto sizes = inner::text(size[0]) + " × " + inner::text(size[1]) + " × " + inner::text(size[2]);
-  for (int k = 0; k < 3; ++k) {
-    DELASSUS_EXPECT(std::isfinite(size[k]) && size[k] > 0,
-                    "box_mesh: every size of " + sizes + " m must be finite and > 0");
-    DELASSUS_EXPECT(cells[k] > 0,
-                    "box_mesh: the number of cells " + std::to_string(cells[k]) + " must be > 0");
-  }
-  const double count = (cells[0] + 1.0) * (cells[1] + 1.0) * (cells[2] + 1.0);
-  DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
-                  "box_mesh: " + inner::text(count) + " points are more than an index counts");
+  check_grid("box_mesh", std::array{size[0], size[1], size[2]}, cells);
   std::vector<Vec3> points;
   for (Index k = 0; k <= cells[2]; ++k)
     for (Index j = 0; j <= cells[1]; ++j)

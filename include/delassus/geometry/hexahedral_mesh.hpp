@@ -84,14 +84,19 @@ inline double volume(const HexahedralMesh& mesh, Index e) {
   return sum;
 }
 
+/// Where corner k is in the coordinates by which an element weighs its corners: ξ.
+inline Vec3 place_of_corner(const HexahedralMesh&, int k) {
+  const auto& s = inner::hexahedron_corner[k];
+  return Vec3(s[0], s[1], s[2]);
+}
+
 /// The least of 8 det J at corners and Gauss's points, m³: of a box its volume. What
 /// must stay above zero wherever the body is put.
 inline double least_volume(const HexahedralMesh& mesh, Index e) {
   const inner::EightPoints x = inner::corners(mesh, e);
   double least = std::numeric_limits<double>::infinity();
   for (int a = 0; a < 8; ++a) {
-    const Vec3 corner(inner::hexahedron_corner[a][0], inner::hexahedron_corner[a][1], inner::hexahedron_corner[a][2]);
-    for (const Vec3& xi : {corner, inner::gauss_point(a)}) {
+    for (const Vec3& xi : {place_of_corner(mesh, a), inner::gauss_point(a)}) {
       const double d = 8 * inner::determinant(inner::jacobian(x, xi));
       if (!(d >= least)) least = d;
     }
@@ -126,12 +131,6 @@ inline HexahedralMesh oriented(HexahedralMesh mesh) {
     if (volume(mesh, e) < 0)
       for (int k = 0; k < 4; ++k) std::swap(mesh.hexahedra[e][k], mesh.hexahedra[e][k + 4]);
   return mesh;
-}
-
-/// Where corner k is in the coordinates by which an element weighs its corners: ξ.
-inline Vec3 place_of_corner(const HexahedralMesh&, int k) {
-  const auto& s = inner::hexahedron_corner[k];
-  return Vec3(s[0], s[1], s[2]);
 }
 
 /// The faces that belong to one hexahedron only, each as two triangles, in the order of the hexahedra.

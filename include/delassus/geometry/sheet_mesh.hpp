@@ -93,14 +93,7 @@ inline std::vector<OuterFace> outer_faces(const SheetMesh& mesh) {
 /// The rectangle [0, width] × [0, height] (m) of the plane z = 0 in cells[0] × cells[1] cells of two
 /// triangles each, turned to +z. Point (i, j) has number i + (cells[0] + 1) j.
 inline SheetMesh sheet(double width, double height, const std::array<Index, 2>& cells, double thickness) {
-  const auto sizes = inner::text(width) + " × " + inner::text(height);
-  DELASSUS_EXPECT(std::isfinite(width) && width > 0 && std::isfinite(height) && height > 0,
-                  "sheet: both sizes of " + sizes + " m must be finite and > 0");
-  for (const Index n : cells)
-    DELASSUS_EXPECT(n > 0, "sheet: the number of cells " + std::to_string(n) + " must be > 0");
-  const double count = (cells[0] + 1.0) * (cells[1] + 1.0);
-  DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
-                  "sheet: " + inner::text(count) + " points are more than an index counts");
+  inner::check_grid("sheet", std::array{width, height}, cells);
   SheetMesh mesh{{}, {}, thickness};
   const Index row = cells[0] + 1;
   for (Index j = 0; j <= cells[1]; ++j)
