@@ -165,7 +165,7 @@ TEST_CASE("no fast body slips through the boxes: broad phase and margin agree") 
     a.velocity = 300 * uniform(random) * uniform(random) * Vec3::UnitX();
     b.velocity = -300 * uniform(random) * uniform(random) * Vec3::UnitX();
     const CollisionSettings settings;
-    const double margin = inner::widest_margin(a, b, std::min(small, big), h, settings);
+    const double margin = inner::widest_margin(inner::top_speed(a) + inner::top_speed(b), std::min(small, big), h, settings);
     b.pose.position = (small + big + 0.999999 * margin) * Vec3::UnitX();
     const auto box = [&](const Collider& c) {
       return inner::alarm_box(c, inner::summary_of(c), h, settings);

@@ -76,6 +76,4 @@ struct CcdKernel {
             .point_b = middle - 0.5 * depth / scale * normal};
   }
 };
-static_assert(NarrowKernel<CcdKernel>);
-
 }  // namespace delassus

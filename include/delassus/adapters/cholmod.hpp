@@ -98,7 +98,7 @@ class CholmodFactor {
   }
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w>> x) const {
-    if (!x.empty()) answer(x[0].data(), 1, x[0].data());
+    if (!x.empty()) solve_in_place(x[0].data(), 1);
   }
 
   /// The rows and columns of A⁻¹ of some nodes, each named once: C is (w n) × (w n) by columns.
@@ -106,23 +106,22 @@ class CholmodFactor {
     const std::size_t columns = w * nodes.size(), n = view_.nrow;
     std::vector<double> S(n * columns, 0.);
     for (std::size_t k = 0; k < columns; ++k) S[w * std::size_t(nodes[k / w]) + k % w + k * n] = 1;
-    answer(S.data(), columns, S.data());
+    solve_in_place(S.data(), columns);
     for (std::size_t j = 0; j < columns; ++j)
       for (std::size_t i = 0; i < columns; ++i)
         C[i + j * columns] = S[w * std::size_t(nodes[i / w]) + i % w + j * n];
   }
 
  private:
-  void answer(const double* from, std::size_t columns, double* to) const {
+  void solve_in_place(double* x, std::size_t columns) const {
     DELASSUS_EXPECT(is_factored_, "CholmodFactor: there is no factor to solve with");
     if (columns == 0) return;
     cholmod_dense B{};
     B.nrow = B.d = view_.nrow, B.ncol = columns, B.nzmax = view_.nrow * columns;
-    B.x = const_cast<double*>(from);  // CHOLMOD reads it
-    B.xtype = CHOLMOD_REAL, B.dtype = CHOLMOD_DOUBLE;
+    B.x = x, B.xtype = CHOLMOD_REAL, B.dtype = CHOLMOD_DOUBLE;
     cholmod_dense* X = cholmod_solve(CHOLMOD_A, L_, &B, &common_);
     DELASSUS_EXPECT(X != nullptr, "CholmodFactor: CHOLMOD could not solve; is there memory for it?");
-    std::copy_n(static_cast<const double*>(X->x), B.nzmax, to);
+    std::copy_n(static_cast<const double*>(X->x), B.nzmax, x);
     cholmod_free_dense(&X, &common_);
   }
 

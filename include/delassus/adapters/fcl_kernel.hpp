@@ -47,15 +47,9 @@ namespace delassus {
 namespace inner {
 
 /// FCL's copies of hulls, each scaled by a power of two. A hull is recognised by its vertices, never by its
-/// address. A copy of the cache starts empty: it holds nothing that cannot be made again.
+/// address. Copies of the cache share what is there: nobody changes it.
 class FclHulls {
  public:
-  FclHulls() = default;
-  FclHulls(const FclHulls&) {}
-  FclHulls& operator=(const FclHulls&) { return *this; }
-  FclHulls(FclHulls&&) = default;
-  FclHulls& operator=(FclHulls&&) = default;
-
   const fcl::Convexd& at(const ConvexHull& hull, double scale) {
     for (const Entry& e : entries_)
       if (e.scale == scale && e.source.size() == hull.vertices().size() &&
@@ -68,7 +62,7 @@ class FclHulls {
   struct Entry {
     double scale;
     std::vector<Vec3> source;
-    std::unique_ptr<const fcl::Convexd> convex;
+    std::shared_ptr<const fcl::Convexd> convex;
   };
 
   static Entry make(const ConvexHull& hull, double scale) {
@@ -81,7 +75,7 @@ class FclHulls {
     }
     return {scale,
             {hull.vertices().begin(), hull.vertices().end()},
-            std::make_unique<const fcl::Convexd>(vertices, int(hull.face_count()), faces)};
+            std::make_shared<const fcl::Convexd>(vertices, int(hull.face_count()), faces)};
   }
 
   std::vector<Entry> entries_;
@@ -201,6 +195,4 @@ class FclKernel {
   inner::FclHulls hulls_;
   fcl::CollisionResultd contacts_;
 };
-static_assert(NarrowKernel<FclKernel>);
-
 }  // namespace delassus

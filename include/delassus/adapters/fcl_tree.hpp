@@ -26,10 +26,16 @@ class FclTree {
   FclTree& operator=(FclTree&&) = default;
 
   void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
-    if (!fits(boxes)) restart(boxes);
-    for (const Index i : listed_) place(*proxies_[i], boxes[i]);
-    Query query{boxes, pairs};
+    if (proxies_.size() != boxes.size()) resize(boxes.size());
+    present_.clear();
+    for (Index i = 0; i < Index(boxes.size()); ++i) {
+      if (boxes[i].isEmpty()) continue;
+      present_.push_back(i);
+      place(*proxies_[i], boxes[i]);
+    }
+    if (!tree_ || present_ != listed_) restart();
     if (listed_.size() < 2) return;
+    Query query{boxes, pairs};
     tree_->update();
     tree_->collide(&query, &FclTree::report);
   }
@@ -64,42 +70,28 @@ class FclTree {
     proxy.computeAABB();
   }
 
-  /// True while the same boxes are there as when the tree was built; an empty box is not in the tree.
-  bool fits(std::span<const Aabb> boxes) const {
-    if (!tree_ || proxies_.size() != boxes.size()) return false;
-    std::size_t next = 0;
-    for (Index i = 0; i < Index(boxes.size()); ++i) {
-      if (boxes[i].isEmpty()) continue;
-      if (next == listed_.size() || listed_[next] != i) return false;
-      ++next;
-    }
-    return next == listed_.size();
-  }
-
-  void restart(std::span<const Aabb> boxes) {
-    tree_ = std::make_unique<Tree>();
-    while (proxies_.size() < boxes.size()) {
+  /// The tree goes before the proxies in it.
+  void resize(std::size_t count) {
+    tree_.reset();
+    while (proxies_.size() < count) {
       proxies_.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(1.0, 1.0, 1.0)));
       proxies_.back()->setUserData(reinterpret_cast<void*>(std::intptr_t(proxies_.size() - 1)));
     }
-    proxies_.resize(boxes.size());
-    listed_.clear();
+    proxies_.resize(count);
+  }
+  /// A tree of the boxes that are there now; an empty one is not.
+  void restart() {
+    tree_ = std::make_unique<Tree>();
+    listed_ = present_;
     std::vector<fcl::CollisionObjectd*> objects;
-    for (Index i = 0; i < Index(boxes.size()); ++i) {
-      if (boxes[i].isEmpty()) continue;
-      listed_.push_back(i);
-      place(*proxies_[i], boxes[i]);
-      objects.push_back(proxies_[i].get());
-    }
+    for (const Index i : listed_) objects.push_back(proxies_[i].get());
     if (objects.empty()) return;
     tree_->registerObjects(objects);
     tree_->setup();
   }
 
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> proxies_;
-  std::vector<Index> listed_;
+  std::vector<Index> listed_, present_;  ///< in the tree, and in this call
   std::unique_ptr<Tree> tree_;
 };
-static_assert(BroadPhase<FclTree>);
-
 }  // namespace delassus

@@ -108,11 +108,11 @@ inline FrictionProblem read_fclib(const std::string& path) {
   const std::vector<Vec3> q = in.vectors("/fclib_local/vectors/q", n);
   for (const double mu : friction) in.expect(mu >= 0, "friction " + inner::text(mu) + " must be >= 0");
   const std::vector<GivenBlock> blocks = inner::fclib_blocks(inner::fclib_entries(in, size));
-  for (const GivenBlock& b : blocks)
+  for (const GivenBlock& b : blocks) {
     in.expect(is_finite(b.block), "entries of W add up to what is not finite");
-  for (const GivenBlock& b : blocks)
     in.expect(b.row != b.column || b.block.diagonal().minCoeff() > 0,
               "the diagonal of W must be > 0, also at contact " + std::to_string(b.row));
+  }
   FrictionProblem p;
   try {
     p = make_friction_problem(friction, q, blocks);

@@ -15,7 +15,7 @@ namespace delassus {
 /// with the logarithm of the number of bodies. A body that moved, came or changed its shape since is found
 /// where it was, or not at all; one that was removed is not found. Half-spaces, and shapes that a backend
 /// keeps, are asked one by one.
-class BodyTree {
+class BodyTree : public inner::AskedBodies {
  public:
   /// Puts every body where it is now. What rests costs a look; a call without news allocates nothing.
   template <class World>
@@ -85,26 +85,5 @@ class BodyTree {
   Array<Place> others_;
   inner::DynamicTree tree_;
 };
-
-/// `ray_cast(world, …)`, asked of the tree.
-template <class World>
-SurfacePoint ray_cast(const World& world, const BodyTree& tree, const Vec3& origin, const Vec3& direction,
-                      double reach = inner::forever, std::uint32_t groups = ~0u) {
-  return inner::first_on_ray(world, tree, origin, direction, reach, groups, inner::RefuseKept{});
-}
-
-/// `closest_point(world, …)`, asked of the tree.
-template <class World>
-SurfacePoint closest_point(const World& world, const BodyTree& tree, const Vec3& point,
-                           double reach = inner::forever, std::uint32_t groups = ~0u) {
-  return inner::nearest_surface(world, tree, point, reach, groups, inner::RefuseKept{});
-}
-
-/// `overlaps(world, …)`, asked of the tree.
-template <class World>
-void overlaps(const World& world, const BodyTree& tree, const Shape& shape, const Pose& pose,
-              std::vector<SurfacePoint>& found, double margin = 0, std::uint32_t groups = ~0u) {
-  inner::all_overlaps(world, tree, shape, pose, found, margin, groups, inner::RefuseKept{});
-}
 
 }  // namespace delassus

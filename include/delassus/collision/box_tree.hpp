@@ -191,6 +191,4 @@ class BasicBoxTree {
 };
 
 using BoxTree = BasicBoxTree<double>;
-static_assert(BroadPhase<BoxTree> && TaggedBroadPhase<BoxTree>);
-
 }  // namespace delassus

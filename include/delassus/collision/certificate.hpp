@@ -31,10 +31,8 @@ bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, 
   const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
   if (!(std::abs(proven - r.distance) <= tolerance)) return false;
   if (!is_finite(r.point_a) || !is_finite(r.point_b)) return false;
-  const Vec3 middle = 0.5 * (r.point_a + r.point_b), across = middle - n * n.dot(middle);
   r.distance = proven;
-  r.point_a = across + height_a * n;
-  r.point_b = across + height_b * n;
+  inner::put_witnesses(height_a, height_b, r);
   return true;
 }
 

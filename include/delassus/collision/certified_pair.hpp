@@ -18,14 +18,10 @@ namespace inner {
 template <NarrowKernel Kernel>
 SignedPair ask(Kernel& kernel, const Shape& a, const Shape& b, const Pose& b_in_a, double margin,
                PairCache& cache) noexcept {
-  if constexpr (noexcept(kernel.pair(a, b, b_in_a, margin, cache))) {
+  try {
     return kernel.pair(a, b, b_in_a, margin, cache);
-  } else {
-    try {
-      return kernel.pair(a, b, b_in_a, margin, cache);
-    } catch (...) {
-      return {};
-    }
+  } catch (...) {
+    return {};
   }
 }
 
@@ -52,11 +48,7 @@ CertifiedPair better_pair(Kernel& kernel, const Shape& a, const Shape& b, const 
   const SignedPair answer = inner::ask(kernel, a, b, b_in_a, margin, cache);
   SignedPair r = answer;
   const bool holds = certify(a, b, b_in_a, margin, scale, r) && !is_beaten(a, b, b_in_a, guess, scale, r);
-  if constexpr (inner::GivesLeastDepth<Kernel>) {
-    if (holds) return {r, false};
-  } else {
-    if (holds && !inner::is_doubtful(scale, answer.distance, r)) return {r, false};
-  }
+  if (holds && (GivesLeastDepth<Kernel> || !is_doubtful(scale, answer.distance, r))) return {r, false};
   cache.guess = guess;
   SignedPair native = GjkEpa{}.pair(a, b, b_in_a, margin, cache);
   if (!certify(a, b, b_in_a, margin, scale, native)) native = holds ? r : coarse_pair(a, b, b_in_a, guess);

@@ -10,8 +10,7 @@ namespace delassus {
 namespace inner {
 
 /// Sphere B against shape A; `center` is the sphere's, in the frame of A.
-template <std::same_as<Shape> S>
-SignedPair sphere_against(const S& a, double radius, const Vec3& center, const Vec3& wish) {
+SignedPair sphere_against(const std::same_as<Shape> auto& a, double radius, const Vec3& center, const Vec3& wish) {
   const NearestSurface s = nearest_surface(a, center, wish);
   SignedPair r{.status = PairStatus::near, .distance = s.distance - radius, .normal = s.normal};
   r.point_a = center - s.distance * s.normal;
@@ -84,22 +83,18 @@ inline bool has_closed_form(const Shape& a, const Shape& b) {
 /// True when the pair has a formula, whose answer is then in `r`. Exact, in the frame of A.
 template <std::same_as<SignedPair> Pair>
 bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess, Pair& r) {
+  if (!has_closed_form(a, b)) return false;
   const Vec3 wish = guess.squaredNorm() > 0 ? guess : b_in_a.position;
-  if (b.kind == ShapeKind::sphere && inner::is_simple(a)) {
+  if (b.kind == ShapeKind::sphere) {
     r = inner::sphere_against(a, b.size[0], b_in_a.position, wish);
-    return true;
-  }
-  if (a.kind == ShapeKind::sphere && inner::is_simple(b)) {
+  } else if (a.kind == ShapeKind::sphere) {
     const Vec3 center = -(b_in_a.rotation.transpose() * b_in_a.position);
     r = inner::swapped(inner::sphere_against(b, a.size[0], center, -(b_in_a.rotation.transpose() * wish)),
                        b_in_a);
-    return true;
-  }
-  if (a.kind == ShapeKind::capsule && b.kind == ShapeKind::capsule) {
+  } else {
     r = inner::two_capsules(a, b, b_in_a, wish);
-    return true;
   }
-  return false;
+  return true;
 }
 
 }  // namespace delassus

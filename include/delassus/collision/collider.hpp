@@ -28,7 +28,15 @@ struct Collider {
   std::uint32_t group = 1;
   std::uint32_t collides_with = ~0u;  ///< pairs when each one's group meets the other's mask
   std::uint32_t key = 0;              ///< names this collider from step to step; unique
+
+  /// Of its point at x, world frame.
+  Vec3 velocity_at(const Vec3& x) const { return velocity + angular_velocity.cross(Vec3(x - pose.position)); }
 };
+
+/// One of them moves, and each one's group meets the other's mask.
+inline bool may_meet(const Collider& a, const Collider& b) {
+  return (a.is_movable || b.is_movable) && (a.group & b.collides_with) != 0 && (b.group & a.collides_with) != 0;
+}
 
 /// The key of block b of set s in a loop's world.
 constexpr std::uint32_t collider_key(Index s, Index b) { return (std::uint32_t(s) << 28) | std::uint32_t(b); }
@@ -46,6 +54,13 @@ struct ContactPoint {
   double gap = 0;                                       ///< m, negative when the bodies overlap
   std::uint64_t pair = 0;                               ///< key of a · 2³² + key of b
   std::uint32_t feature = 0;  ///< names the point within its pair, kept from step to step
+
+  /// The same contact with B named first.
+  void exchange_bodies() {
+    std::swap(a, b);
+    std::swap(point_a, point_b);
+    normal = -normal;
+  }
 };
 
 /// Counts of one call: pairs the broad phase offered, pairs whose distance was computed, answers of the

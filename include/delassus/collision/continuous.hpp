@@ -1,7 +1,7 @@
 /// Detection of what fast bodies will meet within the step.
 #pragma once
 
-#include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/swing.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
@@ -38,6 +38,8 @@ template <class Backend = inner::Absent>
 struct Continuous {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::continuous;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::continuous>;
 
   Backend backend{};
 
@@ -55,18 +57,19 @@ struct Continuous {
     const std::size_t known = contacts.size();
     for (const Index i : fast_)
       for (Index j = 0; j < Index(colliders.size()); ++j) {
-        if (j == i || (is_fast_[j] && j < i) || !may_meet(colliders[i], colliders[j], h)) continue;
+        if (j == i || (is_fast_[j] && j < i) || !ways_meet(colliders[i], colliders[j], h)) continue;
         const std::uint64_t pair = pair_key(colliders[i].key, colliders[j].key);
         if (!filter.lets(pair)) continue;
         const bool is_first = colliders[i].key < colliders[j].key;
         const Index a = is_first ? i : j, b = is_first ? j : i;
         ++report.queries;
         const auto touch = touching(contacts, known, pair);
-        if (!touch) meet(colliders, a, b, h, contacts);
+        const Pair p{colliders[a], colliders[b], a, b, h, contacts};
+        if (!touch) meet(p);
         for (const bool holds_a : {true, false})
           if (is_fast_[holds_a ? a : b]) {
-            if (touch) hold_swing(colliders, a, b, holds_a, h, *touch, contacts);
-            hold_core(colliders, a, b, holds_a, h, touch, contacts);
+            if (touch) hold_swing(p, holds_a, *touch);
+            hold_core(p, holds_a, touch);
           }
       }
     if (contacts.size() > known) inner::sort_by_name(contacts);
@@ -74,10 +77,27 @@ struct Continuous {
     return report;
   }
 
-  void memory(auto& archive) { inner::remember(backend, archive); }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
-
  private:
+  /// Two that are asked about the step h, and where their contacts go.
+  struct Pair {
+    const Collider &a, &b;
+    Index place_a, place_b;
+    double h;
+    std::vector<ContactPoint>& out;
+
+    /// A row through the point in the middle that lets both close in by the gap.
+    void add(const Vec3& middle, const Vec3& n, double gap, std::uint32_t name) const {
+      out.push_back({.a = place_a,
+                     .b = place_b,
+                     .point_a = middle - 0.5 * gap * n,
+                     .point_b = middle + 0.5 * gap * n,
+                     .normal = n,
+                     .gap = gap,
+                     .pair = pair_key(a.key, b.key),
+                     .feature = name});
+    }
+  };
+
   static bool is_asked(const Collider& c) {
     return c.shape.kind != ShapeKind::none && !c.shape.is_kept() && std::isfinite(inner::top_speed(c)) &&
            is_finite(c.pose.position) && is_finite(c.pose.rotation);
@@ -87,7 +107,7 @@ struct Continuous {
   /// that do not are seen; or than the ball of half its size, since what is thin is then seen on its far
   /// side.
   void find_fast(std::span<const Collider> colliders, double h) {
-    const CollisionSettings s = settings();
+    const CollisionSettings s = inner::settings_of(backend);
     double way = 0.5 * s.margin;
     if (s.margin < 0) {
       double smallest = std::numeric_limits<double>::infinity();
@@ -106,12 +126,10 @@ struct Continuous {
     }
   }
 
-  /// Groups, and whether the ways of both through the step can meet.
-  static bool may_meet(const Collider& a, const Collider& b, double h) {
-    if (!is_asked(b) || (!a.is_movable && !b.is_movable)) return false;
-    if ((a.group & b.collides_with) == 0 || (b.group & a.collides_with) == 0) return false;
-    if (b.shape.kind == ShapeKind::half_space) return true;
-    return swept(a, h).intersects(swept(b, h));
+  /// Whether they may, and their ways through the step can meet.
+  static bool ways_meet(const Collider& a, const Collider& b, double h) {
+    return is_asked(b) && may_meet(a, b) &&
+           (b.shape.kind == ShapeKind::half_space || swept(a, h).intersects(swept(b, h)));
   }
   static Aabb swept(const Collider& c, double h) {
     Aabb box = tight_box(c.shape, c.pose);
@@ -136,13 +154,13 @@ struct Continuous {
   }
 
   /// Contacts of the patch that the two will have when they touch.
-  void meet(std::span<const Collider> colliders, Index place_a, Index place_b, double h,
-            std::vector<ContactPoint>& out) {
-    const Collider &a = colliders[place_a], &b = colliders[place_b];
-    const double scale = inner::pair_scale(a.shape, b.shape), thickness = settings().contact_distance;
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, thickness + 1e-3 * scale);
+  void meet(const Pair& pair) {
+    const Collider &a = pair.a, &b = pair.b;
+    const double scale = inner::pair_scale(a.shape, b.shape),
+                 thickness = inner::settings_of(backend).contact_distance;
+    const inner::Impact hit = inner::time_of_impact(a, b, pair.h, scale, thickness + 1e-3 * scale);
     if (!hit.is_found) return;
-    const Pose b_in_a = inner::relative(hit.a, hit.b);
+    const Pose b_in_a = hit.a.to_local(hit.b);
     const double margin = thickness + 0.05 * scale;
     const SignedPair r = inner::distance_of(a.shape, b.shape, b_in_a, margin, scale, hit.normal_in_a, patch_);
     if (r.status != PairStatus::near) return;
@@ -153,36 +171,24 @@ struct Continuous {
       if (!(flight > 0)) return;
       const bool holds_a =
           a.is_movable && (!b.is_movable || a.velocity.squaredNorm() > b.velocity.squaredNorm());
-      out.push_back(middle_contact(a, b, place_a, place_b, holds_a, n, hit.time * flight, whole_name));
-      if (!inner::is_turning(holds_a ? a : b)) return;
-      const PatchPoint p{.a = r.point_a, .b = r.point_b};
-      ContactPoint c = ahead(a, b, hit, n, p, 0);
-      c.a = place_a, c.b = place_b;
-      c.pair = pair_key(a.key, b.key);
-      c.feature = end_name;
-      if (c.gap > 0) out.push_back(c);
+      const Collider& held = holds_a ? a : b;
+      pair.add(held.pose.position, n, hit.time * flight, whole_name);
+      if (inner::is_turning(held)) add_ahead(pair, hit, n, {.a = r.point_a, .b = r.point_b, .name = end_name}, 0);
       return;
     }
     if (a.shape.has_volume() && b.shape.has_volume())
       contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
     const inner::Choice choice = chosen(r.normal);
-    const std::size_t first = out.size();
+    const std::size_t first = pair.out.size();
     for (int k = 0; k < choice.count; ++k) {
-      const PatchPoint& p = patch_.point[choice.index[k]];
-      ContactPoint c = ahead(a, b, hit, hit.a.rotation * r.normal, p, std::max(p.gap - r.distance, 0.0));
-      if (!(c.gap > 0)) continue;
-      c.a = place_a, c.b = place_b;
-      c.pair = pair_key(a.key, b.key);
-      c.feature = p.name;
-      for (std::size_t i = first; i < out.size(); ++i)
-        if (out[i].feature == c.feature) ++c.feature, i = first - 1;
-      out.push_back(c);
+      PatchPoint p = patch_.point[choice.index[k]];
+      p.name = inner::unused(p.name, first, pair.out);
+      add_ahead(pair, hit, n, p, std::max(p.gap - r.distance, 0.0));
     }
   }
-
   /// All points of the patch, or the four that span it.
   inner::Choice chosen(const Vec3& n) const {
-    const int limit = std::clamp(settings().max_points, 1, 4);
+    const int limit = std::clamp(inner::settings_of(backend).max_points, 1, 4);
     if (patch_.count > limit) return inner::choose_anew(patch_, n, limit);
     inner::Choice all;
     for (int i = 0; i < patch_.count; ++i) all.add(i);
@@ -191,15 +197,14 @@ struct Continuous {
 
   /// A ball within the fast body, moved without turning, that would reach the other one in the step is held
   /// by its middle. One that is there stays, whichever way it moves: other rows may turn it.
-  void hold_core(std::span<const Collider> colliders, Index place_a, Index place_b, bool holds_a, double h,
-                 const std::optional<ContactPoint>& touch, std::vector<ContactPoint>& out) {
-    Collider a = colliders[place_a], b = colliders[place_b];
+  void hold_core(const Pair& pair, bool holds_a, const std::optional<ContactPoint>& touch) const {
+    Collider a = pair.a, b = pair.b;
     Collider& core = holds_a ? a : b;
     if (!core.is_movable || !core.shape.has_volume()) return;
     const double radius = inner::core_of_motion(core.shape);
     core.shape = Sphere{radius};
     core.angular_velocity.setZero();
-    const inner::Impact hit = inner::time_of_impact(a, b, h, radius, 1e-3 * radius);
+    const inner::Impact hit = inner::time_of_impact(a, b, pair.h, radius, 1e-3 * radius);
     if (!hit.is_found && !hit.is_now) return;
     const Vec3 n = hit.a.rotation * hit.normal_in_a;
     const double flight = n.dot(a.velocity - b.velocity);
@@ -207,66 +212,36 @@ struct Continuous {
     // What touches has nowhere to go but to turn about that point, and may turn by more than a row can
     // follow.
     const double way = touch ? std::min(hit.time * flight, std::max(touch->gap, 0.0)) : hit.time * flight;
-    out.push_back(
-        middle_contact(a, b, place_a, place_b, holds_a, n, way, holds_a ? core_name : core_name + 1));
+    pair.add(core.pose.position, n, way, holds_a ? core_name : core_name + 1);
   }
-
   /// Of a body that touches, the next point that its turn brings to the plane of the contact is held there.
-  void hold_swing(std::span<const Collider> colliders, Index place_a, Index place_b, bool holds_a, double h,
-                  const ContactPoint& touch, std::vector<ContactPoint>& out) {
-    const Collider &a = colliders[place_a], &b = colliders[place_b], &other = holds_a ? b : a;
-    Collider body = holds_a ? a : b;
+  void hold_swing(const Pair& pair, bool holds_a, const ContactPoint& touch) const {
+    const Collider& other = holds_a ? pair.b : pair.a;
+    Collider body = holds_a ? pair.a : pair.b;
     if (!body.is_movable || !body.shape.has_volume() || !inner::is_turning(body)) return;
     const Vec3 up = holds_a ? Vec3(-touch.normal) : touch.normal;
     const Vec3 on_other = holds_a ? touch.point_b : touch.point_a;
     body.velocity -= other.velocity;
     body.velocity -= std::min(0.0, up.dot(body.velocity)) * up;
-    const inner::Swing swing =
-        inner::swing_to_plane(body, up, up.dot(on_other), h, 1e-3 * inner::pair_scale(a.shape, b.shape));
+    const double target = 1e-3 * inner::pair_scale(body.shape, other.shape);
+    const inner::Swing swing = inner::swing_to_plane(body, up, up.dot(on_other), pair.h, target);
     const double closing = -up.dot(body.velocity + body.angular_velocity.cross(swing.arm));
     if (!swing.is_found || !(closing > 0) || !inner::meets(other, body, swing)) return;
-    const Vec3 at = body.pose.position + swing.arm;
-    const double gap = swing.time * closing;
-    out.push_back({.a = place_a,
-                   .b = place_b,
-                   .point_a = at - 0.5 * gap * touch.normal,
-                   .point_b = at + 0.5 * gap * touch.normal,
-                   .normal = touch.normal,
-                   .gap = gap,
-                   .pair = touch.pair,
-                   .feature = holds_a ? end_name + 1 : end_name + 2});
+    pair.add(body.pose.position + swing.arm, touch.normal, swing.time * closing,
+             holds_a ? end_name + 1 : end_name + 2);
   }
-
-  /// A row through the middle of A or of B.
-  static ContactPoint middle_contact(const Collider& a, const Collider& b, Index place_a, Index place_b,
-                                     bool holds_a, const Vec3& n, double gap, std::uint32_t name) {
-    const Vec3 middle = holds_a ? a.pose.position : b.pose.position;
-    return {.a = place_a,
-            .b = place_b,
-            .point_a = middle - 0.5 * gap * n,
-            .point_b = middle + 0.5 * gap * n,
-            .normal = n,
-            .gap = gap,
-            .pair = pair_key(a.key, b.key),
-            .feature = name};
-  }
-
-  /// The contact as a row that lets the point close in by the way it has until then; on the body that moves,
+  /// The point as a row that lets it close in by the way it has until then, if it does; on the body that moves,
   /// or between both.
-  static ContactPoint ahead(const Collider& a, const Collider& b, const inner::Impact& hit, const Vec3& n,
-                            const PatchPoint& p, double more) {
+  static void add_ahead(const Pair& pair, const inner::Impact& hit, const Vec3& n, const PatchPoint& p,
+                        double more) {
+    const Collider &a = pair.a, &b = pair.b;
     const Vec3 arm_a = hit.a.to_world(p.a) - hit.a.position, arm_b = hit.a.to_world(p.b) - hit.b.position;
     const Vec3 of_a = a.velocity + a.angular_velocity.cross(arm_a),
                of_b = b.velocity + b.angular_velocity.cross(arm_b);
     const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b;
-    const Vec3 middle = !a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b));
-    ContactPoint c;
     const double way = hit.time * n.dot(of_a - of_b);
-    c.gap = way > 0 ? way + more : 0;
-    c.normal = n;
-    c.point_a = middle - 0.5 * c.gap * n;
-    c.point_b = middle + 0.5 * c.gap * n;
-    return c;
+    if (!(way > 0)) return;
+    pair.add(!a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b)), n, way + more, p.name);
   }
 
   /// Names that no point of a patch has.
@@ -276,16 +251,5 @@ struct Continuous {
   std::vector<bool> is_fast_;
   Patch patch_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::continuous>)
-struct Continuous<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-Continuous(Backend) -> Continuous<Backend>;
 
 }  // namespace delassus

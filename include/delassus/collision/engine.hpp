@@ -7,7 +7,7 @@
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/fallback_normal.hpp>
 #include <delassus/collision/inner/margins.hpp>
-#include <delassus/collision/inner/reduce.hpp>
+#include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/resting_pair.hpp>
 #include <delassus/collision/inner/snap_normal.hpp>
 #include <delassus/collision/manifold.hpp>
@@ -40,8 +40,6 @@ class CollisionEngine {
     return report_;
   }
 
-  /// Forgets every pair, as after a jump in time.
-  void reset() { memory_.clear(); }
 
   Kernel& kernel() { return kernel_; }
   /// What outlives a step: with it restored, the next step is the same to the bit.
@@ -49,11 +47,7 @@ class CollisionEngine {
 
  private:
   using RestingPair = inner::RestingPair;
-  struct Job {
-    std::uint64_t pair;
-    Index a, b;
-    bool operator<(const Job& o) const { return pair < o.pair; }
-  };
+  using Job = inner::PairJob;
 
   template <class Filter>
   void find_pairs(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
@@ -95,10 +89,8 @@ class CollisionEngine {
   template <class Filter>
   void add_job(std::span<const Collider> colliders, Index a, Index b, const Filter& filter) {
     const Collider &x = colliders[a], &y = colliders[b];
-    if (!x.is_movable && !y.is_movable) return;
-    if ((x.group & y.collides_with) == 0 || (y.group & x.collides_with) == 0) return;
     const std::uint64_t pair = pair_key(x.key, y.key);
-    if (!filter.lets(pair)) return;
+    if (!may_meet(x, y) || !filter.lets(pair)) return;
     if (x.key > y.key) std::swap(a, b);
     jobs_.push_back({pair, a, b});
   }
@@ -131,7 +123,12 @@ class CollisionEngine {
     if (r.distance > margin) return;
     if (!is_half_space(a) && !is_half_space(b))
       contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
-    emit(a, job, b_in_a, settings, scale, last, now, out);
+    inner::name_points(patch_, last, b_in_a, a.pose.rotation.transpose() * now.normal, scale,
+                       settings.max_points, out.size(), out, now, [&](int i, std::uint32_t id) {
+                         out.push_back(inner::contact_of(job, a.pose, patch_.point[i], now.normal,
+                                                         settings.contact_distance, id));
+                       });
+    sort_last(now.count, out);
     now.keep(shapes, b_in_a, r.normal, margin);
   }
 
@@ -140,12 +137,10 @@ class CollisionEngine {
   /// The certified signed distance. Of a half-space the patch comes with it.
   SignedPair measure(const Collider& a, const Collider& b, const Pose& b_in_a, double reach, double scale,
                      const PairMemory& last, PairMemory& now) {
-    if (is_half_space(a) || is_half_space(b))
+    if (is_half_space(a) || is_half_space(b)) {
       now.owner = is_half_space(a) ? inner::NormalOwner::a : inner::NormalOwner::b;
-    if (is_half_space(a))
-      return half_space_patch(b.shape, b_in_a, inner::plane_of(a.shape, Pose{}), true, reach, scale, patch_);
-    if (is_half_space(b))
-      return half_space_patch(a.shape, Pose{}, inner::plane_of(b.shape, b_in_a), false, reach, scale, patch_);
+      return half_space_patch(a.shape, b.shape, b_in_a, reach, scale, patch_);
+    }
     const Vec3 guess = a.pose.rotation.transpose() * last.normal;
     // Centres in one point: the normal of B moved by 1e-4 of the size, far above what round shapes resolve. Along it B
     // is then put back, and the depth is within 4e-4 of the size of the least.
@@ -160,37 +155,6 @@ class CollisionEngine {
     if (r.status == PairStatus::near)
       now.owner = inner::snap_normal_to_face(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
-  }
-
-  void emit(const Collider& a, const Job& job, const Pose& b_in_a, const CollisionSettings& settings,
-            double scale, const PairMemory& last, PairMemory& now, std::vector<ContactPoint>& out) {
-    const Vec3 n_a = a.pose.rotation.transpose() * now.normal;
-    const inner::Continuation continues(patch_, last, b_in_a, scale);
-    const int limit = std::clamp(settings.max_points, 1, PairMemory::capacity);
-    const inner::Choice choice = inner::reduce(patch_, continues, n_a, scale, limit);
-    for (const bool is_old : {true, false})
-      for (int k = 0; k < choice.count; ++k) {
-        const int i = choice.index[k], before = continues.of[i];
-        if ((before >= 0) != is_old) continue;
-        const PatchPoint& p = patch_.point[i];
-        const std::uint32_t id = is_old ? last.point[before].id : inner::fresh_id(p.name, now);
-        now.point[now.count++] = {p.name, id, p.a, b_in_a.to_local(p.b)};
-        add(a, job, settings, now.normal, p, id, out);
-      }
-    sort_last(choice.count, out);
-  }
-
-  static void add(const Collider& a, const Job& job, const CollisionSettings& settings, const Vec3& normal,
-                  const PatchPoint& p, std::uint32_t id, std::vector<ContactPoint>& out) {
-    const Vec3 shift = 0.5 * settings.contact_distance * normal;
-    out.push_back({.a = job.a,
-                   .b = job.b,
-                   .point_a = a.pose.to_world(p.a) + shift,
-                   .point_b = a.pose.to_world(p.b) - shift,
-                   .normal = normal,
-                   .gap = p.gap - settings.contact_distance,
-                   .pair = job.pair,
-                   .feature = id});
   }
 
   /// The last points by feature; they are few.
@@ -237,8 +201,7 @@ void CollisionEngine<Kernel, Broad>::collide(std::span<const Collider> colliders
                                              std::vector<ContactPoint>& out) {
   const Collider &a = colliders[job.a], &b = colliders[job.b];
   const inner::Summary &of_a = summary_[job.a], &of_b = summary_[job.b];
-  const Pose b_in_a{.position = a.pose.to_local(b.pose.position),
-                    .rotation = a.pose.rotation.transpose() * b.pose.rotation};
+  const Pose b_in_a = a.pose.to_local(b.pose);
   const double scale = std::min(of_a.scale, of_b.scale);
   const double reach =
       settings.contact_distance + inner::widest_margin(of_a.speed + of_b.speed, scale, h, settings);
@@ -248,7 +211,8 @@ void CollisionEngine<Kernel, Broad>::collide(std::span<const Collider> colliders
     return collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, out);
   pair.normal = a.pose.rotation * n;
   for (int k = 0; k < pair.count; ++k)
-    add(a, job, settings, pair.normal, repeated_[k], repeated_[k].name, out);
+    out.push_back(inner::contact_of(job, a.pose, repeated_[k], pair.normal, settings.contact_distance,
+                                    repeated_[k].name));
 }
 
 }  // namespace delassus

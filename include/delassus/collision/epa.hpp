@@ -17,10 +17,9 @@ struct EpaResult {
 };
 
 /// A unit vector perpendicular to the unit vector `axis`, as near to `wish` as can be.
-template <class Scalar>
-Vec<3, Scalar> perpendicular(const Vec<3, Scalar>& axis, const Vec<3, Scalar>& wish) {
-  const Vec<3, Scalar> across = wish - axis * axis.dot(wish);
-  const Scalar length = across.norm();
+Vec3 perpendicular(const std::same_as<Vec3> auto& axis, const Vec3& wish) {
+  const Vec3 across = wish - axis * axis.dot(wish);
+  const double length = across.norm();
   if (length > 1e-6 * wish.norm()) return across / length;
   int k = 0;
   for (const int j : {1, 2})
@@ -81,13 +80,11 @@ EpaResult flat_depth(const D& difference, const std::array<DifferencePoint, 4>& 
 }
 
 /// The points of the simplex that span it: each adds a dimension of at least 1e-9 of `size`.
-template <class Scalar>
-int independent(const BasicSimplex<Scalar>& s, Scalar size, std::array<DifferencePoint, 4>& p) {
-  using Vec3 = Vec<3, Scalar>;
+int independent(const std::same_as<Simplex> auto& s, double size, std::array<DifferencePoint, 4>& p) {
   int count = 0;
   for (int i = 0; i < s.count; ++i) {
     const Vec3 d = count > 0 ? Vec3(s.p[i].w - p[0].w) : Vec3::Zero();
-    Scalar height = size;
+    double height = size;
     if (count == 1) height = d.norm();
     if (count == 2) height = d.cross((p[1].w - p[0].w).normalized()).norm();
     if (count == 3) height = std::abs(d.dot((p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized()));

@@ -53,7 +53,7 @@ inline bool touches(const Triangle& t, const Vec3& x, const TouchRange& range, P
   const inner::Rim rim(t, out.normal);
   if (rim.count == 3 || (rim.count == 2 && !inner::is_allowed(t, rim, out.normal))) return false;
   for (int k = 0; k < 3; ++k)
-    if (rim.count == 2 && !rim.has(k)) out.edge = (k + 1) % 3;
+    if (rim.count == 2 && !rim.has[k]) out.edge = (k + 1) % 3;
   if (rim.count == 1) out.corner = rim.corner[0];
   return true;
 }

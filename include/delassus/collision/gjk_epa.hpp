@@ -30,19 +30,20 @@ struct GjkEpa {
     if (!(guess.squaredNorm() > 0)) guess = b_in_a.position;
     if (!(guess.squaredNorm() > 0)) guess = unit_axis(2);
     const inner::GjkResult apart = inner::gjk(difference, guess, margin + radius);
-    if (apart.is_apart) {
+    const auto answer_apart = [&] {
       const inner::Simplex& s = apart.simplex;
-      SignedPair r = answer(apart.normal, apart.separation - radius, s.mix(&inner::DifferencePoint::a),
-                            s.mix(&inner::DifferencePoint::b), core_radius(a), core_radius(b));
+      return answer(apart.normal, apart.separation - radius, s.mix(&inner::DifferencePoint::a), s.mix(&inner::DifferencePoint::b),
+                    core_radius(a), core_radius(b));
+    };
+    if (apart.is_apart) {
+      SignedPair r = answer_apart();
       if (r.distance > margin) r.status = PairStatus::far;
       return r;
     }
     const inner::EpaResult deep = inner::epa(difference, apart.simplex, guess);
     if (!(std::min(deep.h, -apart.separation) < std::numeric_limits<double>::infinity())) return {};
     // Both have proven a plane; when the cores touch within rounding, either may be the better one.
-    if (-apart.separation < deep.h)
-      return answer(apart.normal, apart.separation - radius, apart.simplex.mix(&inner::DifferencePoint::a),
-                    apart.simplex.mix(&inner::DifferencePoint::b), core_radius(a), core_radius(b));
+    if (-apart.separation < deep.h) return answer_apart();
     return answer(deep.normal, -deep.h - radius, deep.point_a, deep.point_b, core_radius(a), core_radius(b));
   }
 
@@ -56,6 +57,4 @@ struct GjkEpa {
             .point_b = core_b - radius_b * normal};
   }
 };
-static_assert(NarrowKernel<GjkEpa>);
-
 }  // namespace delassus

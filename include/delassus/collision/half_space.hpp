@@ -12,10 +12,23 @@ struct Plane {
   double offset;
 };
 
-/// `s`, posed in the frame of A, over the plane. Gives the deepest point and the corners with a gap up to
-/// `margin`.
-inline SignedPair half_space_patch(const Shape& s, const Pose& pose, const Plane& plane, bool plane_is_a,
-                                   double margin, double scale, Patch& patch) {
+namespace inner {
+
+inline Plane plane_of(const Shape& s, const Pose& pose) {
+  const Vec3 n = pose.rotation * Vec3(s.size[0], s.size[1], s.size[2]);
+  return {n, s.size[3] + n.dot(pose.position)};
+}
+
+}  // namespace inner
+
+/// One of the two is a half-space, the other a shape over its plane. Gives the deepest point and the corners with
+/// a gap up to `margin`, in the frame of A.
+inline SignedPair half_space_patch(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale,
+                                   Patch& patch) {
+  const bool plane_is_a = a.kind == ShapeKind::half_space;
+  const Plane plane = plane_is_a ? inner::plane_of(a, Pose{}) : inner::plane_of(b, b_in_a);
+  const Shape& s = plane_is_a ? b : a;
+  const Pose pose = plane_is_a ? b_in_a : Pose{};
   const Vec3 down = -(pose.rotation.transpose() * plane.normal);
   const auto contact = [&](const Vec3& point, std::uint32_t name) {
     const double gap = plane.normal.dot(point) - plane.offset;

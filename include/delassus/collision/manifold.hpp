@@ -29,6 +29,14 @@ struct Patch {
 
 namespace inner {
 
+/// Of a patch that is not empty.
+inline int deepest(const Patch& patch) {
+  int best = 0;
+  for (int i = 1; i < patch.count; ++i)
+    if (patch.point[i].gap < patch.point[best].gap) best = i;
+  return best;
+}
+
 inline Face posed(Face face, const Pose& pose) {
   for (int k = 0; k < face.count; ++k) face.point[k] = pose.to_world(face.point[k]);
   face.normal = pose.rotation * face.normal;

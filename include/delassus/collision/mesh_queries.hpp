@@ -15,14 +15,13 @@ namespace inner {
 /// f(set, s, b, surface, pose) for every body of a mesh or a height field whose group meets the mask.
 template <class World, class Backend, class F>
 void each_surface(const World& world, const WithMeshes<Backend>& meshes, std::uint32_t groups, const F& f) {
+  const auto ask_kept = [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
+    if (shape.kind == ShapeKind::mesh)
+      meshes.with_surface(shape, [&](const auto& surface) { f(set, s, b, surface, pose); });
+  };
   world.each([&](const auto& set, auto s) {
-    for (Index b = 0; b < set.blocks(); ++b) {
-      if (!set.has_collider(b) || (set.group(b) & groups) == 0) continue;
-      const Shape shape = set.shape(b);
-      const Pose pose = set.pose(b);
-      if (shape.kind != ShapeKind::mesh || !is_finite(pose.position) || !is_finite(pose.rotation)) continue;
-      meshes.with_surface(shape, [&](const auto& surface) { f(set, Index(s), b, surface, pose); });
-    }
+    for (Index b = 0; b < set.blocks(); ++b)
+      ask(set, Index(s), b, groups, ask_kept, [](const auto&...) {});
   });
 }
 
@@ -35,12 +34,6 @@ inline double way_to(const Triangle& t, const Vec3& origin, const Vec3& d) {
   const Vec3 s = origin - t.point[0], q = s.cross(e1);
   const double u = s.dot(p), v = d.dot(q), way = e2.dot(q) / determinant;
   return u >= 0 && v >= 0 && u + v <= determinant && way >= 0 ? way : forever;
-}
-
-inline double distance_to(const Bounds& box, const Vec3& p) {
-  Vec3 out;
-  for (int k = 0; k < 3; ++k) out[k] = std::max({box.low[k] - p[k], 0.0, p[k] - box.high[k]});
-  return out.norm();
 }
 
 }  // namespace inner
@@ -80,7 +73,7 @@ SurfacePoint closest_point(const World& world, const WithMeshes<Backend>& meshes
   inner::each_surface(
       world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& pose) {
         const Vec3 local = pose.to_local(point);
-        const auto meets = [&](const inner::Bounds& box) { return inner::distance_to(box, local) <= limit; };
+        const auto meets = [&](const inner::Bounds& box) { return box.beyond(local).norm() <= limit; };
         surface.visit(meets, [&](Index t) {
           const Triangle triangle = surface.triangle(t);
           const Vec3 on = inner::nearest_on(triangle, local), apart = local - on;
@@ -103,11 +96,8 @@ void overlaps(const World& world, const WithMeshes<Backend>& meshes, const Shape
   Patch patch;
   inner::each_surface(
       world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& at) {
-        const Pose relative{.position = at.to_local(pose.position),
-                            .rotation = at.rotation.transpose() * pose.rotation};
-        const Aabb tight = tight_box(shape, relative);
-        const Vec3 more = Vec3::Constant(margin);
-        const inner::Bounds near{tight.min() - more, tight.max() + more};
+        const Pose relative = at.to_local(pose);
+        const inner::Bounds near = inner::bounds_around(shape, relative, margin);
         SurfacePoint deepest;
         surface.visit([&](const inner::Bounds& box) { return box.meets(near); },
                       [&](Index t) {

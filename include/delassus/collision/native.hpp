@@ -7,6 +7,10 @@
 
 namespace delassus {
 
+/// The backend with this kernel, as its refusals call it.
+template <class Kernel>
+inline constexpr const char* name_of_backend = "NativeCollision";
+
 /// Pairs from `Broad`, distances from `Kernel`. A template, so that only a program that detects collisions compiles it.
 template <NarrowKernel Kernel, BroadPhase Broad>
 struct NativeDetection {
@@ -17,7 +21,7 @@ struct NativeDetection {
   int max_points = 4;           ///< of one pair
   CollisionEngine<Kernel, Broad> engine{};
 
-  void check() const { CollisionSettings{margin, contact_distance, max_points}.check("NativeCollision"); }
+  void check() const { CollisionSettings{margin, contact_distance, max_points}.check(name_of_backend<Kernel>); }
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
                          const Filter& filter = {});

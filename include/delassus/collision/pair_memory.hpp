@@ -62,14 +62,5 @@ struct Continuation {
   }
 };
 
-/// An id for a newborn point: its name, or the next number that no point of the pair has.
-inline std::uint32_t fresh_id(std::uint32_t name, const PairMemory& now) {
-  for (std::uint32_t id = name;; ++id) {
-    bool is_used = false;
-    for (int k = 0; k < now.count; ++k) is_used = is_used || now.point[k].id == id;
-    if (!is_used) return id;
-  }
-}
-
 }  // namespace inner
 }  // namespace delassus

@@ -3,12 +3,12 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/certified_pair.hpp>
-#include <delassus/collision/half_space.hpp>
-#include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <vector>
 
@@ -38,12 +38,7 @@ inline constexpr double forever = std::numeric_limits<double>::infinity();
 /// `reach`.
 inline SignedPair measure(const Shape& a, const Shape& b, const Pose& b_in_a, double reach) {
   Patch patch;
-  if (a.kind == ShapeKind::half_space)
-    return half_space_patch(b, b_in_a, plane_of(a, Pose{}), true, reach, length_scale(b), patch);
-  if (b.kind == ShapeKind::half_space)
-    return half_space_patch(a, Pose{}, plane_of(b, b_in_a), false, reach, length_scale(a), patch);
-  GjkEpa kernel;
-  return certified_pair(kernel, a, b, b_in_a, reach, pair_scale(a, b), Vec3::Zero()).pair;
+  return distance_of(a, b, b_in_a, reach, pair_scale(a, b), Vec3::Zero(), patch);
 }
 
 /// The signed distance of a point from a shape, in its frame: `normal` points from the shape to the point.
@@ -103,7 +98,7 @@ inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction
 
 /// What is asked of a body whose shape a backend keeps: nothing can be.
 struct RefuseKept {
-  void operator()(const auto& set, Index b, const Shape& shape) const {
+  void operator()(const auto& set, Index, Index b, const Shape& shape, const Pose&) const {
     refuse(set.who(b) + ": a " + name(shape.kind) +
            " is known to its backend alone; name it in the question (" +
            "delassus/collision/mesh_queries.hpp), or leave the group out of the mask");
@@ -111,24 +106,27 @@ struct RefuseKept {
 };
 /// Those are asked elsewhere.
 struct PassKept {
-  void operator()(const auto&, Index, const Shape&) const {}
+  void operator()(const auto&...) const {}
 };
 
-/// f(set, s, b, shape, pose) for body b of set s when it has a shape and its group meets the mask, kept(set,
-/// b, shape) when a backend keeps that; a body that is not finite has none.
+/// f(set, s, b, shape, pose) for body b of set s when it has a shape and its group meets the mask, `kept` of the same
+/// when a backend keeps that; a body that is not finite has none.
 template <class Set, class F, class Kept>
 void ask(const Set& set, Index s, Index b, std::uint32_t groups, const Kept& kept, const F& f) {
   if (!set.has_collider(b) || (set.group(b) & groups) == 0) return;
   const Pose pose = set.pose(b);
   if (!is_finite(pose.position) || !is_finite(pose.rotation)) return;
   const Shape shape = set.shape(b);
-  shape.is_kept() ? kept(set, b, shape) : f(set, s, b, shape, pose);
+  shape.is_kept() ? kept(set, s, b, shape, pose) : f(set, s, b, shape, pose);
 }
+
+/// What has `visit` as `EveryBody` does.
+struct AskedBodies {};
 
 }  // namespace inner
 
 /// All bodies, one by one: what is asked where no `BodyTree` is named.
-struct EveryBody {
+struct EveryBody : inner::AskedBodies {
   /// f(set, s, b, shape, pose) for the half-spaces, and for the bodies whose tight box passes `meets`.
   template <class World, class Kept, class Meets, class F>
   void visit(const World& world, std::uint32_t groups, const Kept& kept, const Meets& meets,
@@ -160,58 +158,64 @@ inline bool comes_before(Index s, Index b, const Anchor& other) {
   return s != other.set ? s < other.set : b < other.block;
 }
 
-template <class World, class Bodies, class Kept>
-SurfacePoint first_on_ray(const World& world, const Bodies& bodies, const Vec3& origin, const Vec3& direction,
-                          double reach, std::uint32_t groups, const Kept& kept) {
-  const Vec3 along = direction_of(direction);
+}  // namespace inner
+
+/// `ray_cast(world, …)`, asked of these: a `BodyTree`.
+template <class World, std::derived_from<inner::AskedBodies> Bodies, class Kept = inner::RefuseKept>
+SurfacePoint ray_cast(const World& world, const Bodies& bodies, const Vec3& origin, const Vec3& direction,
+                      double reach = inner::forever, std::uint32_t groups = ~0u, const Kept& kept = {}) {
+  const Vec3 along = inner::direction_of(direction);
   DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
                   "ray_cast: origin and direction must be finite and the direction not zero");
   inner::expect_at_least_zero("ray_cast: reach", reach, "m");
   SurfacePoint first;
   double nearest = reach;
   const auto meets = [&](const Aabb& box) {
-    const Vec3 slack = Vec3::Constant(box_slack * farthest(box, origin));
-    return ray_meets(Aabb(box.min() - slack, box.max() + slack), origin, along, nearest);
+    const Vec3 slack = Vec3::Constant(inner::box_slack * inner::farthest(box, origin));
+    return inner::ray_meets(Aabb(box.min() - slack, box.max() + slack), origin, along, nearest);
   };
   bodies.visit(world, groups, kept, meets,
                [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
                  double way = 0;
                  Vec3 normal;
                  const Vec3 local = pose.rotation.transpose() * along;
-                 if (!enter(shape, pose.to_local(origin), local, nearest, way, normal)) return;
-                 if (first && (way > nearest || (way == nearest && !comes_before(s, b, first.anchor))))
+                 if (!inner::enter(shape, pose.to_local(origin), local, nearest, way, normal)) return;
+                 if (first && (way > nearest || (way == nearest && !inner::comes_before(s, b, first.anchor))))
                    return;
                  nearest = way;
-                 first = surface_point(set, s, b, pose, origin + way * along, pose.rotation * normal, way);
+                 first = inner::surface_point(set, s, b, pose, origin + way * along, pose.rotation * normal, way);
                });
   return first;
 }
 
-template <class World, class Bodies, class Kept>
-SurfacePoint nearest_surface(const World& world, const Bodies& bodies, const Vec3& point, double reach,
-                             std::uint32_t groups, const Kept& kept) {
+/// `closest_point(world, …)`, asked of these.
+template <class World, std::derived_from<inner::AskedBodies> Bodies, class Kept = inner::RefuseKept>
+SurfacePoint closest_point(const World& world, const Bodies& bodies, const Vec3& point,
+                           double reach = inner::forever, std::uint32_t groups = ~0u, const Kept& kept = {}) {
   DELASSUS_EXPECT(is_finite(point), "closest_point: the point is not finite");
   inner::expect_at_least_zero("closest_point: reach", reach, "m");
   SurfacePoint best;
   double limit = reach;
   const auto meets = [&](const Aabb& box) {
-    return box.exteriorDistance(point) <= std::max(limit, 0.0) + box_slack * farthest(box, point);
+    return box.exteriorDistance(point) <= std::max(limit, 0.0) + inner::box_slack * inner::farthest(box, point);
   };
   bodies.visit(
       world, groups, kept, meets,
       [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
-        const SignedPair r = measure_point(shape, pose.to_local(point));
-        if (!(r.distance <= limit) || (best && r.distance == limit && !comes_before(s, b, best.anchor)))
+        const SignedPair r = inner::measure_point(shape, pose.to_local(point));
+        if (!(r.distance <= limit) || (best && r.distance == limit && !inner::comes_before(s, b, best.anchor)))
           return;
         limit = r.distance;
-        best = surface_point(set, s, b, pose, pose.to_world(r.point_a), pose.rotation * r.normal, r.distance);
+        best = inner::surface_point(set, s, b, pose, pose.to_world(r.point_a), pose.rotation * r.normal, r.distance);
       });
   return best;
 }
 
-template <class World, class Bodies, class Kept>
-void all_overlaps(const World& world, const Bodies& bodies, const Shape& shape, const Pose& pose,
-                  std::vector<SurfacePoint>& found, double margin, std::uint32_t groups, const Kept& kept) {
+/// `overlaps(world, …)`, asked of these.
+template <class World, std::derived_from<inner::AskedBodies> Bodies, class Kept = inner::RefuseKept>
+void overlaps(const World& world, const Bodies& bodies, const Shape& shape, const Pose& pose,
+              std::vector<SurfacePoint>& found, double margin = 0, std::uint32_t groups = ~0u,
+              const Kept& kept = {}) {
   check(shape, "overlaps");
   DELASSUS_EXPECT(shape.has_volume(),
                   std::string("overlaps: a ") + name(shape.kind) + " has no volume to overlap with");
@@ -222,20 +226,16 @@ void all_overlaps(const World& world, const Bodies& bodies, const Shape& shape, 
   bodies.visit(
       world, groups, kept, [&](const Aabb& other) { return other.intersects(box); },
       [&](const auto& set, Index s, Index b, const Shape& other, const Pose& at) {
-        const Pose relative{.position = at.to_local(pose.position),
-                            .rotation = at.rotation.transpose() * pose.rotation};
-        const SignedPair r = measure(other, shape, relative, margin);
+        const SignedPair r = inner::measure(other, shape, at.to_local(pose), margin);
         if (r.status != PairStatus::near || r.distance > margin) return;
         found.push_back(
-            surface_point(set, s, b, at, at.to_world(r.point_a), at.rotation * r.normal, r.distance));
+            inner::surface_point(set, s, b, at, at.to_world(r.point_a), at.rotation * r.normal, r.distance));
       });
   const auto order = [](const SurfacePoint& p, const SurfacePoint& q) {
-    return comes_before(p.anchor.set, p.anchor.block, q.anchor);
+    return inner::comes_before(p.anchor.set, p.anchor.block, q.anchor);
   };
   if (!std::is_sorted(found.begin(), found.end(), order)) std::sort(found.begin(), found.end(), order);
 }
-
-}  // namespace inner
 
 /// The first body that the ray from `origin` along `direction` (any length) meets within `reach` m. A body
 /// that holds the origin is met there, at the distance 0. `groups` masks the bodies that are asked, by their
@@ -243,7 +243,7 @@ void all_overlaps(const World& world, const Bodies& bodies, const Shape& shape, 
 template <class World, class Kept = inner::RefuseKept>
 SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direction,
                       double reach = inner::forever, std::uint32_t groups = ~0u, const Kept& kept = {}) {
-  return inner::first_on_ray(world, EveryBody{}, origin, direction, reach, groups, kept);
+  return ray_cast(world, EveryBody{}, origin, direction, reach, groups, kept);
 }
 
 /// The surface point nearest to `point`, of all bodies within `reach` m. Inside a body the distance is
@@ -251,7 +251,7 @@ SurfacePoint ray_cast(const World& world, const Vec3& origin, const Vec3& direct
 template <class World, class Kept = inner::RefuseKept>
 SurfacePoint closest_point(const World& world, const Vec3& point, double reach = inner::forever,
                            std::uint32_t groups = ~0u, const Kept& kept = {}) {
-  return inner::nearest_surface(world, EveryBody{}, point, reach, groups, kept);
+  return closest_point(world, EveryBody{}, point, reach, groups, kept);
 }
 
 /// Every body that overlaps `shape` at `pose`, or comes within `margin` m of it: the point of each that lies
@@ -259,7 +259,7 @@ SurfacePoint closest_point(const World& world, const Vec3& point, double reach =
 template <class World, class Kept = inner::RefuseKept>
 void overlaps(const World& world, const Shape& shape, const Pose& pose, std::vector<SurfacePoint>& found,
               double margin = 0, std::uint32_t groups = ~0u, const Kept& kept = {}) {
-  inner::all_overlaps(world, EveryBody{}, shape, pose, found, margin, groups, kept);
+  overlaps(world, EveryBody{}, shape, pose, found, margin, groups, kept);
 }
 
 /// The shortest way between the surfaces of two posed shapes; of two half-spaces there is none.
@@ -267,9 +267,7 @@ inline Separation separation(const Shape& a, const Pose& at_a, const Shape& b, c
   const auto is_body = [](const Shape& s) { return s.kind != ShapeKind::none; };
   DELASSUS_EXPECT(is_body(a) && is_body(b), "separation: a body without a shape has no distance");
   DELASSUS_EXPECT(a.has_volume() || b.has_volume(), "separation: two half-spaces have no distance");
-  const Pose b_in_a{.position = at_a.to_local(at_b.position),
-                    .rotation = at_a.rotation.transpose() * at_b.rotation};
-  const SignedPair r = inner::measure(a, b, b_in_a, inner::forever);
+  const SignedPair r = inner::measure(a, b, at_a.to_local(at_b), inner::forever);
   return {r.distance, at_a.rotation * r.normal, at_a.to_world(r.point_a), at_a.to_world(r.point_b)};
 }
 

@@ -29,6 +29,8 @@ template <class Backend = inner::Absent>
 struct Seamless {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::seamless;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::seamless>;
 
   Backend backend{};
   double level = 1e-3;  ///< m
@@ -49,9 +51,6 @@ struct Seamless {
     report.points = Index(contacts.size());
     return report;
   }
-
-  void memory(auto& archive) { inner::remember(backend, archive); }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`, of the nearest of them the
@@ -107,11 +106,7 @@ struct Seamless {
   bool is_level(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
     const Collider& c = colliders[next.other];
     const Vec3& n = lain_on.normal;
-    return reaches(c) && std::abs(-reach(c, -n) - n.dot(lain_on.point)) <= level;
-  }
-  static bool reaches(const Collider& c) {
-    return c.shape.kind != ShapeKind::half_space && c.shape.kind != ShapeKind::mesh && c.shape.kind != ShapeKind::compound &&
-           c.shape.kind != ShapeKind::none;
+    return c.shape.has_volume() && std::abs(-reach(c, -n) - n.dot(lain_on.point)) <= level;
   }
   /// max n·x over the body, m.
   static double reach(const Collider& c, const Vec3& n) {
@@ -122,18 +117,5 @@ struct Seamless {
   Array<Side> sides_;
   Array<char> is_seam_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::seamless>)
-struct Seamless<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-Seamless(Backend) -> Seamless<Backend>;
-template <class Backend>
-Seamless(Backend, double) -> Seamless<Backend>;
 
 }  // namespace delassus

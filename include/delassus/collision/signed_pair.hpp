@@ -21,6 +21,17 @@ struct SignedPair {
   Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();  ///< witnesses: b − a = distance · normal
 };
 
+namespace inner {
+
+/// Puts the witnesses at these heights along the normal, in the middle of where they were across it.
+inline void put_witnesses(double height_a, double height_b, SignedPair& r) {
+  const Vec3 middle = 0.5 * (r.point_a + r.point_b), across = middle - r.normal * r.normal.dot(middle);
+  r.point_a = across + height_a * r.normal;
+  r.point_b = across + height_b * r.normal;
+}
+
+}  // namespace inner
+
 /// What the engine remembers of a pair for its kernel: the last normal in the frame of A, zero when there is
 /// none.
 struct PairCache {

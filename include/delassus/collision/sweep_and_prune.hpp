@@ -14,7 +14,7 @@ class SweepAndPrune {
  public:
   void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
     const int axis = widest_axis(boxes);
-    if (Index(boxes.size()) != count_ || axis != axis_) restart(boxes, axis);
+    if (boxes.size() != order_.size() || axis != axis_) restart(boxes, axis);
     sort(boxes);
     for (std::size_t s = 0; s < order_.size(); ++s) {
       const Index i = order_[s];
@@ -43,9 +43,8 @@ class SweepAndPrune {
 
   void restart(std::span<const Aabb> boxes, int axis) {
     axis_ = axis;
-    count_ = Index(boxes.size());
     order_.resize(boxes.size());
-    for (Index i = 0; i < count_; ++i) order_[i] = i;
+    for (Index i = 0; i < Index(boxes.size()); ++i) order_[i] = i;
     std::sort(order_.begin(), order_.end(),
               [&](Index i, Index j) { return start(boxes, i) < start(boxes, j); });
   }
@@ -76,9 +75,6 @@ class SweepAndPrune {
   }
 
   Array<Index> order_;
-  Index count_ = -1;
   int axis_ = 0;
 };
-static_assert(BroadPhase<SweepAndPrune>);
-
 }  // namespace delassus

@@ -4,6 +4,7 @@
 
 #include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/manifold.hpp>
+#include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/triangle.hpp>
 
 #include <array>
@@ -14,9 +15,16 @@
 namespace delassus {
 namespace inner {
 
+/// The box of a posed shape, wider by as much on each side.
+inline Bounds bounds_around(const Shape& s, const Pose& pose, double more) {
+  const Aabb tight = tight_box(s, pose);
+  return Bounds{tight.min(), tight.max()}.grown(more);
+}
+
 /// The corners of the triangle that lie farthest along n: three of a face, two of an edge, one of a corner.
 struct Rim {
   std::array<int, 3> corner{};
+  std::array<bool, 3> has{};
   int count = 0;
 
   Rim(const Triangle& t, const Vec3& n) {
@@ -29,12 +37,7 @@ struct Rim {
     }
     const double slack = 1e-6 * std::sqrt(longest);
     for (int k = 0; k < 3; ++k)
-      if (reach[k] >= farthest - slack) corner[count++] = k;
-  }
-  bool has(int k) const {
-    for (int i = 0; i < count; ++i)
-      if (corner[i] == k) return true;
-    return false;
+      if (reach[k] >= farthest - slack) corner[count++] = k, has[k] = true;
   }
 };
 
@@ -44,7 +47,7 @@ inline bool is_allowed(const Triangle& t, const Rim& rim, const Vec3& n) {
   if (rim.count == 3) return true;
   if (n.dot(t.normal) < -1e-6) return false;
   for (int k = 0; k < 3; ++k) {
-    const bool from = rim.has(k), to = rim.has((k + 1) % 3);
+    const bool from = rim.has[k], to = rim.has[(k + 1) % 3];
     const bool touches = rim.count == 2 ? from && to : from || to;
     if (touches && n.dot(t.outward(k)) > t.lean[k] + 1e-9) return false;
   }
@@ -68,10 +71,8 @@ inline bool prove(const Triangle& t, const Shape& s, const Pose& pose, SignedPai
     return false;
   const Vec3 on_a = core_support(t, r.normal);
   const Vec3 on_b = pose.to_world(support(s, Vec3(-(pose.rotation.transpose() * r.normal))));
-  const Vec3 middle = 0.5 * (r.point_a + r.point_b), across = middle - r.normal * r.normal.dot(middle);
   r.distance = r.normal.dot(on_b - on_a);
-  r.point_a = across + r.normal * r.normal.dot(on_a);
-  r.point_b = across + r.normal * r.normal.dot(on_b);
+  put_witnesses(r.normal.dot(on_a), r.normal.dot(on_b), r);
   return is_finite(r.point_a) && is_finite(r.point_b);
 }
 

@@ -22,6 +22,8 @@ template <class Backend = inner::Absent>
 struct WithCompounds {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::compounds;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::compounds>;
 
   Backend backend{};
 
@@ -53,10 +55,7 @@ struct WithCompounds {
       p.a = body_of(p.a, bodies);
       p.b = body_of(p.b, bodies);
       p.pair = pair_key(colliders[p.a].key, colliders[p.b].key);
-      if (colliders[p.a].key < colliders[p.b].key) continue;
-      std::swap(p.a, p.b);
-      std::swap(p.point_a, p.point_b);
-      p.normal = -p.normal;
+      if (colliders[p.a].key >= colliders[p.b].key) p.exchange_bodies();
     }
     inner::sort_by_name(contacts);
     for (std::size_t i = 1; i < contacts.size(); ++i)
@@ -69,7 +68,6 @@ struct WithCompounds {
     archive(compounds_, names_, next_name_);
     inner::remember(backend, archive);
   }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
   /// The keys of a body's parts: `first` and those that follow. They stay as long as the body has this
@@ -128,8 +126,7 @@ struct WithCompounds {
         part.shape = compound.shape(k);
         part.pose = {body.pose.to_world(compound.pose(k).position),
                      body.pose.rotation * compound.pose(k).rotation};
-        part.velocity =
-            body.velocity + body.angular_velocity.cross(Vec3(part.pose.position - body.pose.position));
+        part.velocity = body.velocity_at(part.pose.position);
         part.key = first + std::uint32_t(k);
         parts_.push_back(part);
         owners_.push_back({i, k, part.key, body.key});
@@ -156,16 +153,5 @@ struct WithCompounds {
   std::vector<Collider> parts_;
   Array<Owner> owners_, by_key_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::compounds>)
-struct WithCompounds<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithCompounds(Backend) -> WithCompounds<Backend>;
 
 }  // namespace delassus

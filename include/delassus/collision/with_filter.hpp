@@ -22,6 +22,8 @@ template <class Backend = inner::Absent>
 struct WithFilter {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::filter;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::filter>;
   static constexpr bool asks_for_joints = true;  ///< the loop calls refresh before each detect
 
   Backend backend{};
@@ -105,18 +107,5 @@ struct WithFilter {
   Array<Pair> named_;
   Array<std::uint64_t> pairs_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::filter>)
-struct WithFilter<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithFilter(Backend) -> WithFilter<Backend>;
-template <class Backend>
-WithFilter(Backend, bool) -> WithFilter<Backend>;
 
 }  // namespace delassus

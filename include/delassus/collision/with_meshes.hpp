@@ -25,6 +25,8 @@ template <class Backend = inner::Absent>
 struct WithMeshes {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::meshes;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::meshes>;
 
   Backend backend{};
 
@@ -65,12 +67,13 @@ struct WithMeshes {
     find_jobs(colliders, filter);
     report.pairs += Index(jobs_.size());
     pairs_.begin();
+    const CollisionSettings settings = inner::settings_of(backend);
     for (const Job& job : jobs_)
-      with_surface(colliders[job.mesh].shape, [&](const auto& surface) {
-        if (colliders[job.other].shape.kind == ShapeKind::mesh)
-          report.queries += cross(surface, colliders, job, h, contacts);
+      with_surface(colliders[job.a].shape, [&](const auto& surface) {
+        if (colliders[job.b].shape.kind == ShapeKind::mesh)
+          report.queries += cross(surface, colliders, job, h, settings, contacts);
         else
-          report.queries += pairs_.collide(surface, colliders, job.mesh, job.other, h, settings(), contacts);
+          report.queries += pairs_.collide(surface, colliders, job, h, settings, contacts);
       });
     pairs_.end();
     if (!jobs_.empty()) inner::sort_by_name(contacts);
@@ -82,14 +85,9 @@ struct WithMeshes {
     archive(meshes_, fields_, kinds_, pairs_);
     inner::remember(backend, archive);
   }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
  private:
-  struct Job {
-    std::uint64_t pair;
-    Index mesh, other;
-    bool operator<(const Job& o) const { return pair < o.pair; }
-  };
+  using Job = inner::PairJob;
   struct Kind {
     bool is_field;
     Index place;
@@ -102,6 +100,7 @@ struct WithMeshes {
     return KeptShape{ShapeKind::mesh, int(kinds_.size()) - 1, reach};
   }
 
+  /// Of pairs whose balls, with the widest margin there can be, are apart nothing is asked.
   template <class Filter>
   void find_jobs(std::span<const Collider> colliders, const Filter& filter) {
     jobs_.clear();
@@ -112,11 +111,10 @@ struct WithMeshes {
         continue;
       for (Index i = 0; i < Index(colliders.size()); ++i) {
         const Collider& other = colliders[i];
-        const bool is_mesh = other.shape.kind == ShapeKind::mesh;
-        if (other.shape.kind == ShapeKind::none || (other.shape.is_kept() && !is_mesh) ||
-            (!mesh.is_movable && !other.is_movable) || (is_mesh && !goes_first(colliders, m, i)))
+        const ShapeKind kind = other.shape.kind;
+        if (kind == ShapeKind::none || kind == ShapeKind::compound || !may_meet(mesh, other) ||
+            (kind == ShapeKind::mesh && !goes_first(colliders, m, i)))
           continue;
-        if ((mesh.group & other.collides_with) == 0 || (other.group & mesh.collides_with) == 0) continue;
         const std::uint64_t pair = pair_key(mesh.key, other.key);
         if (is_near(mesh, other) && filter.lets(pair)) jobs_.push_back({pair, m, i});
       }
@@ -141,23 +139,23 @@ struct WithMeshes {
 
   template <class Surface>
   Index cross(const Surface& surface, std::span<const Collider> colliders, const Job& job, double h,
-              std::vector<ContactPoint>& contacts) {
+              const CollisionSettings& settings, std::vector<ContactPoint>& contacts) {
     Index queries = 0;
-    with_surface(colliders[job.other].shape, [&](const auto& other) {
+    with_surface(colliders[job.b].shape, [&](const auto& other) {
       constexpr bool is_field_on_mesh = std::is_same_v<Surface, HeightField> &&
                                         std::is_same_v<std::remove_cvref_t<decltype(other)>, TriangleMesh>;
       if constexpr (!is_field_on_mesh)  // the mesh goes first
-        queries = pairs_.cross(surface, other, colliders, job.mesh, job.other, h, settings(), contacts);
+        queries = pairs_.cross(surface, other, colliders, job, h, settings, contacts);
     });
     return queries;
   }
 
-  /// False when the balls around both, with the widest margin there can be, are apart.
   bool is_near(const Collider& mesh, const Collider& other) const {
     if (other.shape.kind == ShapeKind::half_space) return true;
+    const CollisionSettings settings = inner::settings_of(backend);
     const double own = outer_radius(other.shape),
-                 margin = std::max(settings().margin, own) + settings().contact_distance;
-    const double reach = outer_radius(mesh.shape) + own + margin;
+                 margin = std::max(settings.margin, own) + settings.contact_distance,
+                 reach = outer_radius(mesh.shape) + own + margin;
     return (mesh.pose.position - other.pose.position).squaredNorm() <= reach * reach;
   }
 
@@ -168,16 +166,5 @@ struct WithMeshes {
   Array<Job> jobs_;
   inner::SurfacePairs pairs_;
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::meshes>)
-struct WithMeshes<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithMeshes(Backend) -> WithMeshes<Backend>;
 
 }  // namespace delassus

@@ -23,6 +23,8 @@ template <class Backend = inner::Absent>
 struct WithSurfaces {
   using plays = role::Collision;
   static constexpr unsigned layers = inner::layers_of<Backend> | inner::layer::surfaces;
+  /// Around what is no backend, or in another order; the loop's checks say so.
+  static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::surfaces>;
 
   Backend backend{};
   bool self_contact = true;
@@ -32,7 +34,6 @@ struct WithSurfaces {
       : backend(std::move(b)), self_contact(meets_itself) {}
 
   void check() const { inner::check_inside(backend); }
-  CollisionSettings settings() const { return inner::settings_of(backend); }
 
   /// The loop shows its world before each detection: bodies come and go, nodes have moved.
   template <class World>
@@ -179,9 +180,7 @@ struct WithSurfaces<Backend>::Pairing {
       return 0;
     const double scale = std::min(s.scale(), length_scale(b.shape));
     const double reach = s.radius() + widest(s.top_speed() + inner::top_speed(b), scale);
-    const Aabb box = tight_box(b.shape, b.pose);
-    const Vec3 wide = Vec3::Constant(reach);
-    if (!inner::Bounds{box.min() - wide, box.max() + wide}.meets(s.bounds())) return 0;
+    if (!inner::bounds_around(b.shape, b.pose, reach).meets(s.bounds())) return 0;
     Index queries = 0;
     if (kind == ShapeKind::mesh)
       with_surface(all.backend, b.shape, [&](const auto& mesh) {
@@ -211,9 +210,8 @@ struct WithSurfaces<Backend>::Pairing {
     return (a_moves || b_moves) && (a.group & b.collides_with) != 0 && (b.group & a.collides_with) != 0;
   }
   double widest(double speed, double scale) const {
-    const CollisionSettings settings = all.settings();
-    return settings.contact_distance +
-           (settings.margin >= 0 ? settings.margin : inner::limited_margin(speed * h, scale));
+    const CollisionSettings settings = inner::settings_of(all);
+    return settings.contact_distance + inner::widest_margin(speed, scale, h, settings);
   }
 
   /// Meshes are kept by some layer of the backend.
@@ -230,7 +228,7 @@ struct WithSurfaces<Backend>::Pairing {
     const inner::SoftSurface& s = all.surfaces_[i];
     const inner::SoftSurface* o = j >= 0 ? &all.surfaces_[j] : nullptr;
     const Collider &a = colliders[all.place_[i]], &b = colliders[other];
-    const CollisionSettings settings = all.settings();
+    const CollisionSettings settings = inner::settings_of(all);
     all.pairs_.name_apart();
     for (const inner::FeatureContact& c : all.pairs_.found) {
       if (c.point.gap < 0 && is_other_side(s, o, c.point.name)) continue;
@@ -245,11 +243,9 @@ struct WithSurfaces<Backend>::Pairing {
         of_a = of_b = std::min(of_a, 0.5 * rest);
       }
       const Vec3 va = s.velocity(c.triangle_a, x),
-                 vb = o ? o->velocity(c.triangle_b, y) : speed_of(b, c.point.b);
+                 vb = o ? o->velocity(c.triangle_b, y) : b.velocity_at(c.point.b);
       const double gap = c.point.gap - of_a - of_b - settings.contact_distance;
-      const double margin =
-          settings.margin >= 0 ? settings.margin : inner::limited_margin(std::abs(n.dot(vb - va)) * h, scale);
-      if (!(gap <= margin)) continue;
+      if (!(gap <= inner::widest_margin(std::abs(n.dot(vb - va)), scale, h, settings))) continue;
       if (!s.moves(c.triangle_a, x) && !(o ? o->moves(c.triangle_b, y) : b.is_movable)) continue;
       if (!lets(s, c.triangle_a, x, b.key) || (o && !lets(*o, c.triangle_b, y, a.key))) continue;
       const Vec3 shift = 0.5 * settings.contact_distance * n;
@@ -263,10 +259,8 @@ struct WithSurfaces<Backend>::Pairing {
                      .feature = c.point.name};
       Ends ends{p.pair, p.feature, s.anchor(c.triangle_a, x), o ? o->anchor(c.triangle_b, y) : Anchor{}};
       if (a.key > b.key) {
-        std::swap(p.a, p.b);
-        std::swap(p.point_a, p.point_b);
+        p.exchange_bodies();
         std::swap(ends.a, ends.b);
-        p.normal = -n;
       }
       contacts.push_back(p);
       all.ends_.push_back(ends);
@@ -278,9 +272,6 @@ struct WithSurfaces<Backend>::Pairing {
     return (inner::is_vertex_of_a(name) || s.is_sheet()) &&
            (inner::is_vertex_of_b(name) || (o && o->is_sheet()));
   }
-  static Vec3 speed_of(const Collider& c, const Vec3& x) {
-    return c.velocity + c.angular_velocity.cross(Vec3(x - c.pose.position));
-  }
   /// A feature passes through a body that a joint, or the host, ties to one of its nodes.
   bool lets(const inner::SoftSurface& s, Index t, const Vec3& shares, std::uint32_t other) const {
     for (int k = 0; k < 3; ++k)
@@ -288,18 +279,5 @@ struct WithSurfaces<Backend>::Pairing {
     return true;
   }
 };
-
-/// Around what is no backend, or in another order; the loop's checks say so.
-template <class Backend>
-  requires(!inner::Detects<Backend, inner::layer::surfaces>)
-struct WithSurfaces<Backend> : inner::Hollow {
-  using plays = role::Collision;
-  using inner::Hollow::Hollow;
-};
-
-template <class Backend>
-WithSurfaces(Backend) -> WithSurfaces<Backend>;
-template <class Backend>
-WithSurfaces(Backend, bool) -> WithSurfaces<Backend>;
 
 }  // namespace delassus

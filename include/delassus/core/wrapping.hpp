@@ -15,8 +15,9 @@ struct Absent {};
 struct Hollow {
   constexpr Hollow(const auto&...) {}
 };
+/// What derives from it, or says so by `is_hollow` and is then asked for nothing else.
 template <class P>
-concept IsHollow = std::derived_from<P, Hollow>;
+concept IsHollow = std::derived_from<P, Hollow> || requires { requires P::is_hollow; };
 
 /// A bit for each wrapper of a role, which is there once.
 namespace layer {

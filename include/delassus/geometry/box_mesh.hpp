@@ -5,6 +5,7 @@
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 
 #include <array>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -25,16 +26,7 @@ inline constexpr int six_tetrahedra[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 
 
 /// The points of a box in cells: (i, j, k) has number i + (cells[0] + 1)(j + (cells[1] + 1) k).
 inline std::vector<Vec3> box_points(const Vec3& size, const std::array<Index, 3>& cells) {
-  const auto sizes = inner::text(size[0]) + " × " + inner::text(size[1]) + " × " + inner::text(size[2]);
-  for (int k = 0; k < 3; ++k) {
-    DELASSUS_EXPECT(std::isfinite(size[k]) && size[k] > 0,
-                    "box_mesh: every size of " + sizes + " m must be finite and > 0");
-    DELASSUS_EXPECT(cells[k] > 0,
-                    "box_mesh: the number of cells " + std::to_string(cells[k]) + " must be > 0");
-  }
-  const double count = (cells[0] + 1.0) * (cells[1] + 1.0) * (cells[2] + 1.0);
-  DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
-                  "box_mesh: " + inner::text(count) + " points are more than an index counts");
+  check_grid("box_mesh", std::array{size[0], size[1], size[2]}, cells);
   std::vector<Vec3> points;
   for (Index k = 0; k <= cells[2]; ++k)
     for (Index j = 0; j <= cells[1]; ++j)
@@ -51,24 +43,21 @@ inline TetrahedralMesh box_mesh(const Vec3& size, const std::array<Index, 3>& ce
                                 CellSplit split = CellSplit::six) {
   TetrahedralMesh mesh{inner::box_points(size, cells), {}};
   const auto point = [&](Index i, Index j, Index k) { return i + (cells[0] + 1) * (j + (cells[1] + 1) * k); };
+  std::span<const int[4]> pieces = inner::six_tetrahedra;
+  if (split == CellSplit::five) pieces = inner::five_tetrahedra;
   for (Index k = 0; k < cells[2]; ++k)
     for (Index j = 0; j < cells[1]; ++j)
       for (Index i = 0; i < cells[0]; ++i) {
         // A mirrored cell has its corners exchanged along x, so that its diagonals meet those of its
         // neighbours.
         const int mirror = split == CellSplit::five && (i + j + k) % 2 == 1 ? 1 : 0;
-        const auto add = [&](const int(&corners)[4]) {
-          std::array<Index, 4> t;
+        for (const auto& corners : pieces) {
+          auto& t = mesh.tetrahedra.emplace_back();
           for (int a = 0; a < 4; ++a) {
             const int c = corners[a] ^ mirror;
             t[a] = point(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2 & 1));
           }
-          mesh.tetrahedra.push_back(t);
-        };
-        if (split == CellSplit::five)
-          for (const auto& t : inner::five_tetrahedra) add(t);
-        else
-          for (const auto& t : inner::six_tetrahedra) add(t);
+        }
       }
   return oriented(std::move(mesh));
 }

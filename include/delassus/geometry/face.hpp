@@ -126,10 +126,8 @@ inline void hull_face(const ConvexHull& h, const Vec3& d, Face& face) {
 /// The face that looks most along the unit vector `d`, body frame.
 inline Face face_towards(const Shape& s, const Vec3& d) {
   Face face;
-  switch (s.kind) {
+  switch (s.outline()) {
     case ShapeKind::box:
-    case ShapeKind::mesh:
-    case ShapeKind::compound:
       inner::box_face(s, d, face);
       break;
     case ShapeKind::cylinder:

@@ -34,7 +34,7 @@ class HeightField {
       DELASSUS_EXPECT(std::isfinite(heights[i]),
                       "height field: height #" + std::to_string(i) + " is not finite");
     for (Index t = 0; t < triangle_count(); ++t)
-      DELASSUS_EXPECT(normal_of(t).squaredNorm() > 0.5, "height field: triangle #" + std::to_string(t) +
+      DELASSUS_EXPECT(normal(t).squaredNorm() > 0.5, "height field: triangle #" + std::to_string(t) +
                                                             " is flatter than 1e-6 of its longest edge");
     tree_.build(cell_count(), [&](Index c) { return cell_bounds(c); });
   }
@@ -47,17 +47,10 @@ class HeightField {
   }
 
   Triangle triangle(Index t) const {
-    Triangle out;
+    Triangle out{.point = points_of(t), .normal = normal(t)};
     const auto grid = corners(t);
-    for (int k = 0; k < 3; ++k) {
-      out.corner[k] = grid[k][1] * columns_ + grid[k][0];
-      out.point[k] = point(grid[k][0], grid[k][1]);
-    }
-    out.normal = normal_of(t);
-    for (int k = 0; k < 3; ++k) {
-      const Index other = neighbour(t, k);
-      out.lean[k] = other < 0 ? 1 : inner::lean_towards(out.normal, normal_of(other), out.outward(k));
-    }
+    for (int k = 0; k < 3; ++k) out.corner[k] = grid[k][1] * columns_ + grid[k][0];
+    inner::find_leans(*this, t, out);
     return out;
   }
 
@@ -71,7 +64,10 @@ class HeightField {
     const auto [a, b, c] = corners(t);
     return {point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1])};
   }
-  Vec3 normal(Index t) const { return normal_of(t); }
+  Vec3 normal(Index t) const {
+    const auto [a, b, c] = points_of(t);
+    return inner::triangle_normal(a, b, c);
+  }
   bool owns_corner(Index t, int k) const {
     const auto [i, j] = corners(t)[k];
     const Index before = (j - 1) * (columns_ - 1);
@@ -124,10 +120,6 @@ class HeightField {
     const auto [i, j] = cell(t / 2);
     if (t % 2 == 0) return {GridPoint{i, j}, {i + 1, j}, {i + 1, j + 1}};
     return {GridPoint{i, j}, {i + 1, j + 1}, {i, j + 1}};
-  }
-  Vec3 normal_of(Index t) const {
-    const auto [a, b, c] = corners(t);
-    return inner::triangle_normal(point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1]));
   }
 
   inner::Bounds cell_bounds(Index c) const {

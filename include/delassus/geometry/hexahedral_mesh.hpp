@@ -63,20 +63,6 @@ inline Vec3 gauss_point(int g) {
   return {at * hexahedron_corner[g][0], at * hexahedron_corner[g][1], at * hexahedron_corner[g][2]};
 }
 
-/// The least of 8 det J at corners and Gauss's points, m³: of a box its volume.
-inline double least_determinant(const HexahedralMesh& mesh, Index e) {
-  const EightPoints x = corners(mesh, e);
-  double least = std::numeric_limits<double>::infinity();
-  for (int a = 0; a < 8; ++a) {
-    const Vec3 corner(hexahedron_corner[a][0], hexahedron_corner[a][1], hexahedron_corner[a][2]);
-    for (const Vec3& xi : {corner, gauss_point(a)}) {
-      const double d = 8 * determinant(jacobian(x, xi));
-      if (!(d >= least)) least = d;
-    }
-  }
-  return least;
-}
-
 /// ∫ N_a dV over hexahedron e, m³.
 inline double corner_share(const HexahedralMesh& mesh, Index e, int a) {
   const EightPoints x = corners(mesh, e);
@@ -98,6 +84,26 @@ inline double volume(const HexahedralMesh& mesh, Index e) {
   return sum;
 }
 
+/// Where corner k is in the coordinates by which an element weighs its corners: ξ.
+inline Vec3 place_of_corner(const HexahedralMesh&, int k) {
+  const auto& s = inner::hexahedron_corner[k];
+  return Vec3(s[0], s[1], s[2]);
+}
+
+/// The least of 8 det J at corners and Gauss's points, m³: of a box its volume. What
+/// must stay above zero wherever the body is put.
+inline double least_volume(const HexahedralMesh& mesh, Index e) {
+  const inner::EightPoints x = inner::corners(mesh, e);
+  double least = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 8; ++a) {
+    for (const Vec3& xi : {place_of_corner(mesh, a), inner::gauss_point(a)}) {
+      const double d = 8 * inner::determinant(inner::jacobian(x, xi));
+      if (!(d >= least)) least = d;
+    }
+  }
+  return least;
+}
+
 /// Refuses a mesh that is no body: points that are not finite or in no hexahedron, numbers of points that are
 /// not there, hexahedra that are flat or folded (det J below 1e-9 of the size at a corner or at a Gauss
 /// point), inside out or there twice.
@@ -105,7 +111,7 @@ inline void check_mesh(const HexahedralMesh& mesh, const std::string& who) {
   inner::check_points(mesh, who);
   for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e) {
     const std::string name = inner::name_of_cell<HexahedralMesh>(who, e);
-    const double V = volume(mesh, e), least = inner::least_determinant(mesh, e),
+    const double V = volume(mesh, e), least = least_volume(mesh, e),
                  longest = inner::longest_edge(mesh, e), rounding = 1e-9 * longest * longest * longest;
     DELASSUS_EXPECT(std::abs(V) > rounding, name + " is flat: its volume is " + inner::text(V) +
                                                 " m³, its longest diagonal " + inner::text(longest) + " m");
@@ -127,12 +133,6 @@ inline HexahedralMesh oriented(HexahedralMesh mesh) {
   return mesh;
 }
 
-/// Where corner k is in the coordinates by which an element weighs its corners: ξ.
-inline Vec3 place_of_corner(const HexahedralMesh&, int k) {
-  const auto& s = inner::hexahedron_corner[k];
-  return Vec3(s[0], s[1], s[2]);
-}
-
 /// The faces that belong to one hexahedron only, each as two triangles, in the order of the hexahedra.
 inline std::vector<OuterFace> outer_faces(const HexahedralMesh& mesh) {
   std::vector<OuterFace> out;
@@ -143,13 +143,5 @@ inline std::vector<OuterFace> outer_faces(const HexahedralMesh& mesh) {
   }
   return out;
 }
-
-/// The triangles of `outer_faces`.
-inline std::vector<std::array<Index, 3>> surface(const HexahedralMesh& mesh) {
-  return triangles_of(outer_faces(mesh));
-}
-
-/// What must stay above zero wherever the body is put, m³.
-inline double least_volume(const HexahedralMesh& mesh, Index e) { return inner::least_determinant(mesh, e); }
 
 }  // namespace delassus

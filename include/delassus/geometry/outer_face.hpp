@@ -15,9 +15,11 @@ struct OuterFace {
   bool is_back = false;  ///< of the second side
 };
 
-inline std::vector<std::array<Index, 3>> triangles_of(const std::vector<OuterFace>& faces) {
+/// The triangles of `outer_faces`.
+template <class Mesh>
+std::vector<std::array<Index, 3>> surface(const Mesh& mesh) {
   std::vector<std::array<Index, 3>> triangles;
-  for (const OuterFace& face : faces) triangles.push_back(face.triangle);
+  for (const OuterFace& face : outer_faces(mesh)) triangles.push_back(face.triangle);
   return triangles;
 }
 

@@ -31,14 +31,9 @@ namespace inner {
 using TenPoints = std::array<Vec3, 10>;
 
 inline constexpr int tetrahedron_edge[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-/// The edge between corners a and b.
-constexpr int edge_between(int a, int b) {
-  int k = 0;
-  while (tetrahedron_edge[k][0] + tetrahedron_edge[k][1] != a + b ||
-         (tetrahedron_edge[k][0] != a && tetrahedron_edge[k][1] != a))
-    ++k;
-  return k;
-}
+/// The six nodes of each face: its corners, seen from outside against the clock, then the node after each.
+inline constexpr int quadratic_face[4][6] = {
+    {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 1, 3, 4, 8, 7}, {0, 2, 1, 6, 5, 4}};
 
 /// The share w_k of corner k, which is linear; ξ holds those of 1, 2, 3.
 inline double corner_weight(int k, const Vec3& xi) { return k == 0 ? 1 - xi[0] - xi[1] - xi[2] : xi[k - 1]; }
@@ -195,24 +190,12 @@ inline QuadraticTetrahedralMesh quadratic(const TetrahedralMesh& mesh) {
 /// order of the tetrahedra.
 inline std::vector<OuterFace> outer_faces(const QuadraticTetrahedralMesh& mesh) {
   std::vector<OuterFace> out;
-  for (const OuterFace& face : outer_faces(inner::straight(mesh))) {
-    const auto& t = mesh.tetrahedra[face.element];
-    int corner[3];
-    for (int k = 0; k < 3; ++k)
-      corner[k] = int(std::find(t.begin(), t.begin() + 4, face.triangle[k]) - t.begin());
-    const auto& [a, b, c] = face.triangle;
-    const Index ab = t[4 + inner::edge_between(corner[0], corner[1])],
-                bc = t[4 + inner::edge_between(corner[1], corner[2])],
-                ca = t[4 + inner::edge_between(corner[2], corner[0])];
+  for (const auto& side : inner::outer_sides(mesh, inner::quadratic_face)) {
+    const auto& [a, b, c, ab, bc, ca] = side.around;
     for (const auto& triangle : {std::array<Index, 3>{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
-      out.push_back({triangle, face.element});
+      out.push_back({triangle, side.element});
   }
   return out;
-}
-
-/// The triangles of `outer_faces`.
-inline std::vector<std::array<Index, 3>> surface(const QuadraticTetrahedralMesh& mesh) {
-  return triangles_of(outer_faces(mesh));
 }
 
 }  // namespace delassus

@@ -112,19 +112,13 @@ struct Shape {
 
   /// True for what a backend keeps; `number` says which.
   constexpr bool is_kept() const { return kind >= ShapeKind::mesh; }
+  /// What takes the box for a kept shape asks this for the kind.
+  constexpr ShapeKind outline() const { return is_kept() ? ShapeKind::box : kind; }
   constexpr int number() const { return int(size[3]); }
   constexpr bool has_volume() const {
     return kind != ShapeKind::none && kind != ShapeKind::half_space && !is_kept();
   }
 };
-
-namespace inner {
-
-inline void check_length(double value, const char* what, const std::string& where) {
-  inner::expect_positive(where + ": " + what, value, "m");
-}
-
-}  // namespace inner
 
 constexpr const char* name(ShapeKind kind) {
   constexpr const char* names[] = {"no shape",   "sphere",      "box",  "capsule",  "cylinder",
@@ -136,16 +130,17 @@ constexpr const char* name(ShapeKind kind) {
 /// made.
 inline void check(const Shape& s, const std::string& where) {
   using enum ShapeKind;
+  const auto check_length = [&](double value, const std::string& what) {
+    inner::expect_positive(where + ": " + what, value, "m");
+  };
   if (s.kind == sphere || s.kind == capsule || s.kind == cylinder || s.kind == cone)
-    inner::check_length(s.size[0], (std::string(name(s.kind)) + " radius").c_str(), where);
+    check_length(s.size[0], name(s.kind) + std::string(" radius"));
   if (s.kind == capsule || s.kind == cylinder || s.kind == cone)
-    inner::check_length(2 * s.size[1], (std::string(name(s.kind)) + " height").c_str(), where);
-  if (s.kind == box)
-    for (int i = 0; i < 3; ++i)
-      inner::check_length(2 * s.size[i], (std::string("box edge ") + "xyz"[i]).c_str(), where);
-  if (s.kind == ellipsoid)
-    for (int i = 0; i < 3; ++i)
-      inner::check_length(s.size[i], (std::string("ellipsoid semi-axis ") + "abc"[i]).c_str(), where);
+    check_length(2 * s.size[1], name(s.kind) + std::string(" height"));
+  for (int i = 0; i < 3; ++i) {
+    if (s.kind == box) check_length(2 * s.size[i], std::string("box edge ") + "xyz"[i]);
+    if (s.kind == ellipsoid) check_length(s.size[i], std::string("ellipsoid semi-axis ") + "abc"[i]);
+  }
   if (s.kind == half_space) {
     const Vec3 n(s.size[0], s.size[1], s.size[2]);
     DELASSUS_EXPECT(is_finite(n) && n.squaredNorm() > 0.5,

@@ -65,13 +65,14 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
                     who + ": triangles #" + std::to_string(a[3]) + " and #" + std::to_string(b[3]) +
                         " have the same points; drop one of them, since a sheet has both its sides anyway");
   }
-  inner::SurfaceTopology(mesh.triangles, Index(mesh.points.size())).each_fault([&](const inner::SharedEdge& e, bool is_crowded) {
+  const inner::SurfaceTopology topology(mesh.triangles, Index(mesh.points.size()));
+  for (const inner::SharedEdge& e : topology.faults()) {
     const std::string which =
         who + ": triangles #" + std::to_string(e.first) + " and #" + std::to_string(e.second);
-    DELASSUS_EXPECT(!is_crowded, which + " share an edge with #" + std::to_string(e.third) +
+    DELASSUS_EXPECT(e.third < 0, which + " share an edge with #" + std::to_string(e.third) +
                                      "; at most two may, so make each sheet a body and tie them by joints");
     inner::refuse(which + " are turned to different sides; exchange two points of one of them");
-  });
+  }
 }
 
 /// Where corner k is in the coordinates by which an element weighs its corners.
@@ -92,14 +93,7 @@ inline std::vector<OuterFace> outer_faces(const SheetMesh& mesh) {
 /// The rectangle [0, width] × [0, height] (m) of the plane z = 0 in cells[0] × cells[1] cells of two
 /// triangles each, turned to +z. Point (i, j) has number i + (cells[0] + 1) j.
 inline SheetMesh sheet(double width, double height, const std::array<Index, 2>& cells, double thickness) {
-  const auto sizes = inner::text(width) + " × " + inner::text(height);
-  DELASSUS_EXPECT(std::isfinite(width) && width > 0 && std::isfinite(height) && height > 0,
-                  "sheet: both sizes of " + sizes + " m must be finite and > 0");
-  for (const Index n : cells)
-    DELASSUS_EXPECT(n > 0, "sheet: the number of cells " + std::to_string(n) + " must be > 0");
-  const double count = (cells[0] + 1.0) * (cells[1] + 1.0);
-  DELASSUS_EXPECT(count <= std::numeric_limits<Index>::max(),
-                  "sheet: " + inner::text(count) + " points are more than an index counts");
+  inner::check_grid("sheet", std::array{width, height}, cells);
   SheetMesh mesh{{}, {}, thickness};
   const Index row = cells[0] + 1;
   for (Index j = 0; j <= cells[1]; ++j)

@@ -111,8 +111,6 @@ inline Vec3 core_support(const Shape& s, const Vec3& d) {
 inline double core_radius(const Shape& s) {
   return s.kind == ShapeKind::sphere || s.kind == ShapeKind::capsule ? s.size[0] : 0.0;
 }
-static_assert(ConvexSupport<Shape>);
-
 /// The point of the body farthest along the unit vector `n`, body frame. Not for half-spaces, which have
 /// none.
 template <ConvexSupport S>
@@ -122,12 +120,10 @@ Vec3 support(const S& s, const Vec3& n) {
 
 /// The farthest any point of the shape is from the origin of its frame, m; 0 for a half-space.
 inline double outer_radius(const Shape& s) {
-  switch (s.kind) {
+  switch (s.outline()) {
     case ShapeKind::sphere:
       return s.size[0];
     case ShapeKind::box:
-    case ShapeKind::mesh:
-    case ShapeKind::compound:
       return std::sqrt(s.size[0] * s.size[0] + s.size[1] * s.size[1] + s.size[2] * s.size[2]);
     case ShapeKind::capsule:
       return s.size[0] + s.size[1];
@@ -146,10 +142,8 @@ inline double outer_radius(const Shape& s) {
 
 /// The size L of a shape, m, to which tolerances and margins are relative: its largest half extent.
 inline double length_scale(const Shape& s) {
-  switch (s.kind) {
+  switch (s.outline()) {
     case ShapeKind::box:
-    case ShapeKind::mesh:
-    case ShapeKind::compound:
       return std::max({s.size[0], s.size[1], s.size[2]});
     case ShapeKind::cylinder:
     case ShapeKind::cone:
@@ -175,12 +169,10 @@ inline double across(const Mat3& R, int k) { return std::sqrt(R(k, 0) * R(k, 0) 
 /// How far a shape that is symmetric about its origin reaches along each axis of the world, m.
 Vec3 half_widths(const std::same_as<Shape> auto& s, const Mat3& R) {
   const auto along = [](const auto& axis) { return Vec3(axis(0), axis(1), axis(2)); };
-  switch (s.kind) {
+  switch (s.outline()) {
     case ShapeKind::sphere:
       return Vec3(s.size[0], s.size[0], s.size[0]);
     case ShapeKind::box:
-    case ShapeKind::mesh:
-    case ShapeKind::compound:
       return along([&](int k) {
         return std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + std::abs(R(k, 2)) * s.size[2];
       });

@@ -80,9 +80,4 @@ inline std::vector<OuterFace> outer_faces(const TetrahedralMesh& mesh) {
   return out;
 }
 
-/// The triangles of `outer_faces`.
-inline std::vector<std::array<Index, 3>> surface(const TetrahedralMesh& mesh) {
-  return triangles_of(outer_faces(mesh));
-}
-
 }  // namespace delassus

@@ -64,6 +64,15 @@ inline double lean_towards(const Vec3& normal, const Vec3& neighbour, const Vec3
   return along > 0 ? bend : 1;
 }
 
+/// Fills in `lean` of triangle t of a surface, from the normals across its edges.
+template <class Surface>
+void find_leans(const Surface& surface, Index t, Triangle& out) {
+  for (int k = 0; k < 3; ++k) {
+    const Index other = surface.neighbour(t, k);
+    out.lean[k] = other < 0 ? 1 : lean_towards(out.normal, surface.normal(other), out.outward(k));
+  }
+}
+
 /// The point of the triangle nearest to p. Source: [Ericson2005], §5.1.5.
 inline Vec3 nearest_on(const Triangle& t, const Vec3& p) {
   const Vec3 &a = t.point[0], &b = t.point[1], &c = t.point[2];

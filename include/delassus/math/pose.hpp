@@ -12,6 +12,10 @@ struct Pose {
 
   Vec3 to_world(const Vec3& local) const { return position + rotation * local; }
   Vec3 to_local(const Vec3& world) const { return rotation.transpose() * (world - position); }
+  /// Where the other one is, in the frame of this.
+  Pose to_local(const Pose& other) const {
+    return {to_local(other.position), rotation.transpose() * other.rotation};
+  }
 };
 
 }  // namespace delassus

@@ -42,12 +42,14 @@ struct Cut {
 template <class A, class B>
 void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, Array<Cut>& cuts) {
   cuts.clear();
-  const auto compare = [&](Index t, const std::array<Vec3, 3>& T, Index s, const std::array<Vec3, 3>& S) {
+  const auto meets = [](const Bounds& x, const Bounds& y) { return x.meets(y); };
+  each_pair(a, b, meets, [&](const auto& x, const auto& y) {
+    const std::array<Vec3, 3>&T = x.point, &S = y.point;
     if (is_beside(S, T) || is_beside(T, S)) return;
-    Vec3 end[2], x;
+    Vec3 end[2], at;
     int count = 0;
     const auto add = [&](const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& through) {
-      if (count < 2 && passes(p, q, through, x)) end[count++] = x;
+      if (count < 2 && passes(p, q, through, at)) end[count++] = at;
     };
     for (int k = 0; k < 3; ++k) {
       add(T[k], T[(k + 1) % 3], S);
@@ -56,15 +58,7 @@ void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, Array<Cut>& c
     if (count < 2) return;
     const Vec3 along = (T[1] - T[0]).cross(T[2] - T[0]).cross((S[1] - S[0]).cross(S[2] - S[0]));
     const bool is_forward = along.dot(end[1] - end[0]) > 0;
-    cuts.push_back({end[is_forward ? 0 : 1], end[is_forward ? 1 : 0], t, s});
-  };
-  const auto meets = [&](const Bounds& x, const Bounds& y) { return a.bounds(x).meets(b.bounds(y)); };
-  FlatTree::cross(a.surface.tree(), b.surface.tree(), meets, [&](auto of_a, auto of_b) {
-    const PosedLeaf<A> ours(a, of_a);
-    const PosedLeaf<B> theirs(b, of_b);
-    for (const auto& x : ours)
-      for (const auto& y : theirs)
-        if (x.box.meets(y.box)) compare(x.t, x.point, y.t, y.point);
+    cuts.push_back({end[is_forward ? 0 : 1], end[is_forward ? 1 : 0], x.t, y.t});
   });
 }
 
@@ -79,17 +73,10 @@ NearestPoint nearest_point(const PosedSurface<Surface>& of, const Vec3& x) {
   const Vec3 local = of.pose.to_local(x);
   NearestPoint best;
   const auto meets = [&](const Bounds& box) {
-    double apart2 = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double out = std::max({box.low[k] - local[k], 0.0, local[k] - box.high[k]});
-      apart2 += out * out;
-    }
-    return !(apart2 > best.distance * best.distance);
+    return !(box.beyond(local).squaredNorm() > best.distance * best.distance);
   };
   of.surface.visit(meets, [&](Index t) {
-    Triangle triangle;
-    triangle.point = of.surface.points_of(t);
-    triangle.normal = of.surface.normal(t);
+    const Triangle triangle = of.plain(t);
     const Vec3 foot = nearest_on(triangle, local);
     const double distance = (local - foot).norm(), height = triangle.height(local);
     const double same = 1e-12 * distance;
@@ -117,9 +104,7 @@ void each_vertex(const PosedSurface<Surface>& of, const F& f) {
 template <class Inside, class Around>
 bool add_enclosed(const PosedSurface<Inside>& inside, const PosedSurface<Around>& around, bool is_inside_a,
                   double scale, std::vector<FeatureContact>& out) {
-  if constexpr (!requires { around.surface.is_closed(); }) {
-    return false;
-  } else {
+  if constexpr (requires { around.surface.is_closed(); }) {
     const Bounds box = inside.bounds(inside.surface.bounds()), hall = around.bounds(around.surface.bounds());
     for (int k = 0; k < 3; ++k)
       if (!(box.low[k] >= hall.low[k] && box.high[k] <= hall.high[k])) return false;
@@ -137,17 +122,14 @@ bool add_enclosed(const PosedSurface<Inside>& inside, const PosedSurface<Around>
     each_vertex(inside, [&](const Vec3& x, Index t, int k) {
       const double gap = n.dot(x - gate.foot);
       deepest = std::min(deepest, gap);
-      const std::uint32_t name = vertex_name(is_inside_a, inside.surface.triangle(t).corner[k]);
-      const Vec3 foot = x - gap * n;
-      if (is_inside_a)
-        out.push_back({{x, foot, gap, name}, -n, t, 0});
-      else
-        out.push_back({{foot, x, gap, name}, n, 0, t});
+      const Index v = inside.surface.triangle(t).corner[k];
+      out.push_back(vertex_contact(is_inside_a, v, x, x - gap * n, gap, n, t, 0));
     });
     const auto is_high = [&](const FeatureContact& c) { return c.point.gap > deepest + 2e-2 * scale; };
     out.erase(std::remove_if(out.begin() + std::ptrdiff_t(begin), out.end(), is_high), out.end());
     return true;
   }
+  return false;
 }
 
 /// How far the vertices of one surface that are inside the other reach along n.

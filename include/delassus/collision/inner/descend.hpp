@@ -6,8 +6,7 @@
 namespace delassus::inner {
 
 /// Whether the ray from the origin along d passes the triangle, whose corners run counter-clockwise about d.
-template <class Scalar>
-bool is_pierced(const std::array<DifferencePoint, 3>& corner, const Vec<3, Scalar>& d) {
+bool is_pierced(const std::array<DifferencePoint, 3>& corner, const std::same_as<Vec3> auto& d) {
   for (int k = 0; k < 3; ++k)
     if (d.dot(corner[k].w.cross(corner[(k + 1) % 3].w)) < 0) return false;
   return true;
@@ -15,15 +14,14 @@ bool is_pierced(const std::array<DifferencePoint, 3>& corner, const Vec<3, Scala
 
 /// Three points of A − B whose triangle the ray from the origin along `d` pierces; of several, which rounding makes of
 /// slivers, the nearest. Where rounding leaves none: the face with the least offset / (normal · d).
-template <class Scalar>
-std::array<DifferencePoint, 3> pierced_face(const BasicPolytope<Scalar>& polytope, const Vec<3, Scalar>& d) {
-  constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+std::array<DifferencePoint, 3> pierced_face(const std::same_as<Polytope> auto& polytope, const Vec3& d) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   int best = 0;
-  Scalar least = infinity;
+  double least = infinity;
   bool is_through = false;
   for (int f = 0; f < polytope.face_count(); ++f) {
     const auto& face = polytope.face(f);
-    const Scalar slope = face.normal.dot(d);
+    const double slope = face.normal.dot(d);
     if (!(slope > 0) || face.offset == infinity) continue;
     const bool passes = is_pierced(polytope.corners(f), d);
     if (passes < is_through || (passes == is_through && face.offset / slope >= least)) continue;

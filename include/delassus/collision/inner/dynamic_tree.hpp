@@ -38,8 +38,6 @@ inline bool is_same(const Aabb& a, const Aabb& b) {
 template <class Scalar>
 class BasicDynamicTree {
  public:
-  bool is_empty() const { return root_ < 0; }
-
   /// Adds a leaf where the boxes above it grow least, and returns its node.
   Index insert(const Aabb& box, Index item) {
     const Index leaf = take_node({.box = box, .item = item});

@@ -27,16 +27,17 @@ class HullOfPatch {
   void choose(std::span<const SurfaceContact> points, const Vec3& n, double scale, Patch& patch,
               std::array<Index, Patch::capacity>& source) {
     project(points, n);
-    double deepest = points[0].point.gap;
-    for (const SurfaceContact& p : points) deepest = std::min(deepest, p.point.gap);
+    Index deepest = 0;
+    for (Index i = 1; i < Index(points.size()); ++i)
+      if (points[i].point.gap < points[deepest].point.gap) deepest = i;
     patch.count = 0;
     for (const double reach : {1e-3 * scale, std::numeric_limits<double>::infinity()}) {
       order_.clear();
       for (Index i = 0; i < Index(points.size()); ++i)
-        if (points[i].point.gap <= deepest + reach) order_.push_back(i);
+        if (points[i].point.gap <= points[deepest].point.gap + reach) order_.push_back(i);
       find_hull();
       straighten(1e-5 * scale);
-      take(points, scale, patch, source);
+      take(points, deepest, scale, patch, source);
       if (patch.count >= 4) return;
     }
   }
@@ -92,8 +93,9 @@ class HullOfPatch {
     hull_.resize(std::max(kept, std::size_t(1)));
   }
 
-  /// Adds the hull, an even sample of one with too many corners, but for what lies on a point that is there.
-  void take(std::span<const SurfaceContact> points, double scale, Patch& patch,
+  /// Adds the hull, an even sample of one with too many corners, but for what lies on a point that is there, and
+  /// the deepest point where it is missed.
+  void take(std::span<const SurfaceContact> points, Index deepest, double scale, Patch& patch,
             std::array<Index, Patch::capacity>& source) const {
     const std::size_t room = std::size_t(Patch::capacity - 1 - patch.count);
     const std::size_t count = std::min(hull_.size(), room);
@@ -106,14 +108,6 @@ class HullOfPatch {
       source[patch.count] = i;
       patch.add(points[i].point);
     }
-    add_deepest(points, scale, patch, source);
-  }
-
-  void add_deepest(std::span<const SurfaceContact> points, double scale, Patch& patch,
-                   std::array<Index, Patch::capacity>& source) const {
-    Index deepest = 0;
-    for (Index i = 1; i < Index(points.size()); ++i)
-      if (points[i].point.gap < points[deepest].point.gap) deepest = i;
     for (int j = 0; j < patch.count; ++j)
       if (patch.point[j].gap <= points[deepest].point.gap + 5e-5 * scale) return;
     source[patch.count] = deepest;

@@ -42,18 +42,12 @@ inline double limited_margin(double way, double scale) {
 inline double widest_margin(double speed, double scale, double h, const CollisionSettings& s) {
   return s.margin >= 0 ? s.margin : limited_margin(speed * h, scale);
 }
-inline double widest_margin(const Collider& a, const Collider& b, double scale, double h,
-                            const CollisionSettings& s) {
-  return widest_margin(top_speed(a) + top_speed(b), scale, h, s);
-}
 
 /// The margin of a contact at `point` with the world normal n; vₙ is the relative normal velocity there.
 inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, const Vec3& point,
                            double scale, double h, const CollisionSettings& s) {
   if (s.margin >= 0) return s.margin;
-  const Vec3 of_a = a.velocity + a.angular_velocity.cross(point - a.pose.position);
-  const Vec3 of_b = b.velocity + b.angular_velocity.cross(point - b.pose.position);
-  return limited_margin(std::abs(n.dot(of_b - of_a)) * h, scale);
+  return limited_margin(std::abs(n.dot(b.velocity_at(point) - a.velocity_at(point))) * h, scale);
 }
 
 /// The tight box, wider by the collider's share of any margin: a pair within its margin has boxes that touch.
@@ -71,11 +65,6 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
   const double more = 0.5 * s.contact_distance + share + 1e-12 * std::max({sizes[0], sizes[1], sizes[2]});
   for (int k = 0; k < 3; ++k) box.min()[k] -= more, box.max()[k] += more;
   return box;
-}
-
-inline Plane plane_of(const Shape& s, const Pose& pose) {
-  const Vec3 n = pose.rotation * Vec3(s.size[0], s.size[1], s.size[2]);
-  return {n, s.size[3] + n.dot(pose.position)};
 }
 
 /// False when the box, with all the margin its pair with this half-space can have, lies clear of the solid.

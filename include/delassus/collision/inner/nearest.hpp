@@ -11,16 +11,13 @@
 namespace delassus::inner {
 
 /// Where the shape offers no direction (its centre, its axis), the one nearest to `wish` is taken.
-template <class T>
-NearestSurface nearest_surface_of_ball(double radius, const Vec<3, T>& p, const Vec<3, T>& wish) {
+NearestSurface nearest_surface_of_ball(double radius, const std::same_as<Vec3> auto& p, const Vec3& wish) {
   const double length = p.norm();
   if (length > 0) return {p / length, length - radius};
   return {wish.squaredNorm() > 0 ? wish.normalized() : unit_axis(2), -radius};
 }
 
-template <class T>
-NearestSurface nearest_surface_of_box(const Vec<3, T>& half, const Vec<3, T>& p) {
-  using Vec3 = Vec<3, T>;
+NearestSurface nearest_surface_of_box(const Vec3& half, const std::same_as<Vec3> auto& p) {
   Vec3 beyond;
   for (int k = 0; k < 3; ++k) beyond[k] = p[k] - std::clamp(p[k], -half[k], half[k]);
   const double length = beyond.norm();
@@ -34,20 +31,16 @@ NearestSurface nearest_surface_of_box(const Vec<3, T>& half, const Vec<3, T>& p)
   return {with_sign(1, p[nearest]) * unit_axis(nearest), -inside};
 }
 
-template <class T>
-NearestSurface nearest_surface_of_capsule(double radius, double half, const Vec<3, T>& p,
-                                          const Vec<3, T>& wish) {
-  using Vec3 = Vec<3, T>;
+NearestSurface nearest_surface_of_capsule(double radius, double half, const std::same_as<Vec3> auto& p,
+                                          const Vec3& wish) {
   const Vec3 from_axis = p - Vec3(0, 0, std::clamp(p[2], -half, half));
   const double length = from_axis.norm();
   if (length > 0) return {from_axis / length, length - radius};
   return {perpendicular(unit_axis(2), wish), -radius};
 }
 
-template <class T>
-NearestSurface nearest_surface_of_cylinder(double radius, double half, const Vec<3, T>& p,
-                                           const Vec<3, T>& wish) {
-  using Vec3 = Vec<3, T>;
+NearestSurface nearest_surface_of_cylinder(double radius, double half, const std::same_as<Vec3> auto& p,
+                                           const Vec3& wish) {
   const double rho = std::hypot(p[0], p[1]), side = rho - radius, cap = std::abs(p[2]) - half;
   const Vec3 outward = rho > 0 ? Vec3(p[0] / rho, p[1] / rho, 0) : perpendicular(unit_axis(2), wish);
   const Vec3 along = with_sign(1, p[2]) * unit_axis(2);
@@ -60,9 +53,7 @@ NearestSurface nearest_surface_of_cylinder(double radius, double half, const Vec
 
 /// In the half-plane of the axis and p, with ρ the distance from the axis and z the height above the base: a right
 /// triangle with the corners (0, 0), the rim (r, 0) and the tip (0, height).
-template <class T>
-NearestSurface nearest_surface_of_cone(double radius, double height, const Vec<3, T>& p, const Vec<3, T>& wish) {
-  using Vec3 = Vec<3, T>;
+NearestSurface nearest_surface_of_cone(double radius, double height, const std::same_as<Vec3> auto& p, const Vec3& wish) {
   const double rho = std::hypot(p[0], p[1]), z = p[2] + 0.25 * height, slant = std::hypot(radius, height);
   const Vec3 outward = rho > 0 ? Vec3(p[0] / rho, p[1] / rho, 0) : perpendicular(unit_axis(2), wish);
   const Vec3 up = unit_axis(2), mantle = (height * outward + radius * up) / slant;
@@ -78,12 +69,9 @@ NearestSurface nearest_surface_of_cone(double radius, double height, const Vec<3
   return length > 0 ? NearestSurface{from_corner / length, length} : NearestSurface{mantle, 0};
 }
 
-template <std::same_as<Shape> S>
-NearestSurface nearest_surface(const S& s, const Vec3& p, const Vec3& wish) {
-  switch (s.kind) {
+NearestSurface nearest_surface(const std::same_as<Shape> auto& s, const Vec3& p, const Vec3& wish) {
+  switch (s.outline()) {
     case ShapeKind::box:
-    case ShapeKind::mesh:
-    case ShapeKind::compound:
       return nearest_surface_of_box({s.size[0], s.size[1], s.size[2]}, p);
     case ShapeKind::capsule:
       return nearest_surface_of_capsule(s.size[0], s.size[1], p, wish);

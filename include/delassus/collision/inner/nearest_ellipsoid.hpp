@@ -18,8 +18,7 @@ struct NearestSurface {
 /// The root s of Σ (aᵢ pᵢ / (s + δᵢ))² = 1. With f(s) the sum, 1/√f is concave and increasing, so Newton's
 /// steps on 1/√f = 1 come from the left and never pass the root; `start` itself when f(start) ≤ 1.
 /// The same function is solved for the step of a trust region: [MoreSorensen1983].
-template <class T>
-double secular_root(const Vec<3, T>& a, const Vec<3, T>& p, const Vec<3, T>& delta, double start) {
+double secular_root(const std::same_as<Vec3> auto& a, const Vec3& p, const Vec3& delta, double start) {
   double s = start;
   for (int iteration = 0; iteration < 60; ++iteration) {
     double f = 0, slope = 0;  // slope = −f'/2
@@ -43,9 +42,7 @@ double secular_root(const Vec<3, T>& a, const Vec<3, T>& p, const Vec<3, T>& del
 /// When the sum is below 1 at s = 0, p is inside, in the plane across the least axis, and x rises from it
 /// along that axis: either way is right, the one of `wish` is taken. Lengths relative to the largest
 /// semi-axis. The equation is that of [Eberly2013].
-template <class T>
-NearestSurface nearest_surface_of_ellipsoid(const Vec<3, T>& axes, const Vec<3, T>& point, const Vec<3, T>& wish) {
-  using Vec3 = Vec<3, T>;
+NearestSurface nearest_surface_of_ellipsoid(const Vec3& axes, const std::same_as<Vec3> auto& point, const Vec3& wish) {
   const double size = axes.maxCoeff();
   const Vec3 a = axes / size, p = Vec3(std::abs(point[0]), std::abs(point[1]), std::abs(point[2])) / size;
   int least = 0;

@@ -45,8 +45,6 @@ struct NewtonNormal {
     Vec3 at(double share) const { return from + share * along(); }
   };
 
-  Vec3 of_a(const Vec3& n) const { return difference.core(n).a; }
-  Vec3 of_b(const Vec3& n) const { return difference.core(n).b; }
 
   Vec3 turned(const Vec3& n) const {
     const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
@@ -60,12 +58,8 @@ struct NewtonNormal {
     const Vec3 both = a.along().cross(b.along());
     if (has_a && has_b && both.squaredNorm() > 1e-12 * a.length2() * b.length2())
       return both.normalized() * (both.dot(n) < 0 ? -1.0 : 1.0);
-    if (has_a)
-      return on_ridge([&](const Vec3& d) { return of_a(d); }, [&](const Vec3& d) { return of_b(d); }, 1, n,
-                      a);
-    if (has_b)
-      return on_ridge([&](const Vec3& d) { return of_b(d); }, [&](const Vec3& d) { return of_a(d); }, -1, n,
-                      b);
+    if (has_a) return on_ridge(&DifferencePoint::a, &DifferencePoint::b, 1, n, a);
+    if (has_b) return on_ridge(&DifferencePoint::b, &DifferencePoint::a, -1, n, b);
     return on_smooth(n, x, y, p);
   }
 
@@ -89,18 +83,18 @@ struct NewtonNormal {
     return (n - (yy * u - xy * v) / determinant * x - (xx * v - xy * u) / determinant * y).normalized();
   }
 
-  /// `edged` gives the points of the body with the edge, `other` those of the other one; `sign` is +1 where
-  /// the edge is A's.
-  template <class Edged, class Other>
-  Vec3 on_ridge(const Edged& edged, const Other& other, double sign, const Vec3& start, Edge e) const {
+  /// `edged` are the points of the body with the edge, `other` those of the other one; `sign` is +1 where the
+  /// edge is A's.
+  Vec3 on_ridge(Vec3 DifferencePoint::*edged, Vec3 DifferencePoint::*other, double sign, const Vec3& start,
+                Edge e) const {
     // The ends as they are along n: those of a cone turn with n, though not when n turns along the edge.
     const auto ridge = [&](const Vec3& n, Edge& edge) {
       const Vec3 way = sign * look * edge.along().normalized();
-      edge = {edged(n - way), edged(n + way)};
+      edge = {difference.core(n - way).*edged, difference.core(n + way).*edged};
       return Vec3((n - n.dot(edge.along()) / edge.length2() * edge.along()).normalized());
     };
     const auto w = [&](const Vec3& n, const Edge& edge, double share) {
-      return Vec3(sign * (edge.at(share) - other(n)));
+      return Vec3(sign * (edge.at(share) - difference.core(n).*other));
     };
     const Vec3 n = ridge(start, e);
     const double share = std::clamp(-sign * w(n, e, 0).dot(e.along()) / e.length2(), 0.0, 1.0);

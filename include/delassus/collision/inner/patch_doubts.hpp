@@ -4,6 +4,7 @@
 
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/geometry/inner/flat_tree.hpp>
 
 #include <algorithm>
 
@@ -14,21 +15,46 @@ namespace delassus::inner {
 /// both. On a plain, however many its triangles, no push off one takes it off those where it is deeper.
 class PatchDoubts {
  public:
-  void begin() {
+  /// Calls add(t, point, normal) for the contacts of the triangles that the shape, posed in their frame, comes
+  /// as near as `reach` m, and judges them. Returns how many triangles were looked at.
+  template <class Surface, class Add>
+  Index collect(const Surface& surface, const Shape& shape, const Pose& pose, double reach, double scale,
+                const Add& add) {
     answers_.clear();
     false_.clear();
+    const Bounds near = bounds_around(shape, pose, reach);
+    if (!is_finite(near.low) || !is_finite(near.high)) return 0;
+    Index queries = 0;
+    const auto meets = [&](const Bounds& box) { return box.meets(near); };
+    surface.visit(meets, [&](Index t) {
+      const Triangle triangle = surface.triangle(t);
+      if (is_zero(triangle.normal)) return;
+      ++queries;
+      Vec3 n;
+      const PatchTrust trust = triangle_patch(triangle, shape, pose, reach, scale, patch_, n);
+      if (trust == PatchTrust::none) return;
+      for (int i = 0; i < patch_.count; ++i) add(t, patch_.point[i], n);
+      answers_.push_back({t, n, patch_.point[deepest(patch_)].gap, trust});
+    });
+    judge(surface, shape, pose, scale);
+    return queries;
   }
-  /// The contacts of a triangle, one at least.
-  void add(Index triangle, const Patch& patch, const Vec3& normal, PatchTrust trust) {
-    double gap = patch.point[0].gap;
-    for (int i = 1; i < patch.count; ++i) gap = std::min(gap, patch.point[i].gap);
-    answers_.push_back({triangle, normal, gap, trust});
-  }
-  /// Judges what has been added; `triangle(t)` is the t-th triangle, the shape is posed in its frame. What
-  /// doubtful answers say is false where it is deeper, by 5e-3 L, than all that is sure, or without any than
-  /// the shallowest, and a push off one that is as much shallower takes the shape off the triangle. Where the
+
+  /// Whether what the triangle said is not to be believed.
+  bool is_false(Index triangle) const { return std::binary_search(false_.begin(), false_.end(), triangle); }
+
+ private:
+  struct Answer {
+    Index triangle;
+    Vec3 normal;
+    double gap;
+    PatchTrust trust;
+  };
+
+  /// What doubtful answers say is false where it is deeper, by 5e-3 L, than all that is sure, or without any
+  /// than the shallowest, and a push off one that is as much shallower takes the shape off the triangle. Where the
   /// two face more than 45° apart, that is a push out of the whole plane of the other.
-  void judge(const auto& triangle, const Shape& shape, const Pose& pose, double scale) {
+  void judge(const auto& surface, const Shape& shape, const Pose& pose, double scale) {
     const auto is_doubtful = [](const Answer& a) { return a.trust == PatchTrust::doubtful; };
     if (std::none_of(answers_.begin(), answers_.end(), is_doubtful)) return;
     std::sort(answers_.begin(), answers_.end(), [](const Answer& a, const Answer& b) {
@@ -40,7 +66,7 @@ class PatchDoubts {
       if (!is_doubtful(a)) limit = a.gap;
     const auto depth_along = [&](const Answer& a) {
       const Vec3 lowest = pose.to_world(support(shape, Vec3(-(pose.rotation.transpose() * a.normal))));
-      return a.normal.dot(core_support(triangle(a.triangle), a.normal) - lowest);
+      return a.normal.dot(core_support(surface.triangle(a.triangle), a.normal) - lowest);
     };
     pushes_.clear();
     for (const Answer& a : answers_) {
@@ -51,22 +77,13 @@ class PatchDoubts {
         const double way = is_steep ? depth_along(push) : -push.gap;
         if (!(way < (is_steep ? depth : -a.gap) - slack)) return false;
         const Vec3 by = (std::max(way, 0.0) + slack) * push.normal;
-        return is_off(triangle(a.triangle), shape, {pose.position + by, pose.rotation});
+        return is_off(surface.triangle(a.triangle), shape, {pose.position + by, pose.rotation});
       };
       if (is_deep && std::any_of(pushes_.begin(), pushes_.end(), frees)) false_.push_back(a.triangle);
       keep_push(a);
     }
     std::sort(false_.begin(), false_.end());
   }
-  bool is_false(Index triangle) const { return std::binary_search(false_.begin(), false_.end(), triangle); }
-
- private:
-  struct Answer {
-    Index triangle;
-    Vec3 normal;
-    double gap;
-    PatchTrust trust;
-  };
 
   /// Whether the shape is off the triangle, and has not got below it by another one's way.
   static bool is_off(const Triangle& t, const Shape& s, const Pose& pose) {
@@ -90,6 +107,7 @@ class PatchDoubts {
 
   Array<Answer> answers_, pushes_;
   Array<Index> false_;
+  Patch patch_;
 };
 
 }  // namespace delassus::inner

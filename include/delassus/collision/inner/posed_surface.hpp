@@ -70,8 +70,7 @@ struct PosedSurface {
   /// triangle is nearer, but for those in front of that plane, such as the floor to what is in the wall.
   bool is_way_out(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {
     const Vec3 at = pose.to_local(x), normal = pose.rotation.transpose() * n, base = pose.to_local(foot);
-    const Vec3 wide = Vec3::Constant(depth);
-    const Bounds near{at - wide, at + wide};
+    const Bounds near = Bounds{at, at}.grown(depth);
     bool is_shortest = true;
     surface.visit([&](const Bounds& box) { return is_shortest && box.meets(near); },
                   [&](Index t) {
@@ -88,8 +87,7 @@ struct PosedSurface {
   /// triangle that looks away from n and is not at the foot, as the other side of a sharp edge is.
   bool is_near_far_side(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {
     const Vec3 at = pose.to_local(x), normal = pose.rotation.transpose() * n, base = pose.to_local(foot);
-    const Vec3 wide = Vec3::Constant(depth);
-    const Bounds near{at - wide, at + wide};
+    const Bounds near = Bounds{at, at}.grown(depth);
     bool is_near = false;
     surface.visit([&](const Bounds& box) { return !is_near && box.meets(near); },
                   [&](Index t) {
@@ -101,14 +99,8 @@ struct PosedSurface {
     return is_near;
   }
 
- private:
   /// In the surface's own frame, without what it knows of its neighbours.
-  Triangle plain(Index t) const {
-    Triangle out;
-    out.point = surface.points_of(t);
-    out.normal = surface.normal(t);
-    return out;
-  }
+  Triangle plain(Index t) const { return {.point = surface.points_of(t), .normal = surface.normal(t)}; }
 };
 
 /// The triangles of a leaf of the surface's tree, posed once for all that they are compared with.
@@ -138,5 +130,19 @@ class PosedLeaf {
   std::array<Posed, std::size_t(FlatTree::leaf_size * Surface::triangles_per_item)> triangle_;
   std::size_t count_ = 0;
 };
+
+/// f(x, y) for every two posed triangles in leaves of both trees whose boxes are near(box, other_box), as must be all
+/// boxes around them.
+template <class A, class B, class Near, class F>
+void each_pair(const PosedSurface<A>& a, const PosedSurface<B>& b, const Near& near, const F& f) {
+  const auto meets = [&](const Bounds& x, const Bounds& y) { return near(a.bounds(x), b.bounds(y)); };
+  FlatTree::cross(a.surface.tree(), b.surface.tree(), meets, [&](auto of_a, auto of_b) {
+    const PosedLeaf<A> ours(a, of_a);
+    const PosedLeaf<B> theirs(b, of_b);
+    for (const auto& x : ours)
+      for (const auto& y : theirs)
+        if (near(x.box, y.box)) f(x, y);
+  });
+}
 
 }  // namespace delassus::inner

@@ -36,13 +36,6 @@ inline double spread(const Patch& patch, const Choice& c, const Vec3& n) {
   return area2;
 }
 
-inline int deepest(const Patch& patch) {
-  int best = 0;
-  for (int i = 1; i < patch.count; ++i)
-    if (patch.point[i].gap < patch.point[best].gap) best = i;
-  return best;
-}
-
 /// Adds the points farthest from all chosen ones until there are `limit`.
 inline void fill(const Patch& patch, int limit, Choice& c) {
   while (c.count < limit) {

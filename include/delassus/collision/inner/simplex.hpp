@@ -43,11 +43,9 @@ struct BasicSimplex {
 using Simplex = BasicSimplex<double>;
 
 /// Nearest point of the segment (p₀, p₁).
-template <class Scalar>
-Vec<3, Scalar> nearest_on_segment(BasicSimplex<Scalar>& s) {
-  using Vec3 = Vec<3, Scalar>;
+Vec3 nearest_on_segment(std::same_as<Simplex> auto& s) {
   const Vec3 ab = s.p[1].w - s.p[0].w;
-  const Scalar t = -s.p[0].w.dot(ab), length2 = ab.squaredNorm();
+  const double t = -s.p[0].w.dot(ab), length2 = ab.squaredNorm();
   if (!(t > 0)) {
     s.keep(0);
   } else if (t >= length2) {
@@ -60,12 +58,11 @@ Vec<3, Scalar> nearest_on_segment(BasicSimplex<Scalar>& s) {
 
 /// Begins the triangle at the vertex opposite its longest edge: of a needle, only the product of the two shorter edges
 /// is a normal that holds its digits.
-template <class Scalar>
-void begin_with_short_edges(BasicSimplex<Scalar>& s) {
+void begin_with_short_edges(std::same_as<Simplex> auto& s) {
   int first = 0;
-  Scalar longest = -1;
+  double longest = -1;
   for (int i = 0; i < 3; ++i) {
-    const Scalar length2 = (s.p[(i + 1) % 3].w - s.p[(i + 2) % 3].w).squaredNorm();
+    const double length2 = (s.p[(i + 1) % 3].w - s.p[(i + 2) % 3].w).squaredNorm();
     if (length2 > longest) longest = length2, first = i;
   }
   std::rotate(s.p.begin(), s.p.begin() + first, s.p.begin() + 3);
@@ -74,14 +71,12 @@ void begin_with_short_edges(BasicSimplex<Scalar>& s) {
 /// Nearest point of the triangle (p₀, p₁, p₂) by its Voronoi regions. Source: [Ericson2005], §5.1.5.
 /// Inside, the point is taken along the triangle's normal, so that its direction keeps all digits when it is
 /// short.
-template <class Scalar>
-Vec<3, Scalar> nearest_on_triangle(BasicSimplex<Scalar>& s) {
-  using Vec3 = Vec<3, Scalar>;
+Vec3 nearest_on_triangle(std::same_as<Simplex> auto& s) {
   begin_with_short_edges(s);
   const Vec3 a = s.p[0].w, b = s.p[1].w, c = s.p[2].w, ab = b - a, ac = c - a;
-  const Scalar d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c),
+  const double d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c),
                d6 = -ac.dot(c);
-  const Scalar va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
   if (d1 <= 0 && d2 <= 0) {
     s.keep(0);
   } else if (d3 >= 0 && d4 <= d3) {
@@ -93,12 +88,12 @@ Vec<3, Scalar> nearest_on_triangle(BasicSimplex<Scalar>& s) {
   } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
     s.keep(0, 2, d2 - d6 > 0 ? d2 / (d2 - d6) : 0.0);
   } else if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    const Scalar sum = (d4 - d3) + (d5 - d6);
+    const double sum = (d4 - d3) + (d5 - d6);
     s.keep(1, 2, sum > 0 ? (d4 - d3) / sum : 0.0);
   } else {
-    const Scalar sum = va + vb + vc;
+    const double sum = va + vb + vc;
     const Vec3 normal = ab.cross(ac);
-    const Scalar area2 = normal.squaredNorm();
+    const double area2 = normal.squaredNorm();
     if (!(sum > 0) || !(area2 > 0)) {
       s.count = 2;
       return nearest_on_segment(s);
@@ -111,19 +106,17 @@ Vec<3, Scalar> nearest_on_triangle(BasicSimplex<Scalar>& s) {
 
 /// Nearest point of the tetrahedron: the best of the faces that have the origin on their outer side.
 /// Sets `is_inside` and leaves the simplex whole when there is none.
-template <class Scalar>
-Vec<3, Scalar> nearest_on_tetrahedron(BasicSimplex<Scalar>& s, bool& is_inside) {
-  using Vec3 = Vec<3, Scalar>;
+Vec3 nearest_on_tetrahedron(std::same_as<Simplex> auto& s, bool& is_inside) {
   constexpr int faces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
-  BasicSimplex<Scalar> best;
+  Simplex best;
   Vec3 nearest = Vec3::Zero();
   is_inside = true;
   for (const auto& f : faces) {
     const Vec3 a = s.p[f[0]].w;
     const Vec3 normal = (s.p[f[1]].w - a).cross(s.p[f[2]].w - a);
-    const Scalar origin = -a.dot(normal), opposite = (s.p[f[3]].w - a).dot(normal);
+    const double origin = -a.dot(normal), opposite = (s.p[f[3]].w - a).dot(normal);
     if (origin * opposite > 0) continue;
-    BasicSimplex<Scalar> face{.p = {s.p[f[0]], s.p[f[1]], s.p[f[2]]}, .count = 3};
+    Simplex face{.p = {s.p[f[0]], s.p[f[1]], s.p[f[2]]}, .count = 3};
     const Vec3 v = nearest_on_triangle(face);
     if (is_inside || v.squaredNorm() < nearest.squaredNorm()) best = face, nearest = v;
     is_inside = false;
@@ -133,8 +126,7 @@ Vec<3, Scalar> nearest_on_tetrahedron(BasicSimplex<Scalar>& s, bool& is_inside) 
 }
 
 /// Reduces `s` to the smallest face that carries its point nearest to the origin, and returns that point.
-template <class Scalar>
-Vec<3, Scalar> nearest(BasicSimplex<Scalar>& s, bool& is_inside) {
+Vec3 nearest(std::same_as<Simplex> auto& s, bool& is_inside) {
   is_inside = false;
   if (s.count == 2) return nearest_on_segment(s);
   if (s.count == 3) return nearest_on_triangle(s);

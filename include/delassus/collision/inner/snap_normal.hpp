@@ -16,9 +16,8 @@ enum class NormalOwner : std::uint8_t { kernel, a, b };
 /// a distance no worse than 1e-5 of the scale. Last step's choice has as much in advance, so that two nearly
 /// parallel faces do not take turns. Afterwards the normal of a flat contact is exact, whatever the kernel's
 /// rounding.
-template <std::same_as<Shape> S>
-NormalOwner snap_normal_to_face(const S& a, const S& b, const Pose& b_in_a, double scale, NormalOwner last,
-                          SignedPair& r) {
+NormalOwner snap_normal_to_face(const std::same_as<Shape> auto& a, const Shape& b, const Pose& b_in_a, double scale,
+                                NormalOwner last, SignedPair& r) {
   const double advance = 1e-5 * scale;
   const SignedPair kernel = r;
   NormalOwner owner = NormalOwner::kernel;
@@ -35,10 +34,7 @@ NormalOwner snap_normal_to_face(const S& a, const S& b, const Pose& b_in_a, doub
     if (owner != NormalOwner::kernel && !(value > best)) return;
     best = value;
     owner = who;
-    const Vec3 middle = 0.5 * (kernel.point_a + kernel.point_b),
-               across = middle - normal * normal.dot(middle);
-    trial.point_a = across + normal * normal.dot(reach_a);
-    trial.point_b = across + normal * normal.dot(reach_b);
+    put_witnesses(normal.dot(reach_a), normal.dot(reach_b), trial);
     r = trial;
   };
   const Face face_a = face_towards(a, kernel.normal);

@@ -24,24 +24,9 @@ class SoftPairs {
   /// A convex shape on the triangles. Points at nodes are left out: nodes are spheres to the backend.
   Index collide(const SoftSurface& soft, const Shape& shape, const Pose& pose, double reach, double scale) {
     found.clear();
-    Index queries = 0;
-    const Aabb tight = tight_box(shape, pose);
-    const Bounds near{tight.min() - Vec3::Constant(reach), tight.max() + Vec3::Constant(reach)};
-    if (!is_finite(near.low) || !is_finite(near.high)) return 0;
     found_on_.clear();
-    doubts_.begin();
-    soft.visit([&](const Bounds& box) { return box.meets(near); },
-               [&](Index t) {
-                 if (is_zero(soft.normal(t))) return;
-                 ++queries;
-                 Vec3 n;
-                 const PatchTrust trust =
-                     triangle_patch(soft.triangle(t), shape, pose, reach, scale, patch_, n);
-                 if (trust == PatchTrust::none) return;
-                 for (int i = 0; i < patch_.count; ++i) add(soft, t, patch_.point[i], n);
-                 doubts_.add(t, patch_, n, trust);
-               });
-    doubts_.judge([&](Index t) { return soft.triangle(t); }, shape, pose, scale);
+    const auto add_to_found = [&](Index t, const PatchPoint& p, const Vec3& n) { add(soft, t, p, n); };
+    const Index queries = doubts_.collect(soft, shape, pose, reach, scale, add_to_found);
     for (std::size_t i = 0; i < found.size(); ++i) found[i].is_dropped = doubts_.is_false(found_on_[i]);
     drop();
     drop_twins_of_edges(scale);
@@ -53,7 +38,7 @@ class SoftPairs {
   Index cross(const SoftSurface& soft, const Surface& mesh, const Pose& pose, const TouchRange& range) {
     const Index queries =
         cross_all(PosedSurface<SoftSurface>{soft}, PosedSurface<Surface>{mesh, pose}, range);
-    for (FeatureContact& c : found) c.is_dropped = c.point.name >> 30 == 1;
+    for (FeatureContact& c : found) c.is_dropped = is_vertex_of_a(c.point.name);
     drop();
     return queries;
   }
@@ -118,7 +103,6 @@ class SoftPairs {
     drop();
   }
 
-  Patch patch_;
   PatchDoubts doubts_;
   Array<Index> found_on_;  ///< the triangle of each in `found`
 };

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
-#include <delassus/geometry/inner/flat_tree.hpp>
-#include <delassus/geometry/inner/surface_topology.hpp>
+#include <delassus/geometry/inner/triangle_surface.hpp>
 #include <delassus/geometry/outer_face.hpp>
-#include <delassus/geometry/triangle.hpp>
 #include <delassus/rows/anchor.hpp>
 
 #include <algorithm>
@@ -19,7 +17,7 @@ namespace delassus::inner {
 /// Made once a body, followed step by step: positions, normals and boxes, in the world. A triangle without
 /// area has no normal and speaks for nothing. The sides of a sheet are apart but for their nodes: each node is
 /// a vertex of either.
-class SoftSurface {
+class SoftSurface : public TriangleSurface {
  public:
   template <class Mesh>
   SoftSurface(Index set, Index body, std::uint32_t number, const Mesh& mesh, std::span<const Index> blocks)
@@ -57,7 +55,7 @@ class SoftSurface {
     normals_.resize(corners_.size());
     outward_ = vertices_;
     find_normals();
-    tree_.build(Index(corners_.size()), [&](Index t) { return bounds_of(t); });
+    tree_.build(triangle_count(), [&](Index t) { return bounds_of(t); });
   }
 
   bool is_of(Index set, Index body, std::uint32_t number) const {
@@ -88,7 +86,7 @@ class SoftSurface {
       inner_speed_ = std::max(inner_speed_, (v - mean).norm());
     }
     find_normals();
-    tree_.fit([&](Index t) { return bounds_of(t); });
+    refit();
   }
 
   /// It has two sides and nothing between them.
@@ -98,48 +96,15 @@ class SoftSurface {
   double radius() const { return radius_; }            ///< its thickness on the outer side, m
   double top_speed() const { return top_speed_; }      ///< of any node, m/s
   double inner_speed() const { return inner_speed_; }  ///< of any node against the mean of all, m/s
-  Bounds bounds() const { return tree_.bounds(); }
   double scale() const {  ///< largest half edge of the box around it, m
     const Vec3 size = bounds().high - bounds().low;
     return 0.5 * size[largest_entry(size)];
   }
 
-  // --- as of a TriangleMesh --------------------------------------------------------------------------------
-
-  static constexpr Index triangles_per_item = 1;
-  const FlatTree& tree() const { return tree_; }
-  const Vec3& vertex(Index v) const { return vertices_[v]; }
-  std::array<Vec3, 3> points_of(Index t) const {
-    const auto& [a, b, c] = corners_[t];
-    return {vertices_[a], vertices_[b], vertices_[c]};
-  }
-  const Vec3& normal(Index t) const { return normals_[t]; }
   /// The vertex of the front that has the same node.
   Index front(Index v) const { return front_[v]; }
   /// The sum of the normals around a vertex.
   const Vec3& outward_at(Index v) const { return outward_[v]; }
-  Index neighbour(Index t, int k) const { return topology_.neighbour(t, k); }
-  bool owns_corner(Index t, int k) const { return topology_.owns_corner(t, k); }
-  bool owns_edge(Index t, int k) const { return topology_.owns_edge(t, k); }
-  template <class F>
-  void each_around(Index v, const F& f) const {
-    topology_.each_around(v, f);
-  }
-  template <class Meets, class Visit>
-  void visit(const Meets& meets, const Visit& visit) const {
-    tree_.visit(meets, visit);
-  }
-  Triangle triangle(Index t) const {
-    Triangle out;
-    out.corner = corners_[t];
-    out.normal = normals_[t];
-    out.point = points_of(t);
-    for (int k = 0; k < 3; ++k) {
-      const Index other = neighbour(t, k);
-      out.lean[k] = other < 0 ? 1 : lean_towards(out.normal, normals_[other], out.outward(k));
-    }
-    return out;
-  }
 
   // --- a point on a triangle, by the shares of its corners -------------------------------------------------
 
@@ -196,16 +161,11 @@ class SoftSurface {
       return std::all_of(places.begin(), places.end(), [](const Vec3& p) { return p[0] + p[1] + p[2] == 1; });
     return false;
   }
-  Bounds bounds_of(Index t) const {
-    Bounds b;
-    for (const Index v : corners_[t]) b.add(vertices_[v]);
-    return b;
-  }
   void find_normals() {
     for (Vec3& o : outward_) o.setZero();
     for (std::size_t t = 0; t < corners_.size(); ++t) {
-      const auto& [a, b, c] = corners_[t];
-      normals_[t] = triangle_normal(vertices_[a], vertices_[b], vertices_[c]);
+      const auto [a, b, c] = points_of(Index(t));
+      normals_[t] = triangle_normal(a, b, c);
       for (const Index v : corners_[t]) outward_[v] += normals_[t];
     }
   }
@@ -218,14 +178,11 @@ class SoftSurface {
   std::uint32_t number_;                       ///< of the body
   Array<Index> block_;                   ///< of each vertex
   Array<Index> front_;                   ///< of each vertex
-  Array<std::array<Index, 3>> corners_;  ///< vertices of each triangle
   std::vector<std::array<Vec3, 3>> places_;    ///< where they are in the element behind
   Array<char> sums_to_one_;              ///< across from corner 0 of a tetrahedron
   Array<Index> element_, base_;          ///< that element, and the block of its corner 0
-  SurfaceTopology topology_;
-  std::vector<Vec3> rest_, vertices_, velocities_, normals_, outward_;
+  std::vector<Vec3> rest_, velocities_, outward_;
   Array<char> moves_;
-  FlatTree tree_;
   double radius_ = 0, top_speed_ = 0, inner_speed_ = 0;
   bool is_sheet_ = false, is_sound_ = true, is_movable_ = true;
 };

@@ -25,7 +25,7 @@ struct FeatureContact {
 
 /// Names of contacts within their pair: a vertex of either side, or two edges.
 inline std::uint32_t vertex_name(bool is_of_a, Index v) {
-  return (is_of_a ? 1u : 2u) << 30 | (std::uint32_t(v) & 0x3fffffffu);
+  return corner_name(is_of_a, std::uint32_t(v) & 0x3fffffffu);
 }
 inline bool is_vertex_of_a(std::uint32_t name) { return name >> 30 == 1; }
 inline bool is_vertex_of_b(std::uint32_t name) { return name >> 30 == 2; }
@@ -43,6 +43,13 @@ inline bool goes_before(const FeatureContact& x, const FeatureContact& y) {
   return x.edge_a != y.edge_a ? x.edge_a < y.edge_a : x.point.gap < y.point.gap;
 }
 
+/// The vertex v at x, of triangle s, on triangle t of the other surface, whose normal is n.
+inline FeatureContact vertex_contact(bool is_of_a, Index v, const Vec3& x, const Vec3& foot, double gap, const Vec3& n,
+                                     Index s, Index t) {
+  const std::uint32_t name = vertex_name(is_of_a, v);
+  return is_of_a ? FeatureContact{{x, foot, gap, name}, -n, s, t} : FeatureContact{{foot, x, gap, name}, n, t, s};
+}
+
 /// Each vertex and each edge is compared by the triangle that owns it alone, and only where its own surface
 /// allows the normal. A vertex behind a triangle must have its shortest way out there. Edges that crossed
 /// must cross still when the bodies part as far as a shallower contact says: else that one parts them.
@@ -58,13 +65,9 @@ class SurfaceCrossing {
   /// looked at.
   Index collect() {
     queries_ = 0;
-    const auto meets = [&](const Bounds& x, const Bounds& y) { return near(a_.bounds(x), b_.bounds(y)); };
-    FlatTree::cross(a_.surface.tree(), b_.surface.tree(), meets, [&](auto of_a, auto of_b) {
-      const PosedLeaf<A> ours(a_, of_a);
-      const PosedLeaf<B> theirs(b_, of_b);
-      for (const auto& x : ours)
-        for (const auto& y : theirs)
-          if ((x.t != y.t || !is_self_) && near(x.box, y.box)) compare(x, y);
+    const auto near = [&](const Bounds& x, const Bounds& y) { return x.grown(range_.before).meets(y); };
+    each_pair(a_, b_, near, [&](const auto& x, const auto& y) {
+      if (x.t != y.t || !is_self_) compare(x, y);
     });
     drop_twins();
     for (FeatureContact& c : out_)
@@ -74,13 +77,6 @@ class SurfaceCrossing {
   }
 
  private:
-  bool near(Bounds x, const Bounds& y) const {
-    const Vec3 wide = Vec3::Constant(range_.before);
-    x.low -= wide;
-    x.high += wide;
-    return x.meets(y);
-  }
-
   /// A vertex beside a triangle, or over an edge of flat ones, is found by all that share what it touches.
   void drop_twins() {
     std::sort(out_.begin(), out_.end(), goes_before);
@@ -142,11 +138,7 @@ class SurfaceCrossing {
     if (touch.corner >= 0 && !faces.is_farthest(T.corner[touch.corner], touch.normal)) return;
     if (!points.may_touch_along(S.corner[k], -touch.normal)) return;
     if (touch.gap < 0 && !faces.is_way_out(x, touch.foot, touch.normal, -touch.gap)) return;
-    const std::uint32_t name = vertex_name(is_point_of_a, S.corner[k]);
-    if (is_point_of_a)
-      out_.push_back({{x, touch.foot, touch.gap, name}, -touch.normal, s, t});
-    else
-      out_.push_back({{touch.foot, x, touch.gap, name}, touch.normal, t, s});
+    out_.push_back(vertex_contact(is_point_of_a, S.corner[k], x, touch.foot, touch.gap, touch.normal, s, t));
   }
 
   void cross(Index t, const Triangle& T, int k, Index s, const Triangle& S, int l) {

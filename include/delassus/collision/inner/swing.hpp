@@ -51,7 +51,7 @@ inline bool meets(const Collider& other, const Collider& body, const Swing& swin
   const Pose point{.position = body.pose.position + swing.time * body.velocity + swing.arm};
   Patch patch;
   const SignedPair r =
-      distance_of(other.shape, Sphere{near}, relative(other.pose, point), scale, near, Vec3::Zero(), patch);
+      distance_of(other.shape, Sphere{near}, other.pose.to_local(point), scale, near, Vec3::Zero(), patch);
   return r.status == PairStatus::near && r.distance < near;
 }
 

@@ -18,17 +18,11 @@ inline Pose pose_after(const Collider& c, double t) {
   return {c.pose.position + t * c.velocity, turn.toRotationMatrix() * c.pose.rotation};
 }
 
-inline Pose relative(const Pose& a, const Pose& b) {
-  return {.position = a.to_local(b.position), .rotation = a.rotation.transpose() * b.rotation};
-}
-
 /// Signed distance and, of a half-space, its patch up to `margin` beyond it, in the frame of A.
 inline SignedPair distance_of(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale,
                               const Vec3& guess, Patch& patch) {
-  if (a.kind == ShapeKind::half_space)
-    return half_space_patch(b, b_in_a, plane_of(a, Pose{}), true, margin, scale, patch);
-  if (b.kind == ShapeKind::half_space)
-    return half_space_patch(a, Pose{}, plane_of(b, b_in_a), false, margin, scale, patch);
+  if (a.kind == ShapeKind::half_space || b.kind == ShapeKind::half_space)
+    return half_space_patch(a, b, b_in_a, margin, scale, patch);
   GjkEpa kernel;
   return certified_pair(kernel, a, b, b_in_a, margin, scale, guess).pair;
 }
@@ -74,7 +68,7 @@ inline Impact time_of_impact(const Collider& a, const Collider& b, double h, dou
   for (int look = 0; look < 200; ++look) {
     hit.a = pose_after(a, hit.time);
     hit.b = pose_after(b, hit.time);
-    const SignedPair r = distance_of(a.shape, b.shape, relative(hit.a, hit.b),
+    const SignedPair r = distance_of(a.shape, b.shape, hit.a.to_local(hit.b),
                                      std::numeric_limits<double>::infinity(), scale, guess, patch);
     if (!std::isfinite(r.distance) || !is_finite(r.normal)) return {};
     hit.normal_in_a = guess = r.normal;

@@ -20,19 +20,22 @@ void check_inside(const Backend& backend) {
   if constexpr (requires { backend.check(); }) backend.check();
 }
 
-/// What the backend keeps from step to step, in its engine or by itself.
+/// What the backend keeps from step to step, by itself, in its engine or in what it goes around.
 template <class Backend>
 void remember(Backend& backend, auto& archive) {
   if constexpr (requires { backend.memory(archive); })
     backend.memory(archive);
   else if constexpr (requires { backend.engine.memory(archive); })
     backend.engine.memory(archive);
+  else if constexpr (requires { backend.backend; })
+    remember(backend.backend, archive);
 }
 
+/// Those of the innermost backend.
 template <class Backend>
 CollisionSettings settings_of(const Backend& backend) {
-  if constexpr (requires { backend.settings(); })
-    return backend.settings();
+  if constexpr (requires { backend.backend; })
+    return settings_of(backend.backend);
   else
     return {backend.margin, backend.contact_distance, backend.max_points};
 }

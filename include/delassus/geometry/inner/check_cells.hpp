@@ -5,6 +5,9 @@
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
+#include <array>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,6 +41,19 @@ void check_points(const Mesh& mesh, const std::string& who) {
     DELASSUS_EXPECT(is_finite(mesh.points[i]), name + " of the mesh is not finite");
     DELASSUS_EXPECT(is_used[i], name + " belongs to no " + Mesh::cell + "; take it out of the mesh");
   }
+}
+
+/// Refuses a rectangle or a box of cells that has no size along an edge (m), no cells along it, or too many points.
+template <std::size_t N>
+void check_grid(const std::string& who, const std::array<double, N>& size, const std::array<Index, N>& cells) {
+  double points = 1;
+  for (std::size_t k = 0; k < N; ++k) {
+    expect_positive(who + ": the size", size[k], "m");
+    DELASSUS_EXPECT(cells[k] > 0, who + ": the number of cells " + std::to_string(cells[k]) + " must be > 0");
+    points *= cells[k] + 1.0;
+  }
+  DELASSUS_EXPECT(points <= std::numeric_limits<Index>::max(),
+                  who + ": " + text(points) + " points are more than an index counts");
 }
 
 }  // namespace delassus::inner

@@ -26,6 +26,17 @@ struct Bounds {
     add(b.low);
     add(b.high);
   }
+  /// Wider by as much on each side.
+  Bounds grown(double by) const {
+    const Vec3 wide(by, by, by);
+    return {low - wide, high + wide};
+  }
+  /// How far p is beyond it along each axis.
+  Vec3 beyond(const Vec3& p) const {
+    Vec3 out;
+    for (int k = 0; k < 3; ++k) out[k] = std::max({low[k] - p[k], 0.0, p[k] - high[k]});
+    return out;
+  }
   bool meets(const Bounds& b) const {
     return low[0] <= b.high[0] && high[0] >= b.low[0] && low[1] <= b.high[1] && high[1] >= b.low[1] &&
            low[2] <= b.high[2] && high[2] >= b.low[2];

@@ -16,7 +16,7 @@ namespace delassus::inner {
 /// direction.
 struct SharedEdge {
   Index low = 0, high = 0;                    ///< its vertices
-  Index first = -1, second = -1, third = -1;  ///< triangles; −1: none
+  Index first = -1, second = -1, third = -1;  ///< triangles; −1: it is not crowded
 };
 
 /// Fixed by the triangles alone, however their vertices move. A corner and an edge are owned by the first
@@ -45,11 +45,8 @@ class SurfaceTopology {
   void each_around(Index v, const F& f) const {
     for (Index i = ring_start_[v]; i < ring_start_[v + 1]; ++i) f(ring_[i]);
   }
-  /// f(edge, is_crowded) for every edge with a fault.
-  template <class F>
-  void each_fault(const F& f) const {
-    for (const SharedEdge& e : faults_) f(e, e.third >= 0);
-  }
+  /// The edges with a fault.
+  std::span<const SharedEdge> faults() const { return faults_; }
 
   void memory(auto& archive) { archive(neighbours_, owned_, ring_start_, ring_, faults_); }
 

@@ -1,6 +1,7 @@
 /// What a host calls of the loop, where it is more than a line: included by animation_loop.hpp.
 #pragma once
 
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/type_text.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
@@ -23,11 +24,7 @@ void AnimationLoop<Args...>::memory(auto& archive) {
     archive(this->contact_cache, this->material_pairs);
     this->states.template memory<true>(archive);  // it names constraints
     if constexpr (requires { this->solver_workspace.memory(archive); }) this->solver_workspace.memory(archive);
-    if constexpr (Laws::has_contacts) {
-      auto& collision = Data::collision();
-      if constexpr (requires { collision.memory(archive); }) collision.memory(archive);
-      else if constexpr (requires { collision.engine.memory(archive); }) collision.engine.memory(archive);
-    }
+    if constexpr (Laws::has_contacts) inner::remember(Data::collision(), archive);
     forget_rows();
   }
 }
