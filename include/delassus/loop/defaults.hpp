@@ -74,16 +74,9 @@ struct DefaultsFor {
 
 /// The type that plays `Role` in a Policies.
 template <class P, class Role>
-struct policy_type;
-template <class P> struct policy_type<P, role::World> { using type = typename P::World; };
-template <class P> struct policy_type<P, role::Constraints> { using type = typename P::Laws; };
-template <class P> struct policy_type<P, role::Integrator> { using type = typename P::Integrator; };
-template <class P> struct policy_type<P, role::Collision> { using type = typename P::Collision; };
-template <class P> struct policy_type<P, role::Compliance> { using type = typename P::Compliance; };
-template <class P> struct policy_type<P, role::Solver> { using type = typename P::Solver; };
-template <class P> struct policy_type<P, role::Stabilisation> { using type = typename P::Stabilisation; };
-template <class P> struct policy_type<P, role::Scheme> { using type = typename P::Scheme; };
-template <class P> struct policy_type<P, role::Activity> { using type = typename P::Activity; };
+using policy_type = typename pick<Role, void, typename P::World, typename P::Laws, typename P::Integrator, typename P::Collision,
+                                  typename P::Compliance, typename P::Solver, typename P::Stabilisation, typename P::Scheme,
+                                  typename P::Activity>::type;
 
 }  // namespace inner
 }  // namespace delassus

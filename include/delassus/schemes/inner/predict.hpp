@@ -42,18 +42,9 @@ void subtract_predicted(Rows& rows, Kept& predicted) {
   for_each_index<Rows::pool_count>([&](auto p) {
     auto& lambda = rows.template pool<p>().lambda;
     auto& kept = std::get<p>(predicted.pools);
-    for (std::size_t i = 0; i < lambda.size(); ++i) {
-      const auto change = (lambda[i] - kept[i]).eval();
-      kept[i] = lambda[i];
-      lambda[i] = change;
-    }
+    lambda.swap(kept);  // λ₀ in λ, the total kept
+    for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] = kept[i] - lambda[i];
   });
-}
-
-/// λ ← the total again.
-template <class Rows, class Kept>
-void add_predicted(Rows& rows, const Kept& predicted) {
-  predicted.give_to(rows);
 }
 
 namespace inner {
@@ -72,7 +63,7 @@ struct PredictiveStages : Base {
   static void correct(auto& step) {
     subtract_predicted(step.rows, predicted(step));
     Base::correct(step);
-    add_predicted(step.rows, predicted(step));
+    predicted(step).give_to(step.rows);  // the total again
   }
 
  private:
