@@ -1,6 +1,7 @@
 /// The bodies of a simulation: a tuple of body sets.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/roles.hpp>
@@ -50,7 +51,9 @@ class World {
   template <int s>
   static constexpr int width_of =
       s < 0 ? 0 : std::array<int, std::size_t(set_count) + 1>{Sets::width..., 0}[s < 0 ? 0 : s];
-  using Tuple = std::tuple<Sets...>;
+  /// One F<Set> for every set.
+  template <template <class> class F>
+  using PerSet = std::tuple<F<Sets>...>;
   using Scalar = typename inner::scalar_of<Sets...>::type;
 
   World()
@@ -190,8 +193,12 @@ class World {
     (f(std::get<s>(self.sets_), std::integral_constant<int, s>{}), ...);
   }
 
-  Tuple sets_;
+  std::tuple<Sets...> sets_;
 };
+
+/// One velocity for every block of a set.
+template <class Set>
+using VelocitiesOf = Array<typename Set::Velocity>;
 
 /// The set of type S of a world.
 template <class S, class... Sets>

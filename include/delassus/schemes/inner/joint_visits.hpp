@@ -36,13 +36,8 @@ namespace delassus {
 /// one visit is exact and λ begins at zero; elsewhere it begins with that of the last step, and what the
 /// visits leave is measured once more. Nothing is kept of a joint between its visits.
 template <class World, class Laws>
-class JointVisits;
-
-template <class... Sets, class Laws>
-class JointVisits<World<Sets...>, Laws> {
+class JointVisits {
  public:
-  using World = delassus::World<Sets...>;
-
   /// Leaves v_next, which is v_free on entry, and the impulses of the joints. `scheme` says `sweeps` and
   /// `tolerance`.
   void run(World& world, Laws& laws, const auto& stabilisation, double h, double step_ratio,
@@ -227,7 +222,7 @@ class JointVisits<World<Sets...>, Laws> {
 
   template <class Set>
   using Steps = Array<std::uint32_t>;
-  std::tuple<Steps<Sets>...> seen_;  ///< the last step in which a joint held the block
+  typename World::template PerSet<Steps> seen_;  ///< the last step in which a joint held the block
   std::uint32_t now_ = 0;
   bool are_shared_ = false;  ///< some block is held by two joints
 };

@@ -17,12 +17,8 @@ namespace delassus {
 /// halved again. A chain that snaps taut is a shock in a step, and has to be met in its time; every part
 /// keeps what the rule keeps. A step that cannot be made so is begun again with rows that yield.
 template <class World, class Laws, class Rows>
-class MidpointHold;
-
-template <class... Sets, class Laws, class Rows>
-class MidpointHold<World<Sets...>, Laws, Rows> {
+class MidpointHold {
  public:
-  using World = delassus::World<Sets...>;
   using T = typename Rows::Scalar;
 
   /// Leaves q₊ and v_next in the sets and the sum of the parts' λ in `rows`, which is linearised at the start
@@ -136,7 +132,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   }
 
   YieldingMidpoint<World, Laws, Rows> newton_;
-  std::tuple<Array<typename Sets::Velocity>...> velocity_;
+  typename World::template PerSet<VelocitiesOf> velocity_;
   Impulses<Rows> force_, total_;  ///< λ/h of the last part, and Σ λ
   SolveReport report_;
 };
