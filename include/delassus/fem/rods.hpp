@@ -26,8 +26,9 @@ namespace delassus {
 /// Neighbours must not be turned by half a turn against each other. An explicit integrator is stable only for
 /// h below the time that sound takes through the shortest segment, and far less for a thin one.
 template <class T>
-class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::ElasticLine<T>> {
-  using Nodes = inner::BodiesOfNodes<BasicRods, T, 6, Rod, inner::ElasticLine<T>>;
+class BasicRods
+    : public inner::BodiesOfNodes<BasicRods<T>, inner::BodyStorage<BasicRods<T>, T, 6>, Rod, inner::ElasticLine<T>> {
+  using Nodes = inner::BodiesOfNodes<BasicRods, inner::BodyStorage<BasicRods, T, 6>, Rod, inner::ElasticLine<T>>;
 
  public:
   using Nodes::gravity, Nodes::v_free, Nodes::v_next;
