@@ -74,17 +74,15 @@ class SwitchedOff {
     for (std::size_t k = 0; k < dormant_.bodies().size();) {
       const auto body = dormant_.bodies()[k];
       bool is_there = false;
-      world.each([&](const auto& set, auto s) {
-        if (s == body.set) is_there = Dormant<World, Laws>::is_same(set, body);
-      });
+      world.visit(body.set, [&](const auto& set, auto) { is_there = Dormant<World, Laws>::is_same(set, body); });
       if (is_there) ++k;
       else dormant_.wake(world, laws, [&](Index g) { return g == body.group; });
     }
   }
   bool add_obstacles(const World& world, ContactCache& book) const {
     for (const auto& body : dormant_.bodies())
-      world.each([&](const auto& set, auto s) {
-        if (s == body.set && set.has_collider(body.block)) book.add(set, s, body.block, false);
+      world.visit(body.set, [&](const auto& set, auto s) {
+        if (set.has_collider(body.block)) book.add(set, s, body.block, false);
       });
     return true;
   }

@@ -73,8 +73,6 @@ class Sleepers {
 
   /// Begin: whatever is not as it was when its group fell asleep wakes that group.
   void begin(World& world, Laws& laws, double h) {
-    called_.assign(std::size_t(called_.size()), 0);
-    called_any_ = false;
     supports_.look_at_gravity(world, [&](Index set) {
       for (const auto& body : dormant_.bodies())
         if (body.set == set) call(body.group);
@@ -85,8 +83,8 @@ class Sleepers {
     });
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
-      world.each([&](const auto& set, auto s) {
-        if (s == body.set && (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body))) call(body.group);
+      world.visit(body.set, [&](const auto& set, auto) {
+        if (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body)) call(body.group);
       });
     look_at_items(laws);
     answer(world, laws);
@@ -104,9 +102,7 @@ class Sleepers {
     if (is_empty(near)) return false;
     for (const auto& body : dormant_.bodies())
       if (!is_empty(body.box) && !is_apart(body.box, near))
-        world.each([&](const auto& set, auto s) {
-          if (s == body.set) book.add(set, s, body.block, false);
-        });
+        world.visit(body.set, [&](const auto& set, auto s) { book.add(set, s, body.block, false); });
     return true;
   }
 

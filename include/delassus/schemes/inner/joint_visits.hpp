@@ -16,6 +16,7 @@
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stage.hpp>
 #include <delassus/step/step_report.hpp>
+#include <delassus/step/warm_start.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -87,22 +88,6 @@ class JointVisits {
       m.siconos = std::sqrt(u / std::max(whole, lambda));
       m.worst = std::sqrt(worst / whole);
     }
-  };
-
-  /// Impulses beyond every load, see `forget_lost_islands`, are no start for the next step.
-  struct Loads {
-    double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
-    long joints = 0;
-
-    template <class V>
-    void add(double w, const V& d, const V& lambda) {
-      least = std::min(least, w);
-      most = std::max(most, w);
-      load = std::max(load, d.norm());
-      response = std::max(response, w * lambda.norm());
-      ++joints;
-    }
-    bool are_exceeded() const { return response * least > double(joints) * most * load; }
   };
 
   void begin(const World& world) {
@@ -203,7 +188,7 @@ class JointVisits {
   [[gnu::noinline]] Sums measure(World& world, Laws& laws, const S& stabilisation, double h) {
     constexpr double far = 0.05;  // of the largest velocity
     Sums sums;
-    Loads loads;
+    inner::ImpulseLoads loads;  // as in `forget_lost_islands`
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
       using Row = Vec<rows_of<decltype(visit)>>;
       if (!visit.answers()) return;
