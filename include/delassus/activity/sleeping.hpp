@@ -108,14 +108,15 @@ class Sleepers {
 
   /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
   bool wake_touched(World& world, Laws& laws, const ContactCache& book, double h) {
-    const double fall = h * h * strongest_gravity(world);
+    double gravity = 0;
+    world.each([&](const auto& set, auto) { gravity = std::max(gravity, Supports::gravity_of(set).norm()); });
     for (const ContactPoint& p : book.points) {
       const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
       const Index group = std::max(group_of(a), group_of(b));
       if (group < 0) continue;
       const Vec3 va = a.velocity + a.angular_velocity.cross(p.point_a - a.pose.position);
       const Vec3 vb = b.velocity + b.angular_velocity.cross(p.point_b - b.pose.position);
-      if (p.gap + h * (vb - va).dot(p.normal) <= fall) call(group);
+      if (p.gap + h * (vb - va).dot(p.normal) <= h * h * gravity) call(group);
     }
     return answer(world, laws);
   }
@@ -231,12 +232,6 @@ class Sleepers {
   }
   template <class M>
   using Bits = std::conditional_t<sizeof(typename M::Scalar) == 8, std::uint64_t, std::uint32_t>;
-
-  static double strongest_gravity(const World& world) {
-    double most = 0;
-    world.each([&](const auto& set, auto) { most = std::max(most, Supports::gravity_of(set).norm()); });
-    return most;
-  }
 
   void look_at_items(const Laws& laws) {
     for (const auto& item : dormant_.items())

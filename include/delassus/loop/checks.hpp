@@ -265,7 +265,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!visits_fit<Policies, Args...>()) return false;
   else if constexpr (!mean_springs_fit<Policies>()) return false;
   else if constexpr (!refinement_fits<Policies>()) return false;
-  else if constexpr (!restitution_acts<typename Policies::Laws>()) return false;
+  else if constexpr (!all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return restitution_acts<L>(); })) return false;
   else if constexpr (!substeps_fit<typename Policies::Scheme, typename Policies::Activity>()) return false;
   else if constexpr (!publishers_are_sound<Policies, Args...>()) return false;
   else return collision_fits<typename Policies::Laws, typename Policies::Collision>();

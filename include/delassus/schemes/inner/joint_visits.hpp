@@ -196,13 +196,11 @@ class JointVisits {
       sums.add(d, Row(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda)), lambda);
       loads.add(visit.trace() / int(Row::RowsAtCompileTime), d, lambda);
     });
-    if (sums.u > far * far * sums.velocity() && loads.are_exceeded()) start_cold(laws);
+    if (sums.u > far * far * sums.velocity() && loads.are_exceeded())
+      each_pool(laws, [&](auto, auto& pool) {
+        for (const Index place : pool.slots.active()) pool.starts_cold[place] = 1;
+      });
     return sums;
-  }
-  static void start_cold(Laws& laws) {
-    each_pool(laws, [&](auto, auto& pool) {
-      for (const Index place : pool.slots.active()) pool.starts_cold[place] = 1;
-    });
   }
 
   template <class Set>

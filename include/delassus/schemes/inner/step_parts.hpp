@@ -48,7 +48,10 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   void end_part(auto& step, int left) {
     if constexpr (sizeof...(L) > 0) add_impulses(step.laws(), step.contact_cache);
     if (left > 0) {
-      go_on(step.world(), left);
+      step.world().each([&](auto& set, auto s) {
+        if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
+      });
+      stay_on_the_way(step.world(), left > 1);
       if constexpr (Laws::has_contacts) follow(step);
       step.last_h = step.h;
     } else {
@@ -61,12 +64,6 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   }
 
  private:
-  void go_on(World& world, int left) {
-    world.each([&](auto& set, auto s) {
-      if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
-    });
-    stay_on_the_way(world, left > 1);
-  }
   void add_impulses(const Laws& laws, const ContactCache& book) {
     each_kept_pool(laws, [&](auto p, const auto& pool) {
       add(std::get<p>(sums_), pool.impulse, [](const auto& x) -> const auto& { return x; });

@@ -93,11 +93,8 @@ class MidpointHold {
   }
   /// λ of a step of h by the forces of the last part.
   void guess(double h) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = std::get<p>(newton_.impulses.pools);
-      lambda = std::get<p>(force_.pools);
-      for (auto& x : lambda) x *= T(h);
-    });
+    newton_.impulses.set_zero();
+    newton_.impulses.add(force_, T(h));
   }
   /// Bodies where the step starts, and rows of there.
   void begin_again(World& world, const Laws& laws, Rows& rows) {

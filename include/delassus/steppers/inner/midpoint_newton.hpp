@@ -165,7 +165,12 @@ class MidpointNewton {
     each_pool(rows, [&](auto p, auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) {
         const auto& lambda = std::get<p>(impulses.pools)[i];
-        world.each([&](auto& set, auto s) { push<p>(set, s, i, lambda); });
+        world.each([&](auto& set, auto s) {
+          each_push<p>(set, s, i, lambda, [&](Index b, const auto& by) {
+            std::get<s>(impulse_)[b] += by;
+            load_ = std::max(load_, double(linear_part(by).norm() / set.mass(b)));
+          });
+        });
         for (int k = 0; k < pool.rows; ++k) {
           pool.compliance[i][k] = std::get<p>(yield_.pools)[i][k];
           soften(pool, i, k, double(std::get<p>(start_.pools)[i][k]), h);
@@ -196,14 +201,6 @@ class MidpointNewton {
       if (!set.moves(b)) continue;
       f(b, typename Set::Velocity(blocks.H[e].transpose() * lambda));
     }
-  }
-  /// impulse += Hᵀλ.
-  template <int p, class Set, class S, class Lambda>
-  void push(const Set& set, S s, Index i, const Lambda& lambda) {
-    each_push<p>(set, s, i, lambda, [&](Index b, const auto& by) {
-      std::get<s>(impulse_)[b] += by;
-      load_ = std::max(load_, double(linear_part(by).norm() / set.mass(b)));
-    });
   }
   /// The matrices of the bodies where `balance` was: the force at each end of an item stiffens its body.
   void differentiate(World& world, const Laws& laws, const Rows& rows, double h) {

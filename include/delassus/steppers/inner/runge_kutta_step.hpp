@@ -181,7 +181,13 @@ class RungeKuttaStep {
         last = size;
         equalities_.solve(
             rows, [&](auto p, Index i) { return rows.template pool<p>().phi[i]; },
-            [&](auto p, Index i, const auto& change) { displace<p>(world, rows, i, change); });
+            [&](auto p, Index i, const auto& change) {
+              world.each([&](auto& set, auto s) {
+                const auto& blocks = std::get<s>(rows.template pool<p>().sets);
+                for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+                  if (set.moves(blocks.block[e])) set.displace(blocks.block[e], blocks.G[e] * change);
+              });
+            });
       }
       for (int pass = 0; pass < 2; ++pass)
         equalities_.solve(
@@ -190,14 +196,6 @@ class RungeKuttaStep {
               Equalities<Rows>::template push<p>(rows, i, change, inner::next_of(world));
             });
     }
-  }
-  template <int p, class Change>
-  static void displace(World& world, const Rows& rows, Index i, const Change& change) {
-    world.each([&](auto& set, auto s) {
-      const auto& blocks = std::get<s>(rows.template pool<p>().sets);
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-        if (set.moves(blocks.block[e])) set.displace(blocks.block[e], blocks.G[e] * change);
-    });
   }
 
   typename World::template PerSet<inner::PathOf> paths_;

@@ -28,11 +28,6 @@ void kick(const auto& set, auto& p, double h) {
   times(p, h);
 }
 
-/// The step has put the bodies where they are; their velocity is v_next.
-void finish_step(auto& set, double h) {
-  if constexpr (requires { set.finish_step(h); }) set.finish_step(h);
-}
-
 /// Linearize to Correct by the state of the integrator, whose solve(world, laws, rows, integrator, h) leaves v_next and λ,
 /// and returns a SolveReport.
 void solve_at_once(auto& step) {
