@@ -5,12 +5,8 @@
 #include <delassus/activity/inner/dormant_stages.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/rows/islands.hpp>
-#include <delassus/solvers/solve_report.hpp>
+#include <delassus/rows/row_system.hpp>
 #include <delassus/step/contact_cache.hpp>
-
-#include <algorithm>
-#include <span>
 
 namespace delassus {
 
@@ -64,7 +60,7 @@ class SwitchedOff {
     velocity_[group].template head<Set::width>() = set.velocity()[block].template cast<double>();
     dormant_.add(set, s, block, group);
     set.set_fixed(block, true);
-    for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, group); });
+    each_pool(laws, [&](auto p, auto& pool) { dormant_.add_items(world, pool, p, group); });
   }
 
   // --- what the stages call ----------------------------------------------------------------------------------------
@@ -86,12 +82,10 @@ class SwitchedOff {
       });
     return true;
   }
-  bool wake_touched(World&, Laws&, const ContactCache&, double) const { return false; }
-  void drop_points(ContactCache&) const {}
-  template <class Rows, int pools>
-  void watch(const HandPicked&, World&, const Rows&, const Islands<pools>&, std::span<const SolveReport>, double) const {}
-  template <int pools>
-  void settle(const HandPicked&, World&, Laws&, const Islands<pools>&) const {}
+  bool wake_touched(const auto&...) const { return false; }
+  void drop_points(const auto&...) const {}
+  void watch(const auto&...) const {}
+  void settle(const auto&...) const {}
 
   void memory(auto& archive) { archive(dormant_, velocity_); }
 

@@ -93,12 +93,8 @@ class Sleepers {
   /// Detect: sleepers near an awake body are obstacles. False when nobody who can move is awake.
   bool add_obstacles(const World& world, ContactCache& book) {
     Aabb near;
-    for (const Collider& c : book.colliders) {
-      if (!c.is_movable || c.shape.kind == ShapeKind::half_space) continue;
-      const Aabb box = tight_box(c.shape, c.pose);
-      const double reach = 0.5 * box.sizes().maxCoeff();
-      near.extend(Aabb(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach)));
-    }
+    for (const Collider& c : book.colliders)
+      if (c.is_movable) near.extend(Dormant<World, Laws>::box_of(c.shape, c.pose));
     if (is_empty(near)) return false;
     for (const auto& body : dormant_.bodies())
       if (!is_empty(body.box) && !is_apart(body.box, near))
@@ -185,7 +181,7 @@ class Sleepers {
     if (!any) return;
     for (const Index g : group)
       if (g >= 0)
-        for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, g); });
+        each_pool(laws, [&](auto p, auto& pool) { dormant_.add_items(world, pool, p, g); });
   }
 
   void memory(auto& archive) { archive(dormant_, quiet_, supports_); }
@@ -256,8 +252,7 @@ class Sleepers {
   template <class Rows, int pools>
   void keep_awake_where_driven(const World& world, const Rows& rows, const Islands<pools>& islands) {
     for (Index k = 0; k < islands.count(); ++k)
-      for_each_index<pools>([&](auto p) {
-        const auto& pool = rows.template pool<p>();
+      each_pool(rows, [&](auto p, const auto& pool) {
         for (const Index i : islands.items(p, k))
           world.each([&](const auto& set, auto s) {
             const auto& blocks = std::get<s>(pool.sets);

@@ -53,8 +53,7 @@ namespace inner {
 template <class... Args>
 struct loop_policies {
   static constexpr bool are_sound = loop_is_sound<Policies<Args...>, Args...>();
-  using type = typename std::conditional_t<are_sound, std::type_identity<SoundPolicies<Args...>>,
-                                  std::type_identity<UnsoundPolicies<Args...>>>::type;
+  using type = std::conditional_t<are_sound, SoundPolicies<Args...>, UnsoundPolicies<Args...>>;
 };
 
 }  // namespace inner

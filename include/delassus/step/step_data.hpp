@@ -48,17 +48,10 @@ struct RowData {
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
 struct NoRowData {};
 
-namespace inner {
-
-template <class P>
-using RowDataOf = typename std::conditional_t<P::has_rows, std::type_identity<RowData<P>>, std::type_identity<NoRowData>>::type;
-
-}  // namespace inner
-
 /// The plain stages write the members; what else a policy keeps is its `State`. P has the types of all policies of the loop,
 /// see `Policies`. A scheme gets it as it is, a listener const.
 template <class P>
-struct StepData : inner::RowDataOf<P> {
+struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   using Policies = P;
   using WorldType = typename P::World;
   using Laws = typename P::Laws;

@@ -96,8 +96,7 @@ void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, Contac
   for (Index k = 0; k < islands.count(); ++k) {
     if (reports[k].status < Status::max_iterations || reports[k].measure.residual <= far) continue;
     inner::ImpulseLoads loads;
-    for_each_index<pools>([&](auto p) {
-      const auto& pool = rows.template pool<p>();
+    each_pool(rows, [&](auto p, const auto& pool) {
       for (const Index i : islands.items(p, k))
         loads.add(double(W.template diagonal<p>(i).trace()) / Rows::template rows_of<p>, pool.d[i], pool.lambda[i]);
     });

@@ -39,11 +39,10 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
 /// λ ← λ − λ₀ for the corrective motion; `predicted` keeps the total.
 template <class Rows, class Kept>
 void subtract_predicted(Rows& rows, Kept& predicted) {
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& lambda = rows.template pool<p>().lambda;
+  each_pool(rows, [&](auto p, auto& pool) {
     auto& kept = std::get<p>(predicted.pools);
-    lambda.swap(kept);  // λ₀ in λ, the total kept
-    for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] = kept[i] - lambda[i];
+    pool.lambda.swap(kept);  // λ₀ in λ, the total kept
+    for (Index i = 0; i < pool.items(); ++i) pool.lambda[i] = kept[i] - pool.lambda[i];
   });
 }
 

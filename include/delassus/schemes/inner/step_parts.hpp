@@ -26,10 +26,9 @@ namespace delassus {
 template <class World, class Laws>
 class StepParts;
 
-template <class... Sets, class... L>
-class StepParts<World<Sets...>, Constraints<L...>> {
+template <class World, class... L>
+class StepParts<World, Constraints<L...>> {
  public:
-  using World = delassus::World<Sets...>;
   using Laws = Constraints<L...>;
 
   /// From here on h is h/count.
@@ -133,7 +132,7 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   long steps_ = 0;
   std::tuple<Array<Vec<L::rows>>...> sums_;
   std::vector<Vec3> pushed_;  ///< impulses of the contacts, N·s
-  std::tuple<Array<typename Sets::Velocity>...> loads_;
+  typename World::template PerSet<VelocitiesOf> loads_;
   bool is_first_ = true;  ///< no part's impulses are in the sums
 };
 

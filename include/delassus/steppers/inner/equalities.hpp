@@ -97,8 +97,8 @@ class Equalities {
         if (is_soft(pool, i, k)) pool.compliance[i][k] = T(1e30);
       });
       system_.begin();
-      for_each_index<Rows::pool_count>([&](auto p) {
-        for (Index i = 0; i < rows.template pool<p>().items(); ++i) system_.template take<p>(rows, i, true);
+      each_pool(rows, [&](auto p, const auto& pool) {
+        for (Index i = 0; i < pool.items(); ++i) system_.template take<p>(rows, i, true);
       });
       system_.analyse(0);
       return system_.factor(1e-12);
@@ -139,9 +139,8 @@ class Equalities {
   }
   template <class To>
   static void push_all(const Rows& rows, const Impulses<Rows>& lambda, To&& to) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i)
-        push<p>(rows, i, std::get<p>(lambda.pools)[i], to);
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i) push<p>(rows, i, std::get<p>(lambda.pools)[i], to);
     });
   }
 

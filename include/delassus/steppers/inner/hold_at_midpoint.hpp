@@ -26,7 +26,10 @@ class MidpointHold {
   /// every body stays where it was: what it misses would come back as energy.
   template <class I>
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
-    keep(world);
+    world.each([&](auto& set, auto s) {
+      set.state().keep_poses();
+      std::get<s>(velocity_) = set.velocity();
+    });
     for (auto* all : {&newton_.impulses, &force_, &total_}) all->resize_like(rows);
     total_.set_zero();
     for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(rows.template pool<p>().lambda, h); });
@@ -105,12 +108,6 @@ class MidpointHold {
     linearize(world, laws, rows);
     total_.set_zero();
     report_ = {.factorizations = report_.factorizations, .ended_by = "Newton"};
-  }
-  void keep(World& world) {
-    world.each([&](auto& set, auto s) {
-      set.state().keep_poses();
-      std::get<s>(velocity_) = set.velocity();
-    });
   }
   /// v of the end becomes v_next, v that of the start. Bodies without impulses are where they were, for
   /// `arrive` to move them; so are all when the step could not be made, which v_next says by being no number.

@@ -204,8 +204,8 @@ class MidpointNewton {
   }
   /// The matrices of the bodies where `balance` was: the force at each end of an item stiffens its body.
   void differentiate(World& world, const Laws& laws, const Rows& rows, double h) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i)
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i)
         world.each([&](auto& set, auto s) {
           each_push<p>(set, s, i, std::get<p>(impulses.pools)[i], [&](Index b, const auto& by) {
             each_end(laws.template pool<p>().item(i), [&](const Anchor& end) {
@@ -245,8 +245,8 @@ class MidpointNewton {
   void assemble(World& world, Rows& rows, const Answer& answer) {
     inner::answer_ends(world, rows, middle_, answer);
     system_.begin();
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i) system_.template take<p>(rows, i, true);
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i) system_.template take<p>(rows, i, true);
     });
     system_.analyse(0);
   }
