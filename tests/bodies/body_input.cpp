@@ -144,11 +144,11 @@ TEST_CASE("a spring of negative stiffness, damping or length is refused") {
   const auto a = set.add({.mass = 1.0}), b = set.add({.position = {1, 0, 0}, .mass = 1.0});
   for (const double bad : {-1.0, no_number, infinity}) {
     CHECK_THROWS_WITH(set.add_spring(a, b, bad), "delassus: particle #0: spring stiffness " +
-                                                     inner::text(bad) + " must be finite and >= 0 N/m");
+                                                     inner::text(bad) + " N/m must be finite and >= 0");
     CHECK_THROWS_WITH(set.add_spring(a, b, 1, bad), "delassus: particle #0: spring damping " +
-                                                        inner::text(bad) + " must be finite and >= 0 N·s/m");
+                                                        inner::text(bad) + " N·s/m must be finite and >= 0");
     CHECK_THROWS_WITH(set.add_spring(a, b, 1, 0, bad), "delassus: particle #0: rest length " +
-                                                           inner::text(bad) + " must be finite and >= 0 m");
+                                                           inner::text(bad) + " m must be finite and >= 0");
   }
   CHECK_THROWS_WITH(set.add_spring(a, a, 1), Contains("a spring needs two different ends"));
   CHECK_THROWS_WITH(set.add_spring(a, Vec3(no_number, 0, 0), 1, 0, 0.0),

@@ -1,4 +1,4 @@
-// expect: delassus: FullNewton moves bodies without joints; take the laws out, or use ImplicitEuler
+// expect: delassus: Bdf2, FullNewton, GeneralizedAlpha and Newmark move bodies without joints; take the laws out, or use ImplicitEuler or ImplicitMidpoint
 #include <delassus/delassus.hpp>
 #include <delassus/fem/rods.hpp>
 #include <delassus/steppers/full_newton.hpp>

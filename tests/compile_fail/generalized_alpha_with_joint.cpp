@@ -1,4 +1,4 @@
-// expect: delassus: GeneralizedAlpha moves bodies without joints; take the laws out, or use ImplicitMidpoint
+// expect: delassus: Bdf2, FullNewton, GeneralizedAlpha and Newmark move bodies without joints; take the laws out, or use ImplicitEuler or ImplicitMidpoint
 #include <delassus/delassus.hpp>
 #include <delassus/steppers/generalized_alpha.hpp>
 

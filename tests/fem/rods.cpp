@@ -150,7 +150,7 @@ TEST_CASE("a rod that cannot be one is refused, and says why") {
   refused([](Rod& r) { r.young = -1; }, "rod #0: Young's modulus -1 Pa must be finite and > 0");
   refused([](Rod& r) { r.poisson = 0.6; }, "rod #0: Poisson's ratio 0.6 must lie in (-1, 0.5]");
   refused([](Rod& r) { r.density = 0; }, "rod #0: density 0 kg/m³ must be finite and > 0");
-  refused([&](Rod& r) { r.velocity[0] = nan; }, "rod #0: position, velocity or up is not finite");
+  refused([&](Rod& r) { r.velocity[0] = nan; }, "rod #0: position or velocity is not finite");
   refused([](Rod& r) { r.orientation = Quat(2, 0, 0, 0); }, "rod #0: orientation is not a unit quaternion");
   refused([](Rod& r) { r.contact_radius = -1; }, "rod #0: contact_radius -1 m must be finite and >= 0");
   refused([](Rod& r) { r.contact_radius = 0.01, r.collides_with = ~0u; }, "would collide with each other");

@@ -5,12 +5,8 @@
 #include <delassus/activity/inner/dormant_stages.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/rows/islands.hpp>
-#include <delassus/solvers/solve_report.hpp>
+#include <delassus/rows/row_system.hpp>
 #include <delassus/step/contact_cache.hpp>
-
-#include <algorithm>
-#include <span>
 
 namespace delassus {
 
@@ -64,7 +60,7 @@ class SwitchedOff {
     velocity_[group].template head<Set::width>() = set.velocity()[block].template cast<double>();
     dormant_.add(set, s, block, group);
     set.set_fixed(block, true);
-    for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, group); });
+    each_pool(laws, [&](auto p, auto& pool) { dormant_.add_items(world, pool, p, group); });
   }
 
   // --- what the stages call ----------------------------------------------------------------------------------------
@@ -74,26 +70,22 @@ class SwitchedOff {
     for (std::size_t k = 0; k < dormant_.bodies().size();) {
       const auto body = dormant_.bodies()[k];
       bool is_there = false;
-      world.each([&](const auto& set, auto s) {
-        if (s == body.set) is_there = Dormant<World, Laws>::is_same(set, body);
-      });
+      world.visit(body.set, [&](const auto& set, auto) { is_there = Dormant<World, Laws>::is_same(set, body); });
       if (is_there) ++k;
       else dormant_.wake(world, laws, [&](Index g) { return g == body.group; });
     }
   }
   bool add_obstacles(const World& world, ContactCache& book) const {
     for (const auto& body : dormant_.bodies())
-      world.each([&](const auto& set, auto s) {
-        if (s == body.set && set.has_collider(body.block)) book.add(set, s, body.block, false);
+      world.visit(body.set, [&](const auto& set, auto s) {
+        if (set.has_collider(body.block)) book.add(set, s, body.block, false);
       });
     return true;
   }
-  bool wake_touched(World&, Laws&, const ContactCache&, double) const { return false; }
-  void drop_points(ContactCache&) const {}
-  template <class Rows, int pools>
-  void watch(const HandPicked&, World&, const Rows&, const Islands<pools>&, std::span<const SolveReport>, double) const {}
-  template <int pools>
-  void settle(const HandPicked&, World&, Laws&, const Islands<pools>&) const {}
+  bool wake_touched(const auto&...) const { return false; }
+  void drop_points(const auto&...) const {}
+  void watch(const auto&...) const {}
+  void settle(const auto&...) const {}
 
   void memory(auto& archive) { archive(dormant_, velocity_); }
 

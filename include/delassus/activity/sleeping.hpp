@@ -73,8 +73,6 @@ class Sleepers {
 
   /// Begin: whatever is not as it was when its group fell asleep wakes that group.
   void begin(World& world, Laws& laws, double h) {
-    called_.assign(std::size_t(called_.size()), 0);
-    called_any_ = false;
     supports_.look_at_gravity(world, [&](Index set) {
       for (const auto& body : dormant_.bodies())
         if (body.set == set) call(body.group);
@@ -85,8 +83,8 @@ class Sleepers {
     });
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
-      world.each([&](const auto& set, auto s) {
-        if (s == body.set && (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body))) call(body.group);
+      world.visit(body.set, [&](const auto& set, auto) {
+        if (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body)) call(body.group);
       });
     look_at_items(laws);
     answer(world, laws);
@@ -95,31 +93,26 @@ class Sleepers {
   /// Detect: sleepers near an awake body are obstacles. False when nobody who can move is awake.
   bool add_obstacles(const World& world, ContactCache& book) {
     Aabb near;
-    for (const Collider& c : book.colliders) {
-      if (!c.is_movable || c.shape.kind == ShapeKind::half_space) continue;
-      const Aabb box = tight_box(c.shape, c.pose);
-      const double reach = 0.5 * box.sizes().maxCoeff();
-      near.extend(Aabb(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach)));
-    }
+    for (const Collider& c : book.colliders)
+      if (c.is_movable) near.extend(Dormant<World, Laws>::box_of(c.shape, c.pose));
     if (is_empty(near)) return false;
     for (const auto& body : dormant_.bodies())
       if (!is_empty(body.box) && !is_apart(body.box, near))
-        world.each([&](const auto& set, auto s) {
-          if (s == body.set) book.add(set, s, body.block, false);
-        });
+        world.visit(body.set, [&](const auto& set, auto s) { book.add(set, s, body.block, false); });
     return true;
   }
 
   /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
   bool wake_touched(World& world, Laws& laws, const ContactCache& book, double h) {
-    const double fall = h * h * strongest_gravity(world);
+    double gravity = 0;
+    world.each([&](const auto& set, auto) { gravity = std::max(gravity, Supports::gravity_of(set).norm()); });
     for (const ContactPoint& p : book.points) {
       const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
       const Index group = std::max(group_of(a), group_of(b));
       if (group < 0) continue;
       const Vec3 va = a.velocity + a.angular_velocity.cross(p.point_a - a.pose.position);
       const Vec3 vb = b.velocity + b.angular_velocity.cross(p.point_b - b.pose.position);
-      if (p.gap + h * (vb - va).dot(p.normal) <= fall) call(group);
+      if (p.gap + h * (vb - va).dot(p.normal) <= h * h * gravity) call(group);
     }
     return answer(world, laws);
   }
@@ -188,7 +181,7 @@ class Sleepers {
     if (!any) return;
     for (const Index g : group)
       if (g >= 0)
-        for_each_index<Laws::pool_count>([&](auto p) { dormant_.add_items(world, laws.template pool<p>(), p, g); });
+        each_pool(laws, [&](auto p, auto& pool) { dormant_.add_items(world, pool, p, g); });
   }
 
   void memory(auto& archive) { archive(dormant_, quiet_, supports_); }
@@ -236,12 +229,6 @@ class Sleepers {
   template <class M>
   using Bits = std::conditional_t<sizeof(typename M::Scalar) == 8, std::uint64_t, std::uint32_t>;
 
-  static double strongest_gravity(const World& world) {
-    double most = 0;
-    world.each([&](const auto& set, auto) { most = std::max(most, Supports::gravity_of(set).norm()); });
-    return most;
-  }
-
   void look_at_items(const Laws& laws) {
     for (const auto& item : dormant_.items())
       each_kept_pool(laws, [&](auto p, const auto& pool) {
@@ -265,8 +252,7 @@ class Sleepers {
   template <class Rows, int pools>
   void keep_awake_where_driven(const World& world, const Rows& rows, const Islands<pools>& islands) {
     for (Index k = 0; k < islands.count(); ++k)
-      for_each_index<pools>([&](auto p) {
-        const auto& pool = rows.template pool<p>();
+      each_pool(rows, [&](auto p, const auto& pool) {
         for (const Index i : islands.items(p, k))
           world.each([&](const auto& set, auto s) {
             const auto& blocks = std::get<s>(pool.sets);

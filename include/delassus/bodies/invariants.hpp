@@ -13,31 +13,12 @@ namespace delassus {
 template <class T>
 double kinetic_energy(const BasicRigidBodies<T>& set) {
   double sum = 0;
-  for (const Index b : alive(set)) {
-    if (!set.moves(b)) continue;
+  inner::each_moving(set, [&](Index b) {
     const Vec<6> v = set.velocity()[b].template cast<double>();
     const Vec3 rate = set.pose(b).rotation.transpose() * angular_part(v);
     sum += 0.5 * double(set.mass(b)) * linear_part(v).squaredNorm() +
            0.5 * rate.dot(Mat3(set.inertia(b).template cast<double>()) * rate);
-  }
-  return sum;
-}
-
-/// −m g·x, J, of all dynamic bodies.
-template <class T>
-double potential_energy(const BasicRigidBodies<T>& set) {
-  double sum = 0;
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
-  return sum;
-}
-
-/// Σ m v, kg·m/s.
-template <class T>
-Vec3 momentum(const BasicRigidBodies<T>& set) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum += double(set.mass(b)) * Vec3(linear_part(set.velocity()[b]).template cast<double>());
+  });
   return sum;
 }
 
@@ -45,14 +26,13 @@ Vec3 momentum(const BasicRigidBodies<T>& set) {
 template <class T>
 Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : alive(set)) {
-    if (!set.moves(b)) continue;
+  inner::each_moving(set, [&](Index b) {
     const Pose pose = set.pose(b);
     const Vec<6> v = set.velocity()[b].template cast<double>();
     const Vec3 rate = pose.rotation.transpose() * angular_part(v);
-    sum += pose.position.cross(double(set.mass(b)) * linear_part(v)) +
+    sum += pose.position.cross(inner::momentum_of(set, b)) +
            pose.rotation * (Mat3(set.inertia(b).template cast<double>()) * rate);
-  }
+  });
   return sum;
 }
 

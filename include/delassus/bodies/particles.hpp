@@ -1,14 +1,12 @@
 /// Point masses as a structure of arrays, with springs between them and to points of the world.
 #pragma once
 
-#include <delassus/bodies/inner/body_storage.hpp>
 #include <delassus/bodies/inner/particle_path.hpp>
+#include <delassus/bodies/inner/point_storage.hpp>
 #include <delassus/bodies/springs.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
-#include <delassus/geometry/shape.hpp>
 #include <delassus/math/fits.hpp>
-#include <delassus/math/pose.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <concepts>
@@ -33,13 +31,13 @@ struct Particle {
 
 /// q = x, v = ẋ. f = m g + loads + springs; A = mass M + damping D + stiffness K of the springs (`Springs`).
 template <class T>
-class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
-  using BodyStorage = inner::BodyStorage<BasicParticles, T, 3>;
+class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
+  using PointStorage = inner::PointStorage<BasicParticles, T>;
 
  public:
   using Body = Particle;
-  using typename BodyStorage::Handle, typename BodyStorage::Velocity;
-  using BodyStorage::gravity, BodyStorage::v_free, BodyStorage::v_next, BodyStorage::who;
+  using typename PointStorage::Handle, typename PointStorage::Velocity;
+  using PointStorage::gravity, PointStorage::moves, PointStorage::v_free, PointStorage::v_next, PointStorage::who;
   static constexpr const char* kind = "particle";
 
   BasicParticles() = default;
@@ -75,9 +73,6 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
     springs_.add({i, -1, point, stiffness, damping, rest.value_or(now)}, who(i));
   }
 
-  /// Adds a force (N) that acts during the next step only.
-  void apply_force(Handle particle, const Vec3& force) { load_[checked(particle)] += force.template cast<T>(); }
-
   void set_velocity(Handle particle, const Vec3& velocity) {
     const Index b = checked(particle);
     check_velocity(velocity, b);
@@ -92,15 +87,10 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
 
   // --- reading -------------------------------------------------------------------------------------------------
 
-  Vec3 position(Handle particle) const { return x_[checked(particle)].template cast<double>(); }
-  using BodyStorage::velocity;
-  Vec3 velocity(Handle particle) const { return v_[checked(particle)].template cast<double>(); }
-  T mass(Index b) const { return mass_[b]; }
   double spring_energy() const { return springs_.energy(x_); }
 
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
 
-  bool moves(Index b) const { return inverse_mass_[b] > T(0); }
   /// Takes a particle's answer to impulses away (A⁻¹ = 0), or gives it back.
   void set_fixed(Index b, bool is_held) { inverse_mass_[b] = is_held || !(mass_[b] > T(0)) ? T(0) : T(1) / mass_[b]; }
   /// Springs tie particles together outside of every island: while there are any, none sleeps.
@@ -120,11 +110,6 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
   /// p += s ∂f/∂q v: what the forces change while the set moves with its present velocity.
   void add_stiffness_times_velocity(std::span<Velocity> p, double s) const {
     springs_.add_stiffness_times_velocity(p, x_, v_, T(s));
-  }
-
-  /// p += s M v.
-  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
-    for (const Index b : slots_.active()) p[b] += T(s) * mass_[b] * v_[b];
   }
 
   /// True when A has entries between particles: then only `solve` is right, never `solve_block`.
@@ -148,7 +133,6 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
   Velocity along(const Anchor&, int, const Vec3&, const Vec3& direction) const { return direction.template cast<T>(); }
   Vec3 point(const Anchor& a) const { return x_[a.block].template cast<double>(); }
 
-  void begin_step(double) {}
   /// x₊ = x + h v_next. A particle whose x₊ is not finite stays where it is.
   void advance(double h) { advance_with(h, T(0)); }
   /// x₊ = x + h (v + v_next)/2.
@@ -192,19 +176,6 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
   /// True when no spring joins anything: every particle moves by itself.
   bool is_separable() const { return springs_.is_empty(); }
 
-  /// Moves particle b by a small displacement (m) without touching its velocity.
-  void displace(Index b, const Velocity& by) {
-    const Velocity moved = x_[b] + by;
-    if (is_finite(moved)) x_[b] = moved;
-  }
-
-  void shift(double h) {
-    shifted_x_ = x_;
-    for (const Index b : slots_.active())
-      if (moves(b)) x_[b] += T(h) * v_[b];
-  }
-  void restore() { x_ = shifted_x_; }
-
   /// What a scheme that finds x and v of the end itself does with each particle; it leaves x there, and v_next.
   using Path = inner::ParticlePath<T>;
   auto& state() { return x_; }
@@ -217,13 +188,9 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
     }
   }
 
-  bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
-  Shape shape(Index b) const { return Sphere{radius_[b]}; }
-  Pose pose(Index b) const { return {x_[b].template cast<double>(), Mat3::Identity()}; }
-
   /// What outlives a step; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    BodyStorage::memory(archive);
+    PointStorage::memory(archive);
     archive(springs_, x_, mass_, inverse_mass_, radius_);
   }
 
@@ -241,11 +208,9 @@ class BasicParticles : public inner::BodyStorage<BasicParticles<T>, T, 3> {
     for (const Index b : slots_.active()) blocks.advance(b, v_next[b], h, old_share);
   }
 
-  using BodyStorage::checked, BodyStorage::slots_, BodyStorage::quarantine_, BodyStorage::v_, BodyStorage::load_;
+  using PointStorage::checked, PointStorage::slots_, PointStorage::quarantine_, PointStorage::v_, PointStorage::load_;
+  using PointStorage::x_, PointStorage::mass_, PointStorage::inverse_mass_, PointStorage::radius_;
   Springs<T> springs_;
-  Array<Velocity> x_, shifted_x_;
-  Array<T> mass_, inverse_mass_;
-  Array<double> radius_;
 };
 
 using Particles = BasicParticles<double>;
@@ -264,12 +229,8 @@ typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& partic
     DELASSUS_EXPECT(inner::has_inverse<T>(mass), name + ": mass " + inner::without_inverse<T>(inner::text(mass), "kg"));
   }
   inner::expect_not_negative(name + ": radius", particle.radius);
-  const Index b = BodyStorage::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
-                                                           : Velocity(particle.velocity.template cast<T>()));
-  const std::size_t n = std::size_t(slots_.size());
-  for (auto* array : {&x_, &shifted_x_}) array->resize(n);
-  for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
-  radius_.resize(n);
+  const Index b = PointStorage::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
+                                                            : Velocity(particle.velocity.template cast<T>()));
   x_[b] = particle.position.template cast<T>();
   mass_[b] = particle.is_fixed ? T(0) : T(*particle.mass);
   inverse_mass_[b] = particle.is_fixed ? T(0) : T(1 / *particle.mass);

@@ -35,12 +35,9 @@ class Springs {
   using Mat3 = Mat<3, 3, DoubleIn<T>>;
 
   void add(const Spring& spring, const std::string& who) {
-    DELASSUS_EXPECT(std::isfinite(spring.stiffness) && spring.stiffness >= 0,
-                    who + ": spring stiffness " + inner::text(spring.stiffness) + " must be finite and >= 0 N/m");
-    DELASSUS_EXPECT(std::isfinite(spring.damping) && spring.damping >= 0,
-                    who + ": spring damping " + inner::text(spring.damping) + " must be finite and >= 0 N·s/m");
-    DELASSUS_EXPECT(std::isfinite(spring.rest) && spring.rest >= 0,
-                    who + ": rest length " + inner::text(spring.rest) + " must be finite and >= 0 m");
+    inner::expect_not_negative(who + ": spring stiffness", spring.stiffness, "N/m");
+    inner::expect_not_negative(who + ": spring damping", spring.damping, "N·s/m");
+    inner::expect_not_negative(who + ": rest length", spring.rest, "m");
     DELASSUS_EXPECT(spring.rest <= 1e20, who + ": rest length " + inner::text(spring.rest) + " must be <= 1e20 m");
     inner::check_soft_number(spring.stiffness, (who + ": spring stiffness").c_str(), "N/m");
     inner::check_soft_number(spring.damping, (who + ": spring damping").c_str(), "N·s/m");

@@ -1,6 +1,7 @@
 /// The bodies of a simulation: a tuple of body sets.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/roles.hpp>
@@ -50,7 +51,9 @@ class World {
   template <int s>
   static constexpr int width_of =
       s < 0 ? 0 : std::array<int, std::size_t(set_count) + 1>{Sets::width..., 0}[s < 0 ? 0 : s];
-  using Tuple = std::tuple<Sets...>;
+  /// One F<Set> for every set.
+  template <template <class> class F>
+  using PerSet = std::tuple<F<Sets>...>;
   using Scalar = typename inner::scalar_of<Sets...>::type;
 
   World()
@@ -68,13 +71,11 @@ class World {
   }
   template <class Set>
   Set& get() {
-    if constexpr (has_one<Set>()) return std::get<Set>(sets_);
-    else return inner::no_set<Set>();
+    return the<Set>(sets_);
   }
   template <class Set>
   const Set& get() const {
-    if constexpr (has_one<Set>()) return std::get<Set>(sets_);
-    else return inner::no_set<Set>();
+    return the<Set>(sets_);
   }
 
   /// f(set, std::integral_constant<int, s>) for every set, in order.
@@ -170,28 +171,33 @@ class World {
                   "Debris>, and ask for it by that name");
     return count == 1;
   }
+  template <class Set>
+  static auto& the(auto& sets) {
+    if constexpr (has_one<Set>())
+      return std::get<Set>(sets);
+    else
+      return inner::no_set<Set>();
+  }
   /// Of an anchor that no loop has seen: the number of its set is found first.
   [[gnu::cold, gnu::noinline]] Vec3 point_of_new(Anchor a) const {
     resolve(a, "point");
-    Vec3 x = a.local;
-    visit(a.set, [&](const auto& set, auto) { x = set.point(a); });
-    return x;
+    return point(a);
   }
   [[gnu::cold, gnu::noinline]] Quat frame_of_new(Anchor a) const {
     resolve(a, "frame");
-    Quat q = a.frame;
-    visit(a.set, [&](const auto& set, auto) {
-      if constexpr (requires { set.frame(a); }) q = set.frame(a);
-    });
-    return q;
+    return frame(a);
   }
   template <class Self, class F, int... s>
   static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {
     (f(std::get<s>(self.sets_), std::integral_constant<int, s>{}), ...);
   }
 
-  Tuple sets_;
+  std::tuple<Sets...> sets_;
 };
+
+/// One velocity for every block of a set.
+template <class Set>
+using VelocitiesOf = Array<typename Set::Velocity>;
 
 /// The set of type S of a world.
 template <class S, class... Sets>

@@ -1,12 +1,11 @@
 /// Deformable bodies of finite elements, their nodes a structure of arrays.
 #pragma once
 
+#include <delassus/bodies/inner/point_storage.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/fem/inner/bodies_of_nodes.hpp>
 #include <delassus/fem/inner/elastic_body.hpp>
 #include <delassus/fem/soft_body.hpp>
-#include <delassus/geometry/shape.hpp>
-#include <delassus/math/pose.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -21,14 +20,13 @@ namespace delassus {
 ///
 /// Blocks are nodes. E is the element.
 template <class E, ElasticMaterial M, class T = double>
-class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M, typename E::Mesh>,
-                                             inner::ElasticBody<E, M, T>> {
-  using Nodes =
-      inner::BodiesOfNodes<BasicFem, T, 3, SoftBody<M, typename E::Mesh>, inner::ElasticBody<E, M, T>>;
+class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, inner::PointStorage<BasicFem<E, M, T>, T>,
+                                             SoftBody<M, typename E::Mesh>, inner::ElasticBody<E, M, T>> {
+  using Nodes = typename BasicFem::BodiesOfNodes;
 
  public:
   using Mesh = typename E::Mesh;
-  using Nodes::gravity, Nodes::name, Nodes::v_free, Nodes::v_next;
+  using Nodes::gravity, Nodes::moves, Nodes::name, Nodes::v_free, Nodes::v_next;
   using typename Nodes::Body, typename Nodes::BodyHandle, typename Nodes::Handle, typename Nodes::Velocity;
   static constexpr const char* body_kind = "soft body";
 
@@ -44,8 +42,6 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   /// Adds a body; throws InvalidArgument when it cannot be one.
   BodyHandle add(const Body& body);
 
-  /// Adds a force (N) that acts during the next step only.
-  void apply_force(Handle node, const Vec3& force) { load_[checked(node)] += force.template cast<T>(); }
   void set_velocity(Handle node, const Vec3& velocity) {
     const Index b = checked(node);
     DELASSUS_EXPECT(inner::fits<T>(velocity), name(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));
@@ -62,11 +58,6 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
 
   /// The mesh at rest, where it was put.
   const Mesh& mesh(BodyHandle body) const { return bodies_[this->checked_body(body)].mesh(); }
-  Vec3 position(Handle node) const { return x_[checked(node)].template cast<double>(); }
-  using Nodes::velocity;
-  Vec3 velocity(Handle node) const { return v_[checked(node)].template cast<double>(); }
-  /// The share of the elements around a node, kg; fixed nodes have theirs too.
-  T mass(Index b) const { return mass_[b]; }
   /// ∫Ψ of all bodies where they are now, J. Evaluates every element.
   double elastic_energy() const {
     double sum = 0;
@@ -79,7 +70,6 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
 
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------
 
-  bool moves(Index b) const { return inverse_mass_[b] > T(0); }
   void set_fixed(Index b, bool is_held) { inverse_mass_[b] = is_held || is_fixed_[b] ? T(0) : T(1) / mass_[b]; }
 
   void factor(SystemScale scale) {
@@ -115,9 +105,6 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
         if (moves(blocks[k])) p[blocks[k]] += load_[blocks[k]] + mass_[blocks[k]] * g + body.force()[k];
     });
   }
-  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
-    for (const Index b : slots_.active()) p[b] += T(s) * mass_[b] * v_[b];
-  }
 
   template <int C>
   Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
@@ -149,27 +136,13 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
     return x;
   }
 
-  void begin_step(double) {}
   void advance(double h) { advance_with(h, T(0)); }
   void advance_midpoint(double h) { advance_with(h, T(0.5)); }
-  void displace(Index b, const Velocity& by) {
-    const Velocity moved = x_[b] + by;
-    if (is_finite(moved)) x_[b] = moved;
-  }
-  void shift(double h) {
-    shifted_x_ = x_;
-    for (const Index b : slots_.active())
-      if (moves(b)) x_[b] += T(h) * v_[b];
-  }
-  void restore() { x_ = shifted_x_; }
 
   /// f(k, number, body) for every body, with `body.mesh()` and `body.blocks()`: for who needs surfaces.
   void each_mesh(auto&& f) const {
     for (const Index k : body_slots_.active()) f(k, bodies_[k].number(), bodies_[k]);
   }
-  bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
-  Shape shape(Index b) const { return Sphere{radius_[b]}; }
-  Pose pose(Index b) const { return {x_[b].template cast<double>(), Mat3::Identity()}; }
 
   void memory(auto& archive) {
     Nodes::memory(archive);
@@ -210,9 +183,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, T, 3, SoftBody<M
   using Nodes::bodies_, Nodes::body_slots_, Nodes::scale_;
   using Nodes::checked, Nodes::checked_body, Nodes::body_name, Nodes::each_body;
   using Nodes::slots_, Nodes::quarantine_, Nodes::v_, Nodes::load_, Nodes::is_fixed_;
-  Array<Velocity> x_, shifted_x_;
-  Array<T> mass_, inverse_mass_;
-  Array<double> radius_;
+  using Nodes::x_, Nodes::shifted_x_, Nodes::mass_, Nodes::inverse_mass_, Nodes::radius_;
 };
 
 template <class E, ElasticMaterial M, class T>
@@ -230,10 +201,6 @@ auto BasicFem<E, M, T>::add(const Body& body) -> BodyHandle {
   for (const Vec3& p : mesh.points) {
     const Index b =
         this->take_node(body, k, Index(blocks.size()), Velocity(body.velocity.template cast<T>()));
-    const std::size_t n = std::size_t(slots_.size());
-    for (auto* array : {&x_, &shifted_x_}) array->resize(n);
-    for (auto* array : {&mass_, &inverse_mass_}) array->resize(n);
-    radius_.resize(n);
     x_[b] = p.template cast<T>();
     mass_[b] = T(0);
     radius_[b] = 0;

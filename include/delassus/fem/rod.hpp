@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/index.hpp>
+#include <delassus/fem/inner/place_of_nodes.hpp>
 #include <delassus/fem/rod_section.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/math/rotation.hpp>
@@ -74,15 +75,8 @@ void check_rod(const Rod& rod, const std::string& who) {
   inner::expect_positive(who + ": Young's modulus", rod.young, "Pa");
   inner::expect_number(rod.poisson > -1 && rod.poisson <= 0.5, who + ": Poisson's ratio", rod.poisson,
                        "must lie in (-1, 0.5]");
-  inner::expect_positive(who + ": density", rod.density, "kg/m³");
-  DELASSUS_EXPECT(is_finite(rod.position) && is_finite(rod.velocity) && is_finite(rod.up),
-                  who + ": position, velocity or up is not finite");
-  DELASSUS_EXPECT(fits<T>(rod.velocity), who + ": velocity " + beyond<T>(rod.velocity, "m/s"));
-  DELASSUS_EXPECT(std::abs(rod.orientation.coeffs().norm() - 1) < 1e-6,
-                  who + ": orientation is not a unit quaternion");
-  inner::expect_not_negative(who + ": contact_radius", rod.contact_radius, "m");
-  DELASSUS_EXPECT(rod.contact_radius == 0 || (rod.group & rod.collides_with) == 0,
-                  who + ": its segments would collide with each other; leave its group out of collides_with");
+  DELASSUS_EXPECT(is_finite(rod.up), who + ": up is not finite");
+  check_place_of_nodes<T>(rod, who, "segments");
 }
 
 }  // namespace inner

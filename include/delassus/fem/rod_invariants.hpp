@@ -1,6 +1,7 @@
 /// Energy and momentum of rods.
 #pragma once
 
+#include <delassus/bodies/inner/point_invariants.hpp>
 #include <delassus/fem/rods.hpp>
 #include <delassus/rows/alive.hpp>
 
@@ -10,10 +11,10 @@ namespace inner {
 /// f(b, v, M v) of the nodes that move, in double.
 template <class T, class F>
 void each_momentum(const BasicRods<T>& set, F&& f) {
-  for (const Index b : alive(set))
-    if (set.moves(b))
-      f(b, Vec<6>(set.velocity()[b].template cast<double>()),
-        Vec<6>(set.momentum(b, set.velocity()[b]).template cast<double>()));
+  each_moving(set, [&](Index b) {
+    f(b, Vec<6>(set.velocity()[b].template cast<double>()),
+      Vec<6>(set.momentum(b, set.velocity()[b]).template cast<double>()));
+  });
 }
 
 }  // namespace inner
@@ -23,16 +24,6 @@ template <class T>
 double kinetic_energy(const BasicRods<T>& set) {
   double sum = 0;
   inner::each_momentum(set, [&](Index, const Vec<6>& v, const Vec<6>& p) { sum += 0.5 * v.dot(p); });
-  return sum;
-}
-
-/// ∫Ψ − Σ m g·x, J.
-template <class T>
-double potential_energy(const BasicRods<T>& set) {
-  double sum = set.elastic_energy();
-  inner::each_momentum(set, [&](Index b, const Vec<6>&, const Vec<6>&) {
-    sum -= double(set.mass(b)) * set.gravity.dot(set.position(set.handle(b)));
-  });
   return sum;
 }
 

@@ -17,26 +17,18 @@ struct RodSection {
   double shear = 1;     ///< κ: shear force = κ G A γ
 };
 
-namespace inner {
-/// A size of a section that is no number or below zero would vanish in its even powers.
-inline void check_size(double size, const char* who) {
-  DELASSUS_EXPECT(std::isfinite(size) && size >= 0,
-                  std::string(who) + " " + text(size) + " m must be finite and >= 0");
-}
-}  // namespace inner
-
 /// A full circle, radius in m. κ here and below is Cowper's at ν = 0. Source: docs/references.md,
 /// [Cowper1966].
 inline RodSection round_section(double radius) {
-  inner::check_size(radius, "round_section: radius");
+  inner::expect_not_negative("round_section: radius", radius, "m");  // it would vanish in the even powers
   const double square = radius * radius, second = M_PI / 4 * square * square;
   return {M_PI * square, second, second, 2 * second, 6.0 / 7};
 }
 
 /// A tube, radii in m.
 inline RodSection tube_section(double outer, double inside) {
-  inner::check_size(outer, "tube_section: outer radius");
-  inner::check_size(inside, "tube_section: inner radius");
+  inner::expect_not_negative("tube_section: outer radius", outer, "m");
+  inner::expect_not_negative("tube_section: inner radius", inside, "m");
   const double o = outer * outer, i = inside * inside, second = M_PI / 4 * (o * o - i * i);
   const double m = i / o, sum = (1 + m) * (1 + m);
   return {M_PI * (o - i), second, second, 2 * second, 6 * sum / (7 * sum + 20 * m)};
@@ -48,8 +40,8 @@ inline RodSection tube_section(double outer, double inside) {
 ///
 /// where Σ 1/n⁵ = (31/32) ζ(5) is taken whole. Source: docs/references.md, [TimoshenkoGoodier].
 inline RodSection rectangular_section(double y, double z) {
-  inner::check_size(y, "rectangular_section: side along y");
-  inner::check_size(z, "rectangular_section: side along z");
+  inner::expect_not_negative("rectangular_section: side along y", y, "m");
+  inner::expect_not_negative("rectangular_section: side along z", z, "m");
   const double a = std::fmax(y, z), b = std::fmin(y, z);
   double sum = 31.0 / 32 * 1.0369277551433699263;
   for (int n = 1; n < 16; n += 2) sum -= (1 - std::tanh(n * M_PI * a / (2 * b))) / std::pow(n, 5);

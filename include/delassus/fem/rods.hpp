@@ -26,11 +26,12 @@ namespace delassus {
 /// Neighbours must not be turned by half a turn against each other. An explicit integrator is stable only for
 /// h below the time that sound takes through the shortest segment, and far less for a thin one.
 template <class T>
-class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::ElasticLine<T>> {
-  using Nodes = inner::BodiesOfNodes<BasicRods, T, 6, Rod, inner::ElasticLine<T>>;
+class BasicRods
+    : public inner::BodiesOfNodes<BasicRods<T>, inner::BodyStorage<BasicRods<T>, T, 6>, Rod, inner::ElasticLine<T>> {
+  using Nodes = inner::BodiesOfNodes<BasicRods, inner::BodyStorage<BasicRods, T, 6>, Rod, inner::ElasticLine<T>>;
 
  public:
-  using Nodes::gravity, Nodes::v_free, Nodes::v_next;
+  using Nodes::gravity, Nodes::name, Nodes::v_free, Nodes::v_next;
   using typename Nodes::BodyHandle, typename Nodes::Handle, typename Nodes::Velocity;
   static constexpr const char* body_kind = "rod";
 
@@ -48,38 +49,38 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
 
   /// Adds a force (N) or a moment (N·m) that acts on a node during the next step only.
   void apply_force(Handle node, const Vec3& force) {
-    load_[this->checked(node)] += twist<T>(force.template cast<T>(), Vec<3, T>::Zero());
+    load_[checked(node)] += twist<T>(force.template cast<T>(), Vec<3, T>::Zero());
   }
   void apply_torque(Handle node, const Vec3& torque) {
-    load_[this->checked(node)] += twist<T>(Vec<3, T>::Zero(), torque.template cast<T>());
+    load_[checked(node)] += twist<T>(Vec<3, T>::Zero(), torque.template cast<T>());
   }
   void set_velocity(Handle node, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
-    const Index b = this->checked(node);
+    const Index b = checked(node);
     DELASSUS_EXPECT(inner::fits<T>(velocity),
-                    this->name(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));
+                    name(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));
     DELASSUS_EXPECT(inner::fits<T>(angular_velocity),
-                    this->name(b) + ": angular velocity " + inner::beyond<T>(angular_velocity, "rad/s"));
-    DELASSUS_EXPECT(!this->is_fixed_[b], this->name(b) + ": a fixed node has no velocity; release it first");
+                    name(b) + ": angular velocity " + inner::beyond<T>(angular_velocity, "rad/s"));
+    DELASSUS_EXPECT(!is_fixed_[b], name(b) + ": a fixed node has no velocity; release it first");
     v_[b] = twist<T>(velocity.template cast<T>(), angular_velocity.template cast<T>());
   }
   /// Puts a node somewhere else at once, its velocity unchanged.
   void place(Handle node, const Vec3& position, const Quat& orientation) {
-    const Index b = this->checked(node);
+    const Index b = checked(node);
     DELASSUS_EXPECT(inner::fits<T>(position),
-                    this->name(b) + ": position " + inner::beyond<T>(position, "m"));
+                    name(b) + ": position " + inner::beyond<T>(position, "m"));
     DELASSUS_EXPECT(std::abs(orientation.coeffs().norm() - 1) < 1e-6,
-                    this->name(b) + ": orientation is not a unit quaternion");
+                    name(b) + ": orientation is not a unit quaternion");
     state_.place(b, position, unit(orientation));
   }
 
   // --- reading -------------------------------------------------------------------------------------------
 
-  Vec3 position(Handle node) const { return position_of(this->checked(node)); }
-  Quat orientation(Handle node) const { return state_.q[this->checked(node)].template cast<double>(); }
+  Vec3 position(Handle node) const { return position_of(checked(node)); }
+  Quat orientation(Handle node) const { return state_.q[checked(node)].template cast<double>(); }
   using Nodes::velocity;
-  Vec3 velocity(Handle node) const { return linear_part(v_[this->checked(node)]).template cast<double>(); }
+  Vec3 velocity(Handle node) const { return linear_part(v_[checked(node)]).template cast<double>(); }
   Vec3 angular_velocity(Handle node) const {
-    return angular_part(v_[this->checked(node)]).template cast<double>();
+    return angular_part(v_[checked(node)]).template cast<double>();
   }
   /// Half of the mass of the segments at a node, kg; fixed nodes have theirs too.
   T mass(Index b) const { return state_.mass[b]; }
@@ -88,7 +89,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   /// ∫Ψ of all rods where they are now, J. Evaluates every beam.
   double elastic_energy() const {
     double sum = 0;
-    this->each_body([&](const auto& rod) { sum += rod.energy(state_); });
+    each_body([&](const auto& rod) { sum += rod.energy(state_); });
     return sum;
   }
   /// The point of a rod's line next to `point` (world, m), by where it is now: a joint's end, held by the two
@@ -100,17 +101,17 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
 
   bool moves(Index b) const { return state_.inverse_mass[b] > T(0); }
   void set_fixed(Index b, bool is_held) {
-    state_.inverse_mass[b] = is_held || this->is_fixed_[b] ? T(0) : T(1) / state_.mass[b];
+    state_.inverse_mass[b] = is_held || is_fixed_[b] ? T(0) : T(1) / state_.mass[b];
   }
   void factor(SystemScale scale) {
-    this->scale_ = scale;
-    this->each_body([&](auto& rod) { rod.factor(scale, state_); });
+    scale_ = scale;
+    each_body([&](auto& rod) { rod.factor(scale, state_); });
   }
 
   /// The elastic ones are those of the last `factor`.
   void add_forces(std::span<Velocity> p) const {
     const Vec<3, T> g = gravity.template cast<T>();
-    this->each_body([&](const auto& rod) {
+    each_body([&](const auto& rod) {
       const auto blocks = rod.blocks();
       for (std::size_t k = 0; k < blocks.size(); ++k) {
         const Index b = blocks[k];
@@ -127,7 +128,7 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   template <int C>
   Mat<6, C, T> solve_block(Index b, const Mat<6, C, T>& x) const {
     if (!moves(b)) return Mat<6, C, T>::Zero();
-    return state_.solve(b, x, T(1 / this->scale_.mass));
+    return state_.solve(b, x, T(1 / scale_.mass));
   }
 
   /// A node's anchor has a frame and a place in it. One on a segment is held by both of its nodes: a joint
@@ -173,7 +174,9 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
   }
 
  private:
-  using Nodes::slots_, Nodes::v_, Nodes::load_;
+  using Nodes::bodies_, Nodes::body_slots_, Nodes::scale_;
+  using Nodes::checked, Nodes::checked_body, Nodes::body_name, Nodes::each_body;
+  using Nodes::slots_, Nodes::quarantine_, Nodes::v_, Nodes::load_, Nodes::is_fixed_;
 
   Vec3 position_of(Index b) const { return state_.x[b]; }
   Vec3 chord(Index b) const { return position_of(next_[b]) - position_of(b); }
@@ -196,8 +199,8 @@ class BasicRods : public inner::BodiesOfNodes<BasicRods<T>, T, 6, Rod, inner::El
 
   /// Kick and drift, as rigid bodies do. A rod with a velocity that is not finite stays where it is, whole.
   void advance_with(double h, T old_share) {
-    this->quarantine_ = {};
-    this->each_body([&](const auto& rod) {
+    quarantine_ = {};
+    each_body([&](const auto& rod) {
       bool is_sound = true;
       for (const Index b : rod.blocks()) is_sound = is_sound && (!moves(b) || is_finite(v_next[b]));
       for (const Index b : rod.blocks())
@@ -229,7 +232,7 @@ Pose BasicRods<T>::pose(Index b) const {
 
 template <class T>
 auto BasicRods<T>::add(const Rod& rod) -> BodyHandle {
-  const std::string who = this->body_name(this->body_slots_.size());
+  const std::string who = body_name(body_slots_.size());
   inner::check_rod<T>(rod, who);
   std::vector<Vec3> points = rod.points;
   for (Vec3& p : points) {
@@ -284,7 +287,7 @@ template <class T>
 Anchor BasicRods<T>::anchor_at(BodyHandle rod, const Vec3& point) const {
   Anchor anchor{.has_frame = false, .owner = this->owner()};
   double nearest = -1;
-  for (const Index b : this->bodies_[this->checked_body(rod)].blocks()) {
+  for (const Index b : bodies_[checked_body(rod)].blocks()) {
     if (next_[b] < 0) continue;
     const double share = nearest_share(b, point), away = (on_segment(b, share) - point).norm();
     if (nearest >= 0 && !(away < nearest)) continue;
@@ -294,7 +297,7 @@ Anchor BasicRods<T>::anchor_at(BodyHandle rod, const Vec3& point) const {
   }
   DELASSUS_EXPECT(nearest >= 0 && nearest <= 0.1 * chord(anchor.block).norm(),
                   "anchor_at: the point " + inner::text(point) + " m is not on " +
-                      this->body_name(rod.index) + ", whose line passes " + inner::text(nearest) +
+                      body_name(rod.index) + ", whose line passes " + inner::text(nearest) +
                       " m from it");
   anchor.generation = slots_.generation(anchor.block);
   return anchor;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/fem/elasticity/material.hpp>
+#include <delassus/fem/inner/place_of_nodes.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/math/rotation.hpp>
@@ -37,15 +38,7 @@ template <class T, ElasticMaterial M, class Mesh>
 void check_soft_body(const SoftBody<M, Mesh>& body, const std::string& who) {
   check_mesh(body.mesh, who);
   check_material(body.elasticity, who);
-  inner::expect_positive(who + ": density", body.density, "kg/m³");
-  DELASSUS_EXPECT(is_finite(body.position) && is_finite(body.velocity),
-                  who + ": position or velocity is not finite");
-  DELASSUS_EXPECT(fits<T>(body.velocity), who + ": velocity " + beyond<T>(body.velocity, "m/s"));
-  DELASSUS_EXPECT(std::abs(body.orientation.coeffs().norm() - 1) < 1e-6,
-                  who + ": orientation is not a unit quaternion");
-  inner::expect_not_negative(who + ": contact_radius", body.contact_radius, "m");
-  DELASSUS_EXPECT(body.contact_radius == 0 || (body.group & body.collides_with) == 0,
-                  who + ": its nodes would collide with each other; leave its group out of collides_with");
+  check_place_of_nodes<T>(body, who, "nodes");
   for (Index e = 0; e < Index(body.mesh.cells().size()); ++e) {
     const double mass = body.density * volume(body.mesh, e);
     DELASSUS_EXPECT(has_inverse<T>(mass), who + ": the mass of " + Mesh::cell + " #" + std::to_string(e) +

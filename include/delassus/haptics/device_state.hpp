@@ -17,8 +17,7 @@ struct DeviceState {
   Vec3 angular_velocity = Vec3::Zero();
 
   bool is_finite() const {
-    const Quat& q = orientation;
-    const double square = q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
+    const double square = orientation.squaredNorm();
     return delassus::is_finite(position) && delassus::is_finite(velocity) && delassus::is_finite(angular_velocity) &&
            square > 0.25 && square < 4;
   }

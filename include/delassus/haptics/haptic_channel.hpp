@@ -64,7 +64,7 @@ struct BasicHapticChannel {
 
 template <class Solver, Clock C>
 template <class Problem>
-class BasicHapticChannel<Solver, C>::Channel {
+class BasicHapticChannel<Solver, C>::Channel : inner::Room {
   using Rows = typename Problem::Rows;
   using T = typename Rows::Scalar;
   using Laws = decltype(Problem::laws);
@@ -72,10 +72,10 @@ class BasicHapticChannel<Solver, C>::Channel {
 
  public:
   /// The parameters are taken here, once: the loop's copy of them may change without a race.
-  explicit Channel(const BasicHapticChannel& parameters) : parameters_(parameters), room_(parameters.reserve) {
+  explicit Channel(const BasicHapticChannel& parameters) : Room(parameters.reserve), parameters_(parameters) {
     slots_.each([&](Slot& slot) {
       auto& problem = slot.snapshot.problem;
-      room_.make_in(problem);
+      this->make_in(problem);
       slot.tool.reserve(parameters.reserve);
       slot.book.reserve(parameters.reserve);
       // A workspace takes its sizes from rows: once from the largest there can be.
@@ -85,9 +85,7 @@ class BasicHapticChannel<Solver, C>::Channel {
     });
   }
 
-  /// How many problems were passed over for want of room, and the longest array of all so far. Any thread may ask.
-  std::uint64_t skipped() const { return room_.skipped(); }
-  std::size_t needed() const { return room_.needed(); }
+  using Room::skipped, Room::needed;
 
   // --- the loop's thread -----------------------------------------------------------------------------------------
 
@@ -104,7 +102,7 @@ class BasicHapticChannel<Solver, C>::Channel {
   void publish(const auto& loop) {
     if (loop.report().status == Status::quarantined) return;
     ++sequence_;
-    if (!room_.takes(loop)) return;
+    if (!this->takes(loop)) return;
     Slot& slot = slots_.back();
     inner::take_snapshot(loop, sequence_, slot.snapshot);
     auto& problem = slot.snapshot.problem;
@@ -165,7 +163,6 @@ class BasicHapticChannel<Solver, C>::Channel {
   }
 
   const BasicHapticChannel parameters_;
-  inner::Room room_;
   TripleBuffer<Slot> slots_;           // loop → device
   TripleBuffer<DeviceState> devices_;  // device → loop
   ConstraintHandle<VirtualCoupling> coupling_{};

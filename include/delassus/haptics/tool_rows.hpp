@@ -18,19 +18,14 @@
 
 namespace delassus::inner {
 
-template <class Laws>
-inline constexpr int place_of_coupling = -1;
-template <class... L>
-inline constexpr int place_of_coupling<Constraints<L...>> = [] {
+/// The number of the pool of couplings in a problem; −1 where there is none.
+template <class Problem>
+inline constexpr int coupling_pool = []<class... L>(std::type_identity<Constraints<L...>>) {
   constexpr bool is_it[] = {std::is_same_v<L, VirtualCoupling>..., false};
   for (int p = 0; p < int(sizeof...(L)); ++p)
     if (is_it[p]) return p;
   return -1;
-}();
-
-/// The number of the pool of couplings in a problem; −1 where there is none.
-template <class Problem>
-inline constexpr int coupling_pool = place_of_coupling<std::remove_cvref_t<decltype(Problem::laws)>>;
+}(std::type_identity<std::remove_cvref_t<decltype(Problem::laws)>>{});
 
 /// What one constraint that shares the tool with the coupling c has of it.
 template <int R, class T>
@@ -112,18 +107,16 @@ class ToolRows {
     faster << device.velocity + device.angular_velocity.cross(arm) - velocity_ + turns_faster.cross(half_stretch_),
         turns_faster;
     d_now_ = d_ - (by_place_.cwiseProduct(moved) + by_speed_.cwiseProduct(faster)).template cast<T>();
-    for_each_index<pools>([&](auto q) {
-      auto& d = rows.template pool<q>().d;
-      for (const auto& row : std::get<q>(coupled_)) d[row.item] = row.d - row.Z * d_now_;
+    each_pool(rows, [&](auto q, auto& pool) {
+      for (const auto& row : std::get<q>(coupled_)) pool.d[row.item] = row.d - row.Z * d_now_;
     });
   }
 
   /// The impulse on the device's end at the present impulses of the others, N·s and N·m·s.
   Twist impulse_on_device(const Rows& rows) const {
     Vec<6, T> lambda = -(inverse_ * d_now_);
-    for_each_index<pools>([&](auto q) {
-      const auto& others = rows.template pool<q>().lambda;
-      for (const auto& row : std::get<q>(coupled_)) lambda -= row.Z.transpose() * others[row.item];
+    each_pool(rows, [&](auto q, const auto& pool) {
+      for (const auto& row : std::get<q>(coupled_)) lambda -= row.Z.transpose() * pool.lambda[row.item];
     });
     Twist out = -lambda.template cast<double>();
     out.template tail<3>() += half_stretch_.cross(out.template head<3>());

@@ -40,4 +40,14 @@ void times(auto& p, double h) {
   for (auto& x : p) x *= typename std::remove_cvref_t<decltype(x)>::Scalar(h);
 }
 
+namespace inner {
+
+/// p += f(q, v), and all of it times h: N·s.
+void kick(const auto& set, auto& p, double h) {
+  set.add_forces(p);
+  times(p, h);
+}
+
+}  // namespace inner
+
 }  // namespace delassus

@@ -1,7 +1,7 @@
 /// Symplectic Euler whose free rotation is a splitting into turns.
 #pragma once
 
-#include <delassus/integrators/integrator.hpp>
+#include <delassus/integrators/symplectic_euler.hpp>
 
 namespace delassus {
 
@@ -9,16 +9,9 @@ namespace delassus {
 /// (`turn_freely`). Free rotation: second order, |L| to rounding, the energy bounded, no equation to solve;
 /// the midpoint rule of the other integrators keeps the energy too. Forces: first order. Takes whatever
 /// `SymplecticEuler` takes, contacts included.
-struct LiePoisson {
-  using plays = role::Integrator;
+struct LiePoisson : SymplecticEuler {
   using each_block_alone = LiePoisson;
-  static constexpr bool takes_masses_alone = true;  ///< A = M
 
-  SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const {
-    set.add_forces(p);
-    times(p, h);
-  }
   void advance(auto& set, double h) const {
     if constexpr (requires { set.advance_by_rotation_splitting(h); })
       set.advance_by_rotation_splitting(h);

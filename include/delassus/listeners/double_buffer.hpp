@@ -57,6 +57,7 @@ class Room {
     return false;
   }
 
+  /// How many problems were passed over for want of room, and the longest array of all so far. Any thread may ask.
   std::uint64_t skipped() const { return skipped_.load(std::memory_order_relaxed); }
   std::size_t needed() const { return needed_.load(std::memory_order_relaxed); }
 
@@ -93,15 +94,13 @@ struct DoubleBuffer {
   std::size_t reserve = 0;  ///< elements of an array; the longest are the blocks of W between two laws. 0: as it comes
 
   template <class Problem>
-  class Channel {
+  class Channel : inner::Room {
    public:
-    explicit Channel(const DoubleBuffer& parameters) : room_(parameters.reserve) {
-      snapshots_.each([&](auto& snapshot) { room_.make_in(snapshot.problem); });
+    explicit Channel(const DoubleBuffer& parameters) : Room(parameters.reserve) {
+      snapshots_.each([&](auto& snapshot) { this->make_in(snapshot.problem); });
     }
 
-    /// How many problems were passed over for want of room, and the longest array of all so far. Any thread may ask.
-    std::uint64_t skipped() const { return room_.skipped(); }
-    std::size_t needed() const { return room_.needed(); }
+    using Room::skipped, Room::needed;
 
     /// The reader: takes the newest snapshot, true if it was not taken before.
     bool fetch() { return snapshots_.fetch(); }
@@ -110,13 +109,12 @@ struct DoubleBuffer {
     /// The loop's thread.
     void publish(const auto& loop) {
       ++sequence_;
-      if (!room_.takes(loop)) return;
+      if (!this->takes(loop)) return;
       inner::take_snapshot(loop, sequence_, snapshots_.back());
       snapshots_.publish();
     }
 
    private:
-    inner::Room room_;
     TripleBuffer<Snapshot<Problem>> snapshots_;
     std::uint64_t sequence_ = 0;
   };

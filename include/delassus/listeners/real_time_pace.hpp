@@ -81,7 +81,10 @@ class BasicRealTimePace {
 
   void after(stage::Step, const auto& loop) {
     const double h = loop.step_size(), now = clock_.now(), work = now - began_;
-    keep(work);
+    if (work_.size() < std::size_t(keep_))
+      work_.push_back(work);
+    else
+      work_[std::size_t(sums_.steps % keep_)] = work;
     sums_.max = std::max(sums_.max, work);
     sums_.overruns += work > h;
     due_ += h;
@@ -101,11 +104,6 @@ class BasicRealTimePace {
   }
 
  private:
-  void keep(double work) {
-    if (work_.size() < std::size_t(keep_)) work_.push_back(work);
-    else work_[std::size_t(sums_.steps % keep_)] = work;
-  }
-
   double catch_up_;
   C clock_;
   long keep_ = 0;

@@ -23,9 +23,8 @@ class BasicStopwatch {
  public:
   using plays = role::Listener;
   using listens = ListensToAll;
-  static constexpr std::array names{stage::Detect::name, stage::Linearize::name, stage::FreeMotion::name,
-                                    stage::Islands::name, stage::Bias::name,     stage::Build::name,
-                                    stage::Solve::name,   stage::Correct::name,  stage::Advance::name};
+  static constexpr std::array names{"detect", "linearize", "free motion", "islands", "bias",
+                                    "build",  "solve",     "correct",     "advance"};
   static constexpr std::size_t stages = names.size();
 
   /// Milliseconds of each stage of one step, in the order of `names`.

@@ -130,9 +130,8 @@ template <class World>
 consteval bool has_bodies() {
   constexpr bool has = World::set_count > 0;
   static_assert(has, "delassus: a World needs at least one set of bodies; write World{RigidBodies{}}");
-  constexpr bool has_no_other = []<class... S>(const delassus::World<S...>*) {
-    return (requires { typename S::Scalar; S::width; } && ...);
-  }(static_cast<const World*>(nullptr));
+  constexpr bool has_no_other =
+      all_parts(std::type_identity<World>{}, []<class S>() { return requires { typename S::Scalar; S::width; }; });
   static_assert(has_no_other,
                 "delassus: World{...} takes sets of bodies, as in World{RigidBodies{}, Particles{}}; take the rest out");
   return has && has_no_other;
@@ -140,9 +139,9 @@ consteval bool has_bodies() {
 
 template <class World>
 consteval bool has_one_scalar() {
-  constexpr bool is_one = []<class... S>(const delassus::World<S...>*) {
-    return (std::is_same_v<typename S::Scalar, typename World::Scalar> && ...);
-  }(static_cast<const World*>(nullptr));
+  constexpr bool is_one = all_parts(std::type_identity<World>{}, []<class S>() {
+    return std::is_same_v<typename S::Scalar, typename World::Scalar>;
+  });
   static_assert(is_one,
                 "delassus: all body sets of a World have one scalar; use RigidBodies with Particles, or RigidBodiesF "
                 "with ParticlesF");
@@ -165,31 +164,17 @@ consteval bool collision_fits() {
   }
 }
 
-template <class Laws>
-consteval bool laws_are_sound() {
-  return []<class... L>(const Constraints<L...>*) {
-    return (law_is_sound<L>() && ...);
-  }(static_cast<const Laws*>(nullptr));
-}
-
 /// linearize is asked with the very types it will be called with; its return type is written out, so no body is compiled.
-template <class Law, class World, class Pool>
+template <class Law, class World>
 consteval bool law_linearizes() {
   constexpr bool does = requires(const Law& law, const typename Law::Item& item, const World& world,
-                                 RowWriter<World, Pool> row) {
+                                 RowWriter<World, PoolRowsOf<World, Law::rows>> row) {
     { law.linearize(item, world, row) } -> std::same_as<void>;
   };
   static_assert(does,
                 "delassus: a constraint law needs linearize(const Item&, const auto& world, auto row) const; add it, and "
                 "write its return type, void");
   return does;
-}
-
-template <class World, class Laws>
-consteval bool laws_linearize() {
-  return []<class... L>(const Constraints<L...>*) {
-    return (law_linearizes<L, World, PoolRowsOf<World, L::rows>>() && ...);
-  }(static_cast<const Laws*>(nullptr));
 }
 
 template <class Compliance, class World, class Rows>
@@ -231,15 +216,18 @@ template <class Policies>
 consteval bool constraints_are_sound() {
   using World = typename Policies::World;
   using Laws = typename Policies::Laws;
-  if constexpr (Laws::pool_count == 0) return true;
-  else if constexpr (!laws_are_sound<Laws>()) return false;
-  else if constexpr (!laws_linearize<World, Laws>()) return false;
-  else {
+  constexpr std::type_identity<Laws> laws;
+  if constexpr (Laws::pool_count == 0) {
+    return true;
+  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L>(); })) {
+    return false;
+  } else if constexpr (!all_parts(laws, []<class L>() { return law_linearizes<L, World>(); })) {
+    return false;
+  } else {
     using Rows = typename rows_of<World, Laws>::type;
-    if constexpr (!compliance_is_sound<typename Policies::Compliance, World, Rows>()) return false;
-    else
-      return solver_is_sound<typename Policies::Solver, Laws, Rows,
-                             typename Policies::Compliance::template Operator<Rows>>();
+    if constexpr (compliance_is_sound<typename Policies::Compliance, World, Rows>())
+      return solver_is_sound<typename Policies::Solver, Laws, Rows, typename Policies::Compliance::template Operator<Rows>>();
+    return false;
   }
 }
 
@@ -277,7 +265,7 @@ consteval bool loop_is_sound() {
   else if constexpr (!visits_fit<Policies, Args...>()) return false;
   else if constexpr (!mean_springs_fit<Policies>()) return false;
   else if constexpr (!refinement_fits<Policies>()) return false;
-  else if constexpr (!restitution_acts<typename Policies::Laws>()) return false;
+  else if constexpr (!all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return restitution_acts<L>(); })) return false;
   else if constexpr (!substeps_fit<typename Policies::Scheme, typename Policies::Activity>()) return false;
   else if constexpr (!publishers_are_sound<Policies, Args...>()) return false;
   else return collision_fits<typename Policies::Laws, typename Policies::Collision>();

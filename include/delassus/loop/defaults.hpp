@@ -53,37 +53,30 @@ struct Policies {
 
 namespace inner {
 
+/// The type that plays `Role` in a Policies.
+template <class P, class Role>
+using policy_type = typename pick<Role, void, typename P::World, typename P::Laws, typename P::Integrator, typename P::Collision,
+                                  typename P::Compliance, typename P::Solver, typename P::Stabilisation, typename P::Scheme,
+                                  typename P::Activity>::type;
+
 /// The tuple of the defaults a loop really uses: nothing for a role that is named or not needed.
 template <class... Args>
 struct DefaultsFor {
   using P = Policies<Args...>;
-  template <class Role, class Default, bool is_needed = true>
-  using one = std::conditional_t<is_needed && count_of<Role, Args...> == 0, std::tuple<Default>, std::tuple<>>;
+  template <class Role, bool is_needed = true>
+  using one = std::conditional_t<is_needed && count_of<Role, Args...> == 0, std::tuple<policy_type<P, Role>>, std::tuple<>>;
   static constexpr bool constrained = P::Laws::pool_count > 0;
   static constexpr bool has_W = constrained && makes_problem<typename P::Scheme>;
 
   using type = decltype(std::tuple_cat(
-      std::declval<one<role::World, typename P::World>>(), std::declval<one<role::Constraints, typename P::Laws>>(),
-      std::declval<one<role::Integrator, typename P::Integrator>>(),
-      std::declval<one<role::Collision, typename P::Collision, P::Laws::has_contacts>>(),
-      std::declval<one<role::Compliance, typename P::Compliance, has_W>>(),
-      std::declval<one<role::Solver, typename P::Solver, has_W>>(),
-      std::declval<one<role::Stabilisation, typename P::Stabilisation, constrained>>(),
-      std::declval<one<role::Scheme, typename P::Scheme>>(), std::declval<one<role::Activity, typename P::Activity>>()));
+      std::declval<one<role::World>>(), std::declval<one<role::Constraints>>(),
+      std::declval<one<role::Integrator>>(),
+      std::declval<one<role::Collision, P::Laws::has_contacts>>(),
+      std::declval<one<role::Compliance, has_W>>(),
+      std::declval<one<role::Solver, has_W>>(),
+      std::declval<one<role::Stabilisation, constrained>>(),
+      std::declval<one<role::Scheme>>(), std::declval<one<role::Activity>>()));
 };
-
-/// The type that plays `Role` in a Policies.
-template <class P, class Role>
-struct policy_type;
-template <class P> struct policy_type<P, role::World> { using type = typename P::World; };
-template <class P> struct policy_type<P, role::Constraints> { using type = typename P::Laws; };
-template <class P> struct policy_type<P, role::Integrator> { using type = typename P::Integrator; };
-template <class P> struct policy_type<P, role::Collision> { using type = typename P::Collision; };
-template <class P> struct policy_type<P, role::Compliance> { using type = typename P::Compliance; };
-template <class P> struct policy_type<P, role::Solver> { using type = typename P::Solver; };
-template <class P> struct policy_type<P, role::Stabilisation> { using type = typename P::Stabilisation; };
-template <class P> struct policy_type<P, role::Scheme> { using type = typename P::Scheme; };
-template <class P> struct policy_type<P, role::Activity> { using type = typename P::Activity; };
 
 }  // namespace inner
 }  // namespace delassus

@@ -12,6 +12,12 @@ namespace delassus::inner {
 template <class Role, class... Policies>
 inline constexpr int count_of = (0 + ... + int(Plays<Policies, Role>));
 
+/// `is.template operator()<Part>()` for every set of a World, or every law of Constraints.
+template <template <class...> class Whole, class... Part>
+consteval bool all_parts(std::type_identity<Whole<Part...>>, auto is) {
+  return (is.template operator()<Part>() && ...);
+}
+
 /// Whether the tuple has an element of this type.
 template <class P, class Tuple>
 inline constexpr bool holds_type = false;

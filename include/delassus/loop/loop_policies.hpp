@@ -14,14 +14,19 @@
 
 namespace delassus {
 
+/// What is held whether or not the parts fit together.
+template <class... Args>
+struct HeldTypes : Policies<Args...> {
+  template <class Role>
+  using of = inner::policy_type<Policies<Args...>, Role>;
+  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Args...>::type, Args...>;
+};
+
 /// Parts that fit together.
 template <class... Args>
-struct SoundPolicies : Policies<Args...> {
+struct SoundPolicies : HeldTypes<Args...> {
   using Base = Policies<Args...>;
-  template <class Role>
-  using of = typename inner::policy_type<Base, Role>::type;
   using Scratch = typename inner::widths_of<typename Base::World>::Scratch;
-  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Args...>::type, Args...>;
   using Rows = typename inner::rows_of<typename Base::World, typename Base::Laws>::type;
   using Operator = typename Base::Compliance::template Operator<Rows>;
   using Stages = typename inner::stages_of<Base>::type;
@@ -33,12 +38,8 @@ struct SoundPolicies : Policies<Args...> {
 
 /// Parts that do not: the sentence has been said, and the loop never steps.
 template <class... Args>
-struct UnsoundPolicies : Policies<Args...> {
-  using Base = Policies<Args...>;
-  template <class Role>
-  using of = typename inner::policy_type<Base, Role>::type;
+struct UnsoundPolicies : HeldTypes<Args...> {
   using Scratch = std::tuple<>;
-  using Held = inner::HeldPolicies<typename inner::DefaultsFor<Args...>::type, Args...>;
   using Rows = void;
   using Operator = void;
   using Stages = StagesWithoutConstraints;
@@ -52,8 +53,7 @@ namespace inner {
 template <class... Args>
 struct loop_policies {
   static constexpr bool are_sound = loop_is_sound<Policies<Args...>, Args...>();
-  using type = typename std::conditional_t<are_sound, std::type_identity<SoundPolicies<Args...>>,
-                                  std::type_identity<UnsoundPolicies<Args...>>>::type;
+  using type = std::conditional_t<are_sound, SoundPolicies<Args...>, UnsoundPolicies<Args...>>;
 };
 
 }  // namespace inner

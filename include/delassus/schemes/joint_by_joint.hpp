@@ -23,7 +23,6 @@ namespace delassus {
 /// all.
 struct JointByJoint {
   using plays = role::Scheme;
-  static constexpr bool visits_joints = true;
   static constexpr bool makes_problem = false;
   template <class P>
     requires(P::Laws::pool_count > 0)

@@ -83,8 +83,7 @@ void drive(Pool& pool, Index i, double speed, double h) {
 template <class World, class Laws, class Rows, class S>
 void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h, double theta) {
   using T = typename Rows::Scalar;
-  for_each_index<Laws::pool_count>([&](auto p) {
-    const auto& constraints = laws.template pool<p>();
+  each_pool(laws, [&](auto p, const auto& constraints) {
     auto& pool = rows.template pool<p>();
     using Law = std::remove_cvref_t<decltype(constraints.law)>;
     constexpr auto kinds = row_kinds<Law>();

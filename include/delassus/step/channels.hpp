@@ -34,8 +34,7 @@ struct problem_of<Policies> {
 template <class Problem, class... Publishers>
 class Channels {
  public:
-  template <class Args>
-  explicit Channels(const Args& policies)
+  explicit Channels([[maybe_unused]] const auto& policies)
       : channels_{std::make_unique<typename Publishers::template Channel<Problem>>(std::get<Publishers>(policies))...} {}
 
   template <class P>
@@ -44,12 +43,7 @@ class Channels {
   }
 
  private:
-  std::tuple<std::unique_ptr<typename Publishers::template Channel<Problem>>...> channels_;
-};
-template <class Problem>
-class Channels<Problem> {
- public:
-  explicit Channels(const auto&) {}
+  [[no_unique_address]] std::tuple<std::unique_ptr<typename Publishers::template Channel<Problem>>...> channels_;
 };
 
 /// The channels of the publishers among `Policies`.
@@ -61,14 +55,6 @@ struct channels_of {
   using one = std::conditional_t<Publisher<P>, std::tuple<std::type_identity<P>>, std::tuple<>>;
   using type = decltype(gather(static_cast<decltype(std::tuple_cat(one<Args>{}...))*>(nullptr)));
 };
-
-/// The same for a loop; one that is not sound has none.
-template <bool is_sound, class Policies, class... Args>
-struct channels_of_loop {
-  using type = Channels<void>;
-};
-template <class Policies, class... Args>
-struct channels_of_loop<true, Policies, Args...> : channels_of<typename problem_of<Policies>::type, Args...> {};
 
 }  // namespace inner
 }  // namespace delassus

@@ -94,11 +94,7 @@ class BasicContactMemory {
       if (is_finite(entries_[ordered_end_].point)) order_.push_back(ordered_end_);
     if (order_.empty()) return;
     Vec3 low = entries_[order_[0]].point, high = low;
-    for (const Index i : order_)
-      for (int k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], entries_[i].point[k]);
-        high[k] = std::max(high[k], entries_[i].point[k]);
-      }
+    for (const Index i : order_) low = low.cwiseMin(entries_[i].point), high = high.cwiseMax(entries_[i].point);
     axis_ = largest_entry(Vec3(high - low));
     std::sort(order_.begin(), order_.end(), [&](Index i, Index j) {
       const Scalar x = entries_[i].point[axis_], y = entries_[j].point[axis_];

@@ -36,28 +36,22 @@ void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, cons
              std::span<const SolveReport> reports, Array<char>& is_nonfinite) {
   is_nonfinite.assign(islands.count(), 0);
   Index first = 0;
-  bool any = false;
   for (std::size_t k = 0; k < std::min(reports.size(), is_nonfinite.size()); ++k)
-    if (reports[k].status == Status::quarantined) {
-      is_nonfinite[k] = 1;
-      any = true;
-    }
+    is_nonfinite[k] = reports[k].status == Status::quarantined;
   world.each([&](auto& set, auto s) {
     for (const Index b : set.active()) set.v_next[b] = set.v_free[b];
     add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);
       if (island < 0) continue;
-      if (is_finite(set.v_next[b])) {
+      if (is_finite(set.v_next[b]))
         inner::drop_rounding(set.v_next[b], set.v_free[b]);
-        continue;
-      }
-      is_nonfinite[island] = 1;
-      any = true;
+      else
+        is_nonfinite[island] = 1;
     }
     first += set.blocks();
   });
-  if (!any) return;
+  if (std::find(is_nonfinite.begin(), is_nonfinite.end(), 1) == is_nonfinite.end()) return;
   first = 0;
   world.each([&](auto& set, auto) {
     using T = typename std::remove_reference_t<decltype(set)>::Scalar;

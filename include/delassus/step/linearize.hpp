@@ -14,8 +14,7 @@ namespace delassus {
 /// Items that remember something of their pose (how often a wheel has turned) see the start of the step.
 template <class World, class Laws>
 void follow(const World& world, Laws& laws) {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    auto& pool = laws.template pool<p>();
+  each_pool(laws, [&](auto, auto& pool) {
     if constexpr (requires { pool.law.follow(pool.items[0], world); })
       for (const Index place : pool.slots.active()) pool.law.follow(pool.items[place], world);
   });
@@ -24,8 +23,7 @@ void follow(const World& world, Laws& laws) {
 /// H and φ at the present configuration of the world.
 template <class World, class Laws, class Rows>
 void linearize(const World& world, const Laws& laws, Rows& rows) {
-  for_each_index<Laws::pool_count>([&](auto p) {
-    const auto& pool = laws.template pool<p>();
+  each_pool(laws, [&](auto p, const auto& pool) {
     auto& out = rows.template pool<p>();
     using Pool = std::remove_cvref_t<decltype(out)>;
     out.reset(pool.count());
@@ -40,10 +38,9 @@ void linearize(const World& world, const Laws& laws, Rows& rows) {
 template <class Laws, class Rows>
 double worst_equality(const Laws& laws, const Rows& rows) {
   double worst = 0;
-  for_each_index<Laws::pool_count>([&](auto p) {
+  each_pool(rows, [&](auto p, const auto& pool) {
     using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
     constexpr auto kinds = row_kinds<Law>();
-    const auto& pool = rows.template pool<p>();
     for (Index i = 0; i < pool.items(); ++i)
       for (int k = 0; k < Law::rows; ++k)
         if (kinds[k] == RowKind::equality && !(pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0))

@@ -11,17 +11,11 @@ namespace delassus::inner {
 
 /// A listener that hears a stage between Begin and Step.
 template <class P>
-inline constexpr bool listens_inside_step = false;
-template <class P>
-  requires requires { typename P::listens; }
-inline constexpr bool listens_inside_step<P> = P::listens::inside_step;
+inline constexpr bool listens_inside_step = requires { requires P::listens::inside_step; };
 
 /// A listener that hears this stage.
 template <class P, class Stage>
-inline constexpr bool hears_stage = false;
-template <class P, class Stage>
-  requires(Plays<P, role::Listener> && requires { typename P::listens; })
-inline constexpr bool hears_stage<P, Stage> = P::listens::template to<Stage>;
+inline constexpr bool hears_stage = Plays<P, role::Listener> && requires { requires P::listens::template to<Stage>; };
 
 /// A listener that wants to be told of every sweep of the solver.
 template <class P>

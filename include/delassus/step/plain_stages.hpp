@@ -12,6 +12,7 @@
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/notify.hpp>
 #include <delassus/step/solve.hpp>
+#include <delassus/step/stages_without_constraints.hpp>
 #include <delassus/step/theta.hpp>
 #include <delassus/step/warm_start.hpp>
 
@@ -24,8 +25,8 @@ namespace delassus {
 
 /// A policy that changes a stage overrides it by name: its `stages<Base>` derives from Base, whose function of that name
 /// it calls or replaces. `step` is the StepData of the loop. A stage asks for its parts by `Stages`, so that those of
-/// policies are called.
-struct PlainStages {
+/// policies are called. Bodies advance as they do without constraints.
+struct PlainStages : StagesWithoutConstraints {
   static void begin(auto& step, double h) {
     if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts)
       check_materials(std::as_const(step).world(), step.material_pairs);
@@ -118,14 +119,6 @@ struct PlainStages {
 
   static void correct(auto& step) {
     delassus::correct(step.world(), step.rows, step.W, step.scratch, step.islands, step.reports, step.is_nonfinite);
-  }
-
-  static void advance(auto& step) {
-    step.world().each([&](auto& set, auto) {
-      step.integrator().advance(set, step.h);
-      step.summary.quarantined += set.quarantined();
-    });
-    step.end_clock();
   }
 };
 

@@ -39,11 +39,11 @@ void advance(auto& step) { StagesOf<decltype(step)>::advance(step), inner::notif
 
 /// All after Detect. Where nothing holds the bodies and nobody listens, each goes its way in one pass.
 void move(auto& step) {
-  using Step = std::remove_reference_t<decltype(step)>;
-  if constexpr (Step::moves_freely) {
+  using Data = std::remove_reference_t<decltype(step)>;
+  if constexpr (Data::moves_freely) {
     move_freely(step);
   } else {
-    if constexpr (MovesAtOnce<typename Step::Policies::Integrator>) {
+    if constexpr (MovesAtOnce<typename Data::Policies::Integrator>) {
       step.integrator().move(step);
     } else {
       linearize(step);

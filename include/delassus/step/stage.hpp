@@ -7,17 +7,17 @@ namespace delassus {
 
 /// In the order of the plain scheme, each heard when it is done. `Begin` is heard first, `Step` when all is done.
 namespace stage {
-struct Begin { static constexpr const char* name = "begin"; };
-struct Detect { static constexpr const char* name = "detect"; };
-struct Linearize { static constexpr const char* name = "linearize"; };
-struct FreeMotion { static constexpr const char* name = "free motion"; };
-struct Islands { static constexpr const char* name = "islands"; };
-struct Bias { static constexpr const char* name = "bias"; };
-struct Build { static constexpr const char* name = "build"; };
-struct Solve { static constexpr const char* name = "solve"; };
-struct Correct { static constexpr const char* name = "correct"; };
-struct Advance { static constexpr const char* name = "advance"; };
-struct Step { static constexpr const char* name = "step"; };
+struct Begin {};
+struct Detect {};
+struct Linearize {};
+struct FreeMotion {};
+struct Islands {};
+struct Bias {};
+struct Build {};
+struct Solve {};
+struct Correct {};
+struct Advance {};
+struct Step {};
 }  // namespace stage
 
 /// `using listens = Listens<stage::Solve, stage::Step>;`: what a listener hears, so that a misspelt callback is an error.

@@ -8,12 +8,13 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/islands.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/channels.hpp>
 #include <delassus/step/contact_cache.hpp>
-#include <delassus/step/each_constraint.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/step_report.hpp>
 
@@ -47,17 +48,10 @@ struct RowData {
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
 struct NoRowData {};
 
-namespace inner {
-
-template <class P>
-using RowDataOf = typename std::conditional_t<P::has_rows, std::type_identity<RowData<P>>, std::type_identity<NoRowData>>::type;
-
-}  // namespace inner
-
 /// The plain stages write the members; what else a policy keeps is its `State`. P has the types of all policies of the loop,
 /// see `Policies`. A scheme gets it as it is, a listener const.
 template <class P>
-struct StepData : inner::RowDataOf<P> {
+struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   using Policies = P;
   using WorldType = typename P::World;
   using Laws = typename P::Laws;
@@ -154,12 +148,27 @@ struct StepData : inner::RowDataOf<P> {
   /// f(pool, item, λ, |F_i|, h) for every constraint of the last step, in the order of the sweep; see `Measure`.
   template <class F>
   void each_constraint(F&& f) const {
-    if constexpr (has_problem) inner::each_constraint(*this, laws(), h, f);
+    if constexpr (has_problem) {
+      auto book = this->law_set;
+      book.attach(laws());  // the loop may be a copy
+      each_pool(this->rows, [&](auto p, const auto& pool) {
+        constexpr int R = P::Rows::template rows_of<p>;
+        for (Index i = 0; i < pool.items(); ++i) {
+          const Local<R, Scalar> c{this->W.template diagonal<p>(i), this->W.template residual<p>(this->rows, i), pool.lambda[i]};
+          f(int(p), i, pool.lambda[i], double(book.template natural_map<p>(i, c, c.W.trace() / Scalar(R)).norm()), h);
+        }
+      });
+    }
   }
   /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
   void each_joint(F&& f) const {
-    inner::each_joint(laws(), f);
+    each_pool(laws(), [&](auto, const auto& pool) {
+      for (Index i = 0; i < pool.count(); ++i) {
+        const auto& item = pool.item(i);
+        if constexpr (HasEnds<std::remove_cvref_t<decltype(item)>>) f(item.a, item.b);
+      }
+    });
   }
   /// f(impulse) for every constraint that is no contact, N·s of the last step.
   template <class F>

@@ -64,32 +64,43 @@ void keep_impulses(Laws& laws, const Rows& rows, ContactCache& book) {
   });
 }
 
+namespace inner {
+
 /// Impulses beyond every load are no start for the next step: those of constraints that contradict each other would grow
 /// from step to step without bound. A chain of n constraints between bodies whose compliances span r = max w/min w carries
 ///
 ///   w_i |λ_i| ≤ n r max |d|,   w = tr(W_ii)/rows,
 ///
-/// at most; an island whose solve ended far from its laws and beyond that starts from zero.
+/// at most.
+struct ImpulseLoads {
+  double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
+  long count = 0;
+
+  void add(double w, const auto& d, const auto& lambda) {
+    least = std::min(least, w);
+    most = std::max(most, w);
+    load = std::max(load, double(d.norm()));
+    response = std::max(response, w * double(lambda.norm()));
+    ++count;
+  }
+  bool are_exceeded() const { return !(response * least <= double(count) * most * load); }
+};
+
+}  // namespace inner
+
+/// An island whose solve ended far from its laws and with impulses beyond every load starts from zero.
 template <class Laws, class Rows, class Operator, int pools>
 void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, ContactCache& book, const Islands<pools>& islands,
                          std::span<const SolveReport> reports) {
   constexpr double far = 0.05;  // of the largest velocity of the island
   for (Index k = 0; k < islands.count(); ++k) {
     if (reports[k].status < Status::max_iterations || reports[k].measure.residual <= far) continue;
-    double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
-    Index count = 0;
-    for_each_index<pools>([&](auto p) {
-      const auto& pool = rows.template pool<p>();
-      for (const Index i : islands.items(p, k)) {
-        const double w = double(W.template diagonal<p>(i).trace()) / Rows::template rows_of<p>;
-        least = std::min(least, w);
-        most = std::max(most, w);
-        load = std::max(load, double(pool.d[i].norm()));
-        response = std::max(response, w * double(pool.lambda[i].norm()));
-        ++count;
-      }
+    inner::ImpulseLoads loads;
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (const Index i : islands.items(p, k))
+        loads.add(double(W.template diagonal<p>(i).trace()) / Rows::template rows_of<p>, pool.d[i], pool.lambda[i]);
     });
-    if (response * least <= count * most * load) continue;
+    if (!loads.are_exceeded()) continue;
     each_kept_pool(laws, [&](auto p, auto& pool) {
       for (const Index i : islands.items(p, k)) pool.starts_cold[pool.slots.active()[i]] = 1;
     });

@@ -46,19 +46,13 @@ struct Bdf2Rule {
 
 }  // namespace inner
 
-template <class World, class Laws, class Rows>
-class Bdf2Step : public StepBySets<inner::StepByAcceleration, World> {
-  static_assert(Rows::pool_count == 0,
-                "delassus: Bdf2 moves bodies without joints; take the laws out, or use ImplicitEuler");
-};
-
 /// For structures that shall come to rest: particles on springs and soft bodies, without joints and contacts.
 /// Of second order where implicit Euler is of first; stable for every h ω, and a motion with h ω → ∞ is gone
 /// after a few steps. A step of another length than the last one is of first order.
 struct Bdf2 {
   using plays = role::Integrator;
   template <class P>
-  using State = Bdf2Step<typename P::World, typename P::Laws, typename P::Rows>;
+  using State = StepBySets<inner::StepByAcceleration, typename P::World, typename P::Laws>;
   template <class Set>
   static constexpr bool can_move = Set::width == 3;
   double tolerance = 1e-10;  ///< of the accelerations

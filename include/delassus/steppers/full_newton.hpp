@@ -17,7 +17,7 @@ namespace delassus {
 struct FullNewton {
   using plays = role::Integrator;
   template <class P>
-  using State = ElasticNewtonStep<typename P::World, typename P::Laws, typename P::Rows>;
+  using State = StepBySets<inner::ElasticNewton, typename P::World, typename P::Laws>;
   template <class Set>
   static constexpr bool can_move = requires(const Set& set) {
     set.elastic_energy();

@@ -9,13 +9,6 @@
 
 namespace delassus {
 
-template <class World, class Laws, class Rows>
-class GeneralizedAlphaStep : public StepBySets<inner::StepByAcceleration, World> {
-  static_assert(
-      Rows::pool_count == 0,
-      "delassus: GeneralizedAlpha moves bodies without joints; take the laws out, or use ImplicitMidpoint");
-};
-
 /// For structures: particles on springs and soft bodies, without joints and contacts. Implicit, solved by
 /// Newton's method; stable for every h ω. A motion with h ω → ∞ shrinks by ρ∞ a step, one with h ω ≪ 1 keeps
 /// its amplitude to third order. A force that begins or ends with a step acts half in its neighbour, since a
@@ -23,7 +16,7 @@ class GeneralizedAlphaStep : public StepBySets<inner::StepByAcceleration, World>
 struct GeneralizedAlpha {
   using plays = role::Integrator;
   template <class P>
-  using State = GeneralizedAlphaStep<typename P::World, typename P::Laws, typename P::Rows>;
+  using State = StepBySets<inner::StepByAcceleration, typename P::World, typename P::Laws>;
   template <class Set>
   static constexpr bool can_move = Set::width == 3;
   double spectral_radius = 0.8;  ///< ρ∞ in [0, 1]

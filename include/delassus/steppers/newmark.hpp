@@ -8,12 +8,6 @@
 
 namespace delassus {
 
-template <class World, class Laws, class Rows>
-class NewmarkStep : public StepBySets<inner::StepByAcceleration, World> {
-  static_assert(Rows::pool_count == 0,
-                "delassus: Newmark moves bodies without joints; take the laws out, or use ImplicitEuler");
-};
-
 /// x₊ = x + h v + h² ((½ − β) v̇ + β v̇₊),  v₊ = v + h ((1 − γ) v̇ + γ v̇₊), implicit, solved by Newton's method:
 /// the generalised-α method without its averages. For particles on springs and soft bodies, without joints
 /// and contacts. β = ¼, γ = ½ is the trapezoidal rule: second order, stable for every h ω, keeps the energy
@@ -21,7 +15,7 @@ class NewmarkStep : public StepBySets<inner::StepByAcceleration, World> {
 struct Newmark {
   using plays = role::Integrator;
   template <class P>
-  using State = NewmarkStep<typename P::World, typename P::Laws, typename P::Rows>;
+  using State = StepBySets<inner::StepByAcceleration, typename P::World, typename P::Laws>;
   template <class Set>
   static constexpr bool can_move = Set::width == 3;
   double beta = 0.25;        ///< ≥ γ/2

@@ -29,7 +29,7 @@ struct RungeKutta4 {
   void move(auto& step) const { inner::solve_at_once(step); }
   SystemScale scale(double) const { return {.mass = 1}; }
   void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
-  void advance(auto& set, double h) const { inner::finish_step(set, h); }
+  void advance(auto& set, double h) const { set.finish_step(h); }
 };
 static_assert(Integrator<RungeKutta4>);
 

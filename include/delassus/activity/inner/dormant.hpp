@@ -108,13 +108,14 @@ class Dormant {
     return set.is_alive(b.block) && !set.is_awake(b.block) && set.handle(b.block).generation == b.generation;
   }
 
-  /// The box of a shape, grown by half of its largest width: what is outside is no neighbour. Empty without a bounded shape.
   template <class Set>
   static Aabb box_of(const Set& set, Index block, const Pose& pose) {
-    if (!set.has_collider(block)) return {};
-    const Shape shape = set.shape(block);
+    return set.has_collider(block) ? box_of(set.shape(block), pose) : Aabb();
+  }
+  /// The box of a shape, grown by half of its largest width: what is outside is no neighbour. Empty without a bounded shape.
+  static Aabb box_of(const Shape& shape, const Pose& pose) {
     if (shape.kind == ShapeKind::half_space) return {};
-    Aabb box = tight_box(shape, pose);
+    const Aabb box = tight_box(shape, pose);
     const Vec3 more = Vec3::Constant(0.5 * box.sizes().maxCoeff());
     return Aabb(box.min() - more, box.max() + more);
   }

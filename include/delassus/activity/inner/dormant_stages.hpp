@@ -7,26 +7,7 @@
 
 #include <utility>
 
-namespace delassus {
-
-/// Detection while some sleep: the sleepers near are obstacles, and whom an awake body reaches wakes before the step goes on.
-template <class World, class Laws, class State, class Detect>
-CollisionReport detect_awake(World& world, Laws& laws, State& activity, ContactCache& book, double h, const Detect& detect) {
-  CollisionReport found;
-  for (bool again = true; again;) {
-    if (!activity.add_obstacles(world, book)) {
-      book.points.clear();
-      return found;
-    }
-    found = detect();
-    again = activity.wake_touched(world, laws, book, h);
-    if (again) book.gather(std::as_const(world));
-  }
-  activity.drop_points(book);
-  return found;
-}
-
-namespace inner {
+namespace delassus::inner {
 
 /// For an activity whose state has begin, add_obstacles, wake_touched, drop_points, watch and settle (see `Sleepers`).
 template <class Base>
@@ -35,9 +16,21 @@ struct DormantStages : Base {
     Base::begin(step, h);
     own(step).begin(step.world(), step.laws(), h);
   }
+  /// The sleepers near are obstacles, and whom an awake body reaches wakes before the step goes on.
   static CollisionReport find_contacts(auto& step) {
-    return detect_awake(step.world(), step.laws(), own(step), step.contact_cache, step.h,
-                        [&] { return Base::find_contacts(step); });
+    ContactCache& book = step.contact_cache;
+    CollisionReport found;
+    for (bool again = true; again;) {
+      if (!own(step).add_obstacles(step.world(), book)) {
+        book.points.clear();
+        return found;
+      }
+      found = Base::find_contacts(step);
+      again = own(step).wake_touched(step.world(), step.laws(), book, step.h);
+      if (again) book.gather(std::as_const(step).world());
+    }
+    own(step).drop_points(book);
+    return found;
   }
   static void correct(auto& step) {
     Base::correct(step);
@@ -52,5 +45,4 @@ struct DormantStages : Base {
   static auto& own(auto& step) { return step.template state<role::Activity>(); }
 };
 
-}  // namespace inner
-}  // namespace delassus
+}  // namespace delassus::inner

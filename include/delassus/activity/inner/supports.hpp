@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace delassus::inner {
@@ -62,9 +63,7 @@ class Supports {
   };
 
   static bool before(const Support& x, const Support& y) {
-    return x.set != y.set       ? x.set < y.set
-           : x.block != y.block ? x.block < y.block
-                                : x.generation < y.generation;
+    return std::tie(x.set, x.block, x.generation) < std::tie(y.set, y.block, y.generation);
   }
   /// Both lists ascend by set and block.
   template <class Near>

@@ -1,27 +1,32 @@
-/// Energy and momentum of sets of points that have mass: particles and the nodes of soft bodies.
+/// Energy and momentum of sets of points that have mass (particles, the nodes of soft bodies), and what of them all sets
+/// with mass have in common.
 #pragma once
 
 #include <delassus/math/linear.hpp>
+#include <delassus/math/twist.hpp>
 #include <delassus/rows/alive.hpp>
 
 namespace delassus {
 namespace inner {
 
 template <class Set>
-concept PointMasses = Set::width == 3 && requires(const Set set) { set.mass(0); };
-
-/// Of springs or of elements, J.
+concept HasMasses = requires(const Set set) {
+  set.mass(0);
+  set.position(set.handle(0));
+};
 template <class Set>
-double stored_energy(const Set& set) {
-  if constexpr (requires { set.elastic_energy(); })
-    return set.elastic_energy();
-  else
-    return set.spring_energy();
+concept PointMasses = HasMasses<Set> && Set::width == 3;
+
+/// f(b) for the bodies that move.
+template <class Set, class F>
+void each_moving(const Set& set, F&& f) {
+  for (const Index b : alive(set))
+    if (set.moves(b)) f(b);
 }
 
 template <class Set>
 Vec3 momentum_of(const Set& set, Index b) {
-  return double(set.mass(b)) * Vec3(set.velocity()[b].template cast<double>());
+  return double(set.mass(b)) * Vec3(linear_part(set.velocity()[b]).template cast<double>());
 }
 
 }  // namespace inner
@@ -30,26 +35,27 @@ Vec3 momentum_of(const Set& set, Index b) {
 template <inner::PointMasses Set>
 double kinetic_energy(const Set& set) {
   double sum = 0;
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm());
+  inner::each_moving(set, [&](Index b) { sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm()); });
   return sum;
 }
 
-/// What springs or elements store, − Σ m g·x, J.
-template <inner::PointMasses Set>
+/// What springs or elements store, − Σ m g·x of all that moves, J.
+template <inner::HasMasses Set>
 double potential_energy(const Set& set) {
-  double sum = inner::stored_energy(set);
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum -= double(set.mass(b)) * set.gravity.dot(set.pose(b).position);
+  double sum = 0;
+  if constexpr (requires { set.elastic_energy(); })
+    sum = set.elastic_energy();
+  else if constexpr (requires { set.spring_energy(); })
+    sum = set.spring_energy();
+  inner::each_moving(set, [&](Index b) { sum -= double(set.mass(b)) * set.gravity.dot(set.position(set.handle(b))); });
   return sum;
 }
 
-/// Σ m v, kg·m/s.
-template <inner::PointMasses Set>
+/// Σ m v of all that moves, kg·m/s.
+template <inner::HasMasses Set>
 Vec3 momentum(const Set& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum += inner::momentum_of(set, b);
+  inner::each_moving(set, [&](Index b) { sum += inner::momentum_of(set, b); });
   return sum;
 }
 
@@ -57,8 +63,7 @@ Vec3 momentum(const Set& set) {
 template <inner::PointMasses Set>
 Vec3 angular_momentum(const Set& set) {
   Vec3 sum = Vec3::Zero();
-  for (const Index b : alive(set))
-    if (set.moves(b)) sum += set.pose(b).position.cross(inner::momentum_of(set, b));
+  inner::each_moving(set, [&](Index b) { sum += set.pose(b).position.cross(inner::momentum_of(set, b)); });
   return sum;
 }
 

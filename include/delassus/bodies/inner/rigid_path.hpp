@@ -114,9 +114,7 @@ class RigidPath {
   };
 
   static void put(RigidState<T>& s, Index b, const Vec3& x, const Four& q) {
-    s.x[b] = x;
-    s.q[b].coeffs() = q;
-    s.turn(b);
+    s.put(b, x, Eigen::Quaternion<T>(q));
   }
   Twist place(RigidState<T>& s, Index b, const Slope& slope, T t) {
     const Body& body = bodies_[b];

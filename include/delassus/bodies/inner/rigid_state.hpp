@@ -72,11 +72,12 @@ struct RigidState {
     return Y;
   }
 
-  void place(Index b, const Vec3& position, const Quat& orientation) {
+  void put(Index b, const Vec3& position, const Eigen::Quaternion<T>& orientation) {
     x[b] = position;
-    q[b] = orientation.template cast<T>();
+    q[b] = orientation;
     turn(b);
   }
+  void place(Index b, const Vec3& position, const Quat& orientation) { put(b, position, orientation.template cast<T>()); }
 
   /// Sets all poses aside, and takes those of these blocks back.
   void keep_poses() {
@@ -86,20 +87,14 @@ struct RigidState {
   void restore_poses(const Array<Index>& blocks) {
     for (const Index b : blocks) restore_pose(b);
   }
-  void restore_pose(Index b) {
-    x[b] = kept_x[b];
-    q[b] = kept_q[b];
-    turn(b);
-  }
+  void restore_pose(Index b) { put(b, kept_x[b], kept_q[b]); }
 
   /// x + step, and the axes turned by the vector `turn_by`, rad. False when that is not finite: then nothing moves.
   bool displace(Index b, const Vector& step, const Vector& turn_by) {
     const Vec3 moved = x[b] + step.template cast<double>();
     const Eigen::Quaternion<T> turned = unit_again(exponential<T>(turn_by) * q[b]);
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
-    x[b] = moved;
-    q[b] = turned;
-    turn(b);
+    put(b, moved, turned);
     return true;
   }
 
@@ -121,9 +116,7 @@ struct RigidState {
     const Vector spatial = R[b] * (inertia[b] * (R[b].transpose() * angular_part(next)));
     const Eigen::Quaternion<T> turned = turn_freely<T>(inverse_inertia[b], q[b], spatial, h);
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
-    x[b] = moved;
-    q[b] = turned;
-    turn(b);
+    put(b, moved, turned);
     v = twist<T>(linear_part(next), R[b] * own_rate(b, R[b].transpose() * spatial));
     return true;
   }
@@ -152,9 +145,7 @@ bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old
   const Vector rate = R[b] * own_rate(b, R[b].transpose() * spatial);
   // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
   if (!is_finite(x[b]) || !is_finite(rate)) [[unlikely]] {
-    x[b] = old_x;
-    q[b] = old_q;
-    turn(b);
+    put(b, old_x, old_q);
     return false;
   }
   v = twist<T>(linear_part(next), rate);

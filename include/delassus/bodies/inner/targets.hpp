@@ -11,8 +11,7 @@ namespace delassus::inner {
 class Targets {
  public:
   void resize(std::size_t n) { targets_.resize(n); }
-  template <class Turn>
-  void set(Index b, const Vec3& position, const Turn& orientation) {
+  void set(Index b, const Vec3& position, const Quat& orientation) {
     targets_[b] = {position, unit(orientation), true};
     are_any_ = true;
   }

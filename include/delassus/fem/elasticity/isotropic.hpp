@@ -16,26 +16,6 @@ struct PrincipalState {
   Vec3 flip = Vec3::Zero(), twist = Vec3::Zero();
 };
 
-namespace inner {
-
-/// ∂P/∂F contracted with two gradients, all in the axes of the principal stretches.
-inline Mat3 principal_block(const Mat3& hessian, const Vec3& half_sum, const Vec3& half_difference,
-                            const Vec3& a, const Vec3& b) {
-  Mat3 B;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) B(i, k) = hessian(i, k) * a[i] * b[k];
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    B(i, i) += half_sum[k] * a[j] * b[j];
-    B(j, j) += half_sum[k] * a[i] * b[i];
-    B(i, j) += half_difference[k] * a[j] * b[i];
-    B(j, i) += half_difference[k] * a[i] * b[j];
-  }
-  return B;
-}
-
-}  // namespace inner
-
 /// P = U diag(p) Vᵀ, and ∂P/∂F by its modes: the three stretches, which the Hessian couples, and six that are
 /// eigenvectors themselves. Each is cut at zero: the result is positive semidefinite. Sources:
 /// [IrvingTeranFedkiw2004], [Smith2018].
@@ -57,8 +37,19 @@ class IsotropicPoint {
   const Mat3& stress() const { return stress_; }
   /// A gradient in the axes of the principal stretches.
   Vec3 pull(const Vec3& gradient) const { return V_.transpose() * gradient; }
+  /// ∂P/∂F contracted with two of them.
   Mat3 block(const Vec3& a, const Vec3& b) const {
-    return U_ * inner::principal_block(hessian_, half_sum_, half_difference_, a, b) * U_.transpose();
+    Mat3 B;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) B(i, k) = hessian_(i, k) * a[i] * b[k];
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      B(i, i) += half_sum_[k] * a[j] * b[j];
+      B(j, j) += half_sum_[k] * a[i] * b[i];
+      B(i, j) += half_difference_[k] * a[j] * b[i];
+      B(j, i) += half_difference_[k] * a[i] * b[j];
+    }
+    return U_ * B * U_.transpose();
   }
 
  private:

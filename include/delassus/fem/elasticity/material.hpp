@@ -16,9 +16,8 @@ struct Lame {
       : lambda(young * poisson / ((1 + poisson) * (1 - 2 * poisson))), mu(young / (2 * (1 + poisson))) {}
   /// Those of strains in a sheet whose faces are free: λ = E ν/(1 − ν²).
   static Lame of_sheet(double young, double poisson) {
-    Lame lame(young, 0);
+    Lame lame(young, poisson);
     lame.lambda = young * poisson / ((1 + poisson) * (1 - poisson));
-    lame.mu = young / (2 * (1 + poisson));
     return lame;
   }
 };

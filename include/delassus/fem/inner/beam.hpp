@@ -46,7 +46,7 @@ struct Beam {
     return s;
   }
   double energy(const Strain& s) const {
-    return 0.5 * (s.gamma.dot(times(k, s.gamma)) + s.psi.dot(times(c, s.psi)));
+    return 0.5 * (s.gamma.dot(k.cwiseProduct(s.gamma)) + s.psi.dot(c.cwiseProduct(s.psi)));
   }
 
   /// Forces (N) and moments (N·m) on the ends, −∂Ψ/∂(x₁, turn₁, x₂, turn₂), and K in blocks of 3 × 3, all in
@@ -69,7 +69,7 @@ struct Beam {
     const Mat3 mean = 0.5 * cross, difference = (0.5 * lean) * Mat3(cross * skew<double>(s.psi));
     const Mat3 B1 = mean + difference, B2 = mean - difference;
     const Mat3 J = strain_by_d(s.d);
-    const Vec3 n = J.transpose() * times(k, s.gamma), m = S * times(c, s.psi);
+    const Vec3 n = J.transpose() * Vec3(k.cwiseProduct(s.gamma)), m = S * Vec3(c.cwiseProduct(s.psi));
 
     State state;
     state.force = {s.D * n, s.D * Vec3(m - B1.transpose() * n), s.D * Vec3(-n),
@@ -109,7 +109,6 @@ struct Beam {
     }
     return J;
   }
-  static Vec3 times(const Vec3& a, const Vec3& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
   static Mat3 outer(const Vec3& a, const Vec3& b) { return columns<double>(b[0] * a, b[1] * a, b[2] * a); }
 };
 

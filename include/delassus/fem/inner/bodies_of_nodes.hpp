@@ -12,17 +12,17 @@
 
 namespace delassus::inner {
 
-/// `Elastic` is one body: its `blocks()`, its `solve` and its `compliance`. `Body` is what a user says of a
+/// `Storage` is what the set keeps of its nodes. `Elastic` is one body: its `blocks()`, its `solve` and its `compliance`. `Body` is what a user says of a
 /// new one; a `Handle` names a node, a `BodyHandle` a body. `Set` holds nodes by `hold` and knows what
 /// `moves`.
-template <class Set, class T, int width, class Body_, class Elastic>
-class BodiesOfNodes : public BodyStorage<Set, T, width> {
-  using BodyStorage = inner::BodyStorage<Set, T, width>;
+template <class Set, class Storage, class Body_, class Elastic>
+class BodiesOfNodes : public Storage {
+  using T = typename Storage::Scalar;
 
  public:
   using Body = Body_;
   using BodyHandle = delassus::Handle<Body>;
-  using typename BodyStorage::Handle, typename BodyStorage::Velocity;
+  using typename Storage::Handle, typename Storage::Velocity;
   static constexpr const char* kind = "node";
 
   /// Takes a body out, all its nodes with it.
@@ -114,7 +114,7 @@ class BodiesOfNodes : public BodyStorage<Set, T, width> {
   }
   /// A block for node `node` of body k; the arrays of its state are the set's to fit to `blocks()`.
   Index take_node(const Body& body, Index k, Index node, const Velocity& velocity) {
-    const Index b = BodyStorage::take(body, velocity);
+    const Index b = Storage::take(body, velocity);
     const std::size_t n = std::size_t(slots_.size());
     is_fixed_.resize(n), body_.resize(n), node_.resize(n);
     is_fixed_[b] = 0;
@@ -146,11 +146,11 @@ class BodiesOfNodes : public BodyStorage<Set, T, width> {
 
   /// What outlives a step; the handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
-    BodyStorage::memory(archive);
+    Storage::memory(archive);
     archive(body_slots_, is_fixed_, body_, node_, bodies_);
   }
 
-  using BodyStorage::slots_, BodyStorage::v_;
+  using Storage::slots_, Storage::v_;
   SystemScale scale_;
   Slots body_slots_;
   std::vector<Elastic> bodies_;

@@ -210,9 +210,8 @@ class ElasticBody {
     const auto& t = mesh_.cells()[e];
     const auto state = elements_[e].at(material_, corners(e, x));
     for (int a = 0; a < E::nodes; ++a) force_[t[a]] += state.force[a].template cast<T>();
-    if (with_stiffness) add_stiffness(e, state.stiffness());
-  }
-  void add_stiffness(Index e, const auto& K) {
+    if (!with_stiffness) return;
+    const auto K = state.stiffness();
     const auto& order = order_[e];
     for (int k = 0; k < Matrix::pairs_each; ++k) {
       const auto& [i, j] = pairs_of_nodes<E::nodes>[k];

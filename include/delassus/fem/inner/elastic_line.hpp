@@ -94,7 +94,7 @@ class ElasticLine {
       is_held_[k] = nodes.inverse_mass[blocks_[k]] > T(0) ? 0 : 1;
       A_.add_diagonal(k, is_held_[k] ? Block(Block::Identity()) : system_block(k, scale, nodes));
       if (k > 0 && !is_held_[k] && !is_held_[k - 1])
-        A_.add_pair(k, k - 1, scaled(beside_[k - 1], T(scale.stiffness)));
+        A_.add_pair(k, k - 1, Block(T(scale.stiffness) * beside_[k - 1]));
     }
     is_factored_ = A_.factor();
   }
@@ -164,15 +164,10 @@ class ElasticLine {
         to(i + 3, j) += T(c(i, j)), to(i + 3, j + 3) += T(d(i, j));
       }
   }
-  static Block scaled(const Block& block, T s) {
-    Block to;
-    for (int i = 0; i < 36; ++i) to.data()[i] = s * block.data()[i];
-    return to;
-  }
   /// mass diag(m 1, R I Rᵀ) + stiffness K_kk.
   Block system_block(Index k, SystemScale scale, const RigidState<T>& nodes) const {
     const Index b = blocks_[k];
-    Block A = scaled(diagonal_[k], T(scale.stiffness));
+    Block A = T(scale.stiffness) * diagonal_[k];
     const Mat<3, 3, T> I = nodes.R[b] * nodes.inertia[b] * nodes.R[b].transpose();
     for (int i = 0; i < 3; ++i) {
       A(i, i) += T(scale.mass) * nodes.mass[b];

@@ -9,6 +9,18 @@
 
 namespace delassus::inner {
 
+/// F = Σ_a x_a g_aᵀ for gradients g_a that sum to nothing.
+template <std::size_t nodes>
+Mat3 deformation(const std::array<Vec3, nodes>& x, const std::array<Vec3, nodes>& gradient) {
+  Mat3 F = Mat3::Zero();
+  for (std::size_t a = 1; a < nodes; ++a) {
+    const Vec3 edge = x[a] - x[0], &b = gradient[a];
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
+  }
+  return F;
+}
+
 /// An element of shape functions N_a and the points X_q of a rule with weights V_q (m³):
 ///
 ///   F_q = Σ_a x_a ∇N_a(X_q)ᵀ,   f_a = −Σ_q V_q P_q ∇N_a,   K_ab = Σ_q V_q ∇N_a · ∂P_q/∂F · ∇N_b.
@@ -23,15 +35,7 @@ struct GradientElement {
     Corners gradient;  ///< ∇N_a at rest, 1/m
     double volume;     ///< V_q
 
-    Mat3 deformation(const Corners& x) const {
-      Mat3 F = Mat3::Zero();
-      for (int a = 1; a < nodes; ++a) {
-        const Vec3 edge = x[a] - x[0], &b = gradient[a];
-        for (int k = 0; k < 3; ++k)
-          for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
-      }
-      return F;
-    }
+    Mat3 deformation(const Corners& x) const { return inner::deformation(x, gradient); }
   };
   std::array<RulePoint, point_count> points;
 

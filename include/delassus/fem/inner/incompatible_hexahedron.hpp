@@ -3,6 +3,7 @@
 
 #include <delassus/fem/elasticity/material.hpp>
 #include <delassus/fem/inner/find_place.hpp>
+#include <delassus/fem/inner/gradient_element.hpp>
 #include <delassus/fem/inner/hexahedron_modes.hpp>
 #include <delassus/math/singular_values.hpp>
 
@@ -46,15 +47,7 @@ class IncompatibleHexahedron {
     return std::min({1 - std::abs(xi[0]), 1 - std::abs(xi[1]), 1 - std::abs(xi[2])}) / 2;
   }
 
-  Mat3 deformation(const Corners& x) const {
-    Mat3 F = Mat3::Zero();
-    for (int a = 1; a < nodes; ++a) {
-      const Vec3 edge = x[a] - x[0], &b = shape_.gradient[a];
-      for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i) F(i, k) += edge[i] * b[k];
-    }
-    return F;
-  }
+  Mat3 deformation(const Corners& x) const { return inner::deformation(x, shape_.gradient); }
 
   /// J.
   template <ElasticMaterial M>

@@ -68,10 +68,9 @@ template <class World, class Laws, class Rows>
 void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& at_start, double theta, Impulses<Rows>& fade) {
   using T = typename Rows::Scalar;
   fade.resize_like(rows);
-  for_each_index<Laws::pool_count>([&](auto p) {
+  each_pool(rows, [&](auto p, auto& pool) {
     using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
     constexpr auto kinds = row_kinds<Law>();
-    auto& pool = rows.template pool<p>();
     for (Index i = 0; i < pool.items(); ++i) {
       auto& own = std::get<p>(fade.pools)[i];
       own.setZero();

@@ -35,7 +35,7 @@ void AnimationLoop<Args...>::check_policies() const {
     if constexpr (requires { part.check(); }) part.check();
   };
   this->policies.each_with_defaults(check);
-  for_each_index<Laws::pool_count>([&](auto p) { check(laws().template pool<p>().law); });
+  each_pool(laws(), [&](auto, const auto& pool) { check(pool.law); });
 }
 
 template <class... Args>

@@ -40,12 +40,10 @@ consteval bool whole_step_fits() {
   if constexpr (!MovesAtOnce<I>) {
     return true;
   } else {
-    constexpr bool are_equal = []<class... L>(const Constraints<L...>*) {
-      return (holds_exactly<L>() && ...);
-    }(static_cast<const typename Policies::Laws*>(nullptr));
-    constexpr bool can_move = []<class... S>(const delassus::World<S...>*) {
-      return (I::template can_move<S> && ...);
-    }(static_cast<const typename Policies::World*>(nullptr));
+    constexpr bool are_equal =
+        all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return holds_exactly<L>(); });
+    constexpr bool can_move =
+        all_parts(std::type_identity<typename Policies::World>{}, []<class S>() { return I::template can_move<S>; });
     constexpr bool is_plain = takes_whole_steps<typename Policies::Scheme> &&
                               std::is_same_v<typename Policies::Activity, AllActive> && !(Publisher<Args> || ...);
     static_assert(are_equal,
@@ -78,16 +76,14 @@ consteval bool visits_fit() {
     return true;
   } else {
     using I = typename Policies::Integrator;
-    constexpr bool are_joints = []<class... L>(const Constraints<L...>*) {
-      return (JointOfTwoEnds<L> && ...);
-    }(static_cast<const typename Policies::Laws*>(nullptr));
+    constexpr bool are_joints =
+        all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return JointOfTwoEnds<L>; });
     static_assert(are_joints,
                   "delassus: JointByJoint takes joints with two ends that hold exactly or by springs (no contacts, "
                   "limits, motors, drives and couplings); take the other laws out of Constraints{...}, or use PlainOrder");
-    constexpr bool answer_alone = []<class... S>(const delassus::World<S...>*) {
-      return EachBlockAlone<I> && (requires { requires I::takes_masses_alone; }) &&
-             ((StepsByBlock<S> && HasInverseInertia<S>) && ...);
-    }(static_cast<const typename Policies::World*>(nullptr));
+    constexpr bool answer_alone =
+        EachBlockAlone<I> && requires { requires I::takes_masses_alone; } &&
+        all_parts(std::type_identity<typename Policies::World>{}, []<class S>() { return StepsByBlock<S> && HasInverseInertia<S>; });
     if constexpr (are_joints)
       static_assert(answer_alone,
                     "delassus: JointByJoint moves rigid bodies and particles, by SymplecticEuler or LiePoisson; take "
@@ -107,9 +103,8 @@ consteval bool visits_fit() {
 /// Springs that see the mean velocity need an integrator that goes with it, and gaps of each step.
 template <class Policies>
 consteval bool mean_springs_fit() {
-  constexpr bool has_none = []<class... L>(const Constraints<L...>*) {
-    return !(has_mean_springs<L> || ...);
-  }(static_cast<const typename Policies::Laws*>(nullptr));
+  constexpr bool has_none =
+      all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return !has_mean_springs<L>; });
   constexpr bool fit = has_none || (theta<typename Policies::Integrator>() != 1 &&
                                     !(requires { requires Policies::Scheme::divides_step; }));
   static_assert(fit, "delassus: Penalty with AtMean{} takes the mean velocity of a step, by which ImplicitMidpoint alone goes, "
@@ -131,19 +126,13 @@ consteval bool refinement_fits() {
 
 /// A law whose items bounce names what makes them bounce.
 template <class Law>
-consteval bool restitution_acts_of() {
+consteval bool restitution_acts() {
   constexpr bool bounces = requires(const Law& law, const typename Law::Item& item) { law.restitution(item); };
   constexpr bool acts = !bounces || names_override<NewtonImpact>(typename overrides_of<Law>::type{});
   static_assert(acts,
                 "delassus: a law with restitution(item) names what makes it bounce; add `using overrides = "
                 "Overrides<NewtonImpact>;` and include delassus/constraints/newton_impact.hpp");
   return acts;
-}
-template <class Laws>
-consteval bool restitution_acts() {
-  return []<class... L>(const Constraints<L...>*) {
-    return (restitution_acts_of<L>() && ...);
-  }(static_cast<const Laws*>(nullptr));
 }
 
 }  // namespace delassus::inner

@@ -16,6 +16,7 @@
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stage.hpp>
 #include <delassus/step/step_report.hpp>
+#include <delassus/step/warm_start.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -36,13 +37,8 @@ namespace delassus {
 /// one visit is exact and λ begins at zero; elsewhere it begins with that of the last step, and what the
 /// visits leave is measured once more. Nothing is kept of a joint between its visits.
 template <class World, class Laws>
-class JointVisits;
-
-template <class... Sets, class Laws>
-class JointVisits<World<Sets...>, Laws> {
+class JointVisits {
  public:
-  using World = delassus::World<Sets...>;
-
   /// Leaves v_next, which is v_free on entry, and the impulses of the joints. `scheme` says `sweeps` and
   /// `tolerance`.
   void run(World& world, Laws& laws, const auto& stabilisation, double h, double step_ratio,
@@ -92,22 +88,6 @@ class JointVisits<World<Sets...>, Laws> {
       m.siconos = std::sqrt(u / std::max(whole, lambda));
       m.worst = std::sqrt(worst / whole);
     }
-  };
-
-  /// Impulses beyond every load, see `forget_lost_islands`, are no start for the next step.
-  struct Loads {
-    double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
-    long joints = 0;
-
-    template <class V>
-    void add(double w, const V& d, const V& lambda) {
-      least = std::min(least, w);
-      most = std::max(most, w);
-      load = std::max(load, d.norm());
-      response = std::max(response, w * lambda.norm());
-      ++joints;
-    }
-    bool are_exceeded() const { return response * least > double(joints) * most * load; }
   };
 
   void begin(const World& world) {
@@ -208,7 +188,7 @@ class JointVisits<World<Sets...>, Laws> {
   [[gnu::noinline]] Sums measure(World& world, Laws& laws, const S& stabilisation, double h) {
     constexpr double far = 0.05;  // of the largest velocity
     Sums sums;
-    Loads loads;
+    inner::ImpulseLoads loads;  // as in `forget_lost_islands`
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
       using Row = Vec<rows_of<decltype(visit)>>;
       if (!visit.answers()) return;
@@ -216,18 +196,16 @@ class JointVisits<World<Sets...>, Laws> {
       sums.add(d, Row(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda)), lambda);
       loads.add(visit.trace() / int(Row::RowsAtCompileTime), d, lambda);
     });
-    if (sums.u > far * far * sums.velocity() && loads.are_exceeded()) start_cold(laws);
+    if (sums.u > far * far * sums.velocity() && loads.are_exceeded())
+      each_pool(laws, [&](auto, auto& pool) {
+        for (const Index place : pool.slots.active()) pool.starts_cold[place] = 1;
+      });
     return sums;
-  }
-  static void start_cold(Laws& laws) {
-    each_pool(laws, [&](auto, auto& pool) {
-      for (const Index place : pool.slots.active()) pool.starts_cold[place] = 1;
-    });
   }
 
   template <class Set>
   using Steps = Array<std::uint32_t>;
-  std::tuple<Steps<Sets>...> seen_;  ///< the last step in which a joint held the block
+  typename World::template PerSet<Steps> seen_;  ///< the last step in which a joint held the block
   std::uint32_t now_ = 0;
   bool are_shared_ = false;  ///< some block is held by two joints
 };

@@ -39,21 +39,11 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
 /// λ ← λ − λ₀ for the corrective motion; `predicted` keeps the total.
 template <class Rows, class Kept>
 void subtract_predicted(Rows& rows, Kept& predicted) {
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& lambda = rows.template pool<p>().lambda;
+  each_pool(rows, [&](auto p, auto& pool) {
     auto& kept = std::get<p>(predicted.pools);
-    for (std::size_t i = 0; i < lambda.size(); ++i) {
-      const auto change = (lambda[i] - kept[i]).eval();
-      kept[i] = lambda[i];
-      lambda[i] = change;
-    }
+    pool.lambda.swap(kept);  // λ₀ in λ, the total kept
+    for (Index i = 0; i < pool.items(); ++i) pool.lambda[i] = kept[i] - pool.lambda[i];
   });
-}
-
-/// λ ← the total again.
-template <class Rows, class Kept>
-void add_predicted(Rows& rows, const Kept& predicted) {
-  predicted.give_to(rows);
 }
 
 namespace inner {
@@ -72,7 +62,7 @@ struct PredictiveStages : Base {
   static void correct(auto& step) {
     subtract_predicted(step.rows, predicted(step));
     Base::correct(step);
-    add_predicted(step.rows, predicted(step));
+    predicted(step).give_to(step.rows);  // the total again
   }
 
  private:

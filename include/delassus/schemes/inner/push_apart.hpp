@@ -9,19 +9,22 @@
 namespace delassus {
 namespace inner {
 
-/// f(set, block, J) for the blocks behind a contact point, J = frame · (velocity of the point) as a rows × w matrix.
-template <int rows, class World, class F>
-void each_block_at(World& world, const Anchor& anchor, const Vec3& point, const Mat3& frame, F&& f) {
-  world.each([&](auto& set, auto s) {
-    if (s != anchor.set) return;
-    for (int k = 0; k < set.anchor_blocks(anchor); ++k) {
-      using Set = std::remove_reference_t<decltype(set)>;
-      Mat<rows, Set::width> J;
-      for (int r = 0; r < rows; ++r)
-        J.row(r) = set.along(anchor, k, point, frame.row(r).transpose()).template cast<double>().transpose();
-      f(set, set.anchor_block(anchor, k), J);
-    }
-  });
+/// f(side, set, block, J) for the blocks behind both ends of a contact, side −1 of a and 1 of b, J = frame · (velocity of
+/// the point) as a rows × w matrix.
+template <int rows, class World, class Item, class F>
+void each_block_of(World& world, const Item& item, F&& f) {
+  for (const double side : {-1.0, 1.0}) {
+    const Anchor& anchor = side < 0 ? item.record->a : item.record->b;
+    world.each([&](auto& set, auto s) {
+      if (s != anchor.set) return;
+      for (int k = 0; k < set.anchor_blocks(anchor); ++k) {
+        Mat<rows, std::remove_reference_t<decltype(set)>::width> J;
+        for (int r = 0; r < rows; ++r)
+          J.row(r) = set.along(anchor, k, item.point, item.frame.row(r).transpose()).template cast<double>().transpose();
+        f(side, set, set.anchor_block(anchor, k), J);
+      }
+    });
+  }
 }
 
 }  // namespace inner
@@ -38,35 +41,30 @@ void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
                     "delassus: CollisionsFirst makes a Penalty contact a force with the friction of Coulomb, or with none; take "
                     "Coulomb in place of RollingCoulomb or Pyramid, or the default scheme");
       if constexpr (is_force) for (const auto& item : pool.items) {
-        const Vec3& point = item.point;
         Vec<rows> u = Vec<rows>::Zero();
-        for (const double side : {-1.0, 1.0})
-          inner::each_block_at<rows>(world, side < 0 ? item.record->a : item.record->b, point, item.frame,
-                                     [&](auto& set, Index b, const auto& J) {
-                                       u += side * J * set.velocity()[b].template cast<double>();
-                                     });
+        inner::each_block_of<rows>(world, item, [&](double side, auto& set, Index b, const auto& J) {
+          u += side * J * set.velocity()[b].template cast<double>();
+        });
         // w = t · J A⁻¹ Jᵀ t along the slip t.
         Vec<rows> t = u;
         t[0] = 0;
         const double slip = t.norm();
         double w = 0;
         if (slip > 0)
-          for (const Anchor* end : {&item.record->a, &item.record->b})
-            inner::each_block_at<rows>(world, *end, point, item.frame, [&](auto& set, Index b, const auto& J) {
-              using T = typename std::remove_reference_t<decltype(set)>::Scalar;
-              const auto along = (J.transpose() * (t / slip)).eval();
-              if (set.moves(b)) w += along.dot(set.template solve_block<1>(b, along.template cast<T>()).template cast<double>());
-            });
+          inner::each_block_of<rows>(world, item, [&](double, auto& set, Index b, const auto& J) {
+            using T = typename std::remove_reference_t<decltype(set)>::Scalar;
+            const auto along = (J.transpose() * (t / slip)).eval();
+            if (set.moves(b)) w += along.dot(set.template solve_block<1>(b, along.template cast<T>()).template cast<double>());
+          });
         const Vec<rows> f = pool.law.law.force(item.parameters, item.gap, u, w, h);
         const Vec3 force = item.frame.template topRows<rows>().transpose() * f;
-        for (const double side : {-1.0, 1.0})
-          inner::each_block_at<rows>(world, side < 0 ? item.record->a : item.record->b, point, item.frame,
-                                     [&](auto& set, Index b, const auto& J) {
-                                       if (!set.moves(b)) return;
-                                       if constexpr (requires { set.apply_force(set.handle(b), force, point); })
-                                         set.apply_force(set.handle(b), side * force, point);
-                                       else set.apply_force(set.handle(b), side * Vec3(J.transpose() * f));
-                                     });
+        inner::each_block_of<rows>(world, item, [&](double side, auto& set, Index b, const auto& J) {
+          if (!set.moves(b)) return;
+          if constexpr (requires { set.apply_force(set.handle(b), force, item.point); })
+            set.apply_force(set.handle(b), side * force, item.point);
+          else
+            set.apply_force(set.handle(b), side * Vec3(J.transpose() * f));
+        });
         book.results[item.result].impulse = h * force;
       }
       pool.items.clear();

@@ -26,10 +26,9 @@ namespace delassus {
 template <class World, class Laws>
 class StepParts;
 
-template <class... Sets, class... L>
-class StepParts<World<Sets...>, Constraints<L...>> {
+template <class World, class... L>
+class StepParts<World, Constraints<L...>> {
  public:
-  using World = delassus::World<Sets...>;
   using Laws = Constraints<L...>;
 
   /// From here on h is h/count.
@@ -48,7 +47,10 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   void end_part(auto& step, int left) {
     if constexpr (sizeof...(L) > 0) add_impulses(step.laws(), step.contact_cache);
     if (left > 0) {
-      go_on(step.world(), left);
+      step.world().each([&](auto& set, auto s) {
+        if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
+      });
+      stay_on_the_way(step.world(), left > 1);
       if constexpr (Laws::has_contacts) follow(step);
       step.last_h = step.h;
     } else {
@@ -61,12 +63,6 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   }
 
  private:
-  void go_on(World& world, int left) {
-    world.each([&](auto& set, auto s) {
-      if constexpr (requires { set.loads(); }) set.loads() = std::get<s>(loads_);
-    });
-    stay_on_the_way(world, left > 1);
-  }
   void add_impulses(const Laws& laws, const ContactCache& book) {
     each_kept_pool(laws, [&](auto p, const auto& pool) {
       add(std::get<p>(sums_), pool.impulse, [](const auto& x) -> const auto& { return x; });
@@ -136,7 +132,7 @@ class StepParts<World<Sets...>, Constraints<L...>> {
   long steps_ = 0;
   std::tuple<Array<Vec<L::rows>>...> sums_;
   std::vector<Vec3> pushed_;  ///< impulses of the contacts, N·s
-  std::tuple<Array<typename Sets::Velocity>...> loads_;
+  typename World::template PerSet<VelocitiesOf> loads_;
   bool is_first_ = true;  ///< no part's impulses are in the sums
 };
 

@@ -11,9 +11,7 @@
 #include <limits>
 #include <span>
 
-namespace delassus {
-
-namespace inner {
+namespace delassus::inner {
 
 /// With w the mean velocity of the step,
 ///
@@ -118,13 +116,4 @@ struct ElasticNewton {
   }
 };
 
-}  // namespace inner
-
-template <class World, class Laws, class Rows>
-class ElasticNewtonStep : public StepBySets<inner::ElasticNewton, World> {
-  static_assert(Rows::pool_count == 0,
-                "delassus: FullNewton moves bodies without joints; take the laws out, or use "
-                "ImplicitEuler");
-};
-
-}  // namespace delassus
+}  // namespace delassus::inner

@@ -10,10 +10,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 
 namespace delassus {
 namespace inner {
+
+/// The paths of the bodies of a set, see `RigidPath`.
+template <class Set>
+using PathOf = typename Set::Path;
+
+/// G of the ends of `rows` ← answer(set, s, block, Hᵀ), H of the same ends in `from`; zero where nothing moves.
+template <class World, class Rows, class Answer>
+void answer_ends(const World& world, Rows& rows, const Rows& from, const Answer& answer) {
+  world.each([&](const auto& set, auto s) {
+    each_pool(rows, [&](auto p, auto& pool) {
+      auto& ends = std::get<s>(pool.sets);
+      const auto& H = std::get<s>(from.template pool<p>().sets).H;
+      ends.G.resize(H.size());
+      for (std::size_t e = 0; e < H.size(); ++e) {
+        const Mat<World::template width_of<s>, Rows::template rows_of<p>, typename Rows::Scalar> X = H[e].transpose();
+        if (set.moves(ends.block[e]))
+          ends.G[e] = answer(set, s, ends.block[e], X);
+        else
+          ends.G[e].setZero();
+      }
+    });
+  });
+}
 
 /// v_next of set s of a world.
 template <class World>
@@ -73,8 +97,8 @@ class Equalities {
         if (is_soft(pool, i, k)) pool.compliance[i][k] = T(1e30);
       });
       system_.begin();
-      for_each_index<Rows::pool_count>([&](auto p) {
-        for (Index i = 0; i < rows.template pool<p>().items(); ++i) system_.template take<p>(rows, i, true);
+      each_pool(rows, [&](auto p, const auto& pool) {
+        for (Index i = 0; i < pool.items(); ++i) system_.template take<p>(rows, i, true);
       });
       system_.analyse(0);
       return system_.factor(1e-12);
@@ -115,9 +139,8 @@ class Equalities {
   }
   template <class To>
   static void push_all(const Rows& rows, const Impulses<Rows>& lambda, To&& to) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i)
-        push<p>(rows, i, std::get<p>(lambda.pools)[i], to);
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i) push<p>(rows, i, std::get<p>(lambda.pools)[i], to);
     });
   }
 
@@ -130,15 +153,7 @@ class Equalities {
     });
   }
 
-  template <bool has, class R>
-  struct system_of {
-    struct type {};
-  };
-  template <class R>
-  struct system_of<true, R> {
-    using type = inner::DirectSystem<R>;
-  };
-  [[no_unique_address]] typename system_of<has_rows, Rows>::type system_;
+  [[no_unique_address]] std::conditional_t<has_rows, inner::DirectSystem<Rows>, std::tuple<>> system_;
 };
 
 }  // namespace delassus

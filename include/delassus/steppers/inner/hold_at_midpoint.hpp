@@ -17,12 +17,8 @@ namespace delassus {
 /// halved again. A chain that snaps taut is a shock in a step, and has to be met in its time; every part
 /// keeps what the rule keeps. A step that cannot be made so is begun again with rows that yield.
 template <class World, class Laws, class Rows>
-class MidpointHold;
-
-template <class... Sets, class Laws, class Rows>
-class MidpointHold<World<Sets...>, Laws, Rows> {
+class MidpointHold {
  public:
-  using World = delassus::World<Sets...>;
   using T = typename Rows::Scalar;
 
   /// Leaves q₊ and v_next in the sets and the sum of the parts' λ in `rows`, which is linearised at the start
@@ -30,7 +26,10 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   /// every body stays where it was: what it misses would come back as energy.
   template <class I>
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
-    keep(world);
+    world.each([&](auto& set, auto s) {
+      set.state().keep_poses();
+      std::get<s>(velocity_) = set.velocity();
+    });
     for (auto* all : {&newton_.impulses, &force_, &total_}) all->resize_like(rows);
     total_.set_zero();
     for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(rows.template pool<p>().lambda, h); });
@@ -97,11 +96,8 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   }
   /// λ of a step of h by the forces of the last part.
   void guess(double h) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      auto& lambda = std::get<p>(newton_.impulses.pools);
-      lambda = std::get<p>(force_.pools);
-      for (auto& x : lambda) x *= T(h);
-    });
+    newton_.impulses.set_zero();
+    newton_.impulses.add(force_, T(h));
   }
   /// Bodies where the step starts, and rows of there.
   void begin_again(World& world, const Laws& laws, Rows& rows) {
@@ -112,12 +108,6 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
     linearize(world, laws, rows);
     total_.set_zero();
     report_ = {.factorizations = report_.factorizations, .ended_by = "Newton"};
-  }
-  void keep(World& world) {
-    world.each([&](auto& set, auto s) {
-      set.state().keep_poses();
-      std::get<s>(velocity_) = set.velocity();
-    });
   }
   /// v of the end becomes v_next, v that of the start. Bodies without impulses are where they were, for
   /// `arrive` to move them; so are all when the step could not be made, which v_next says by being no number.
@@ -136,7 +126,7 @@ class MidpointHold<World<Sets...>, Laws, Rows> {
   }
 
   YieldingMidpoint<World, Laws, Rows> newton_;
-  std::tuple<Array<typename Sets::Velocity>...> velocity_;
+  typename World::template PerSet<VelocitiesOf> velocity_;
   Impulses<Rows> force_, total_;  ///< λ/h of the last part, and Σ λ
   SolveReport report_;
 };

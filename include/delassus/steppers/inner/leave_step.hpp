@@ -75,8 +75,8 @@ void keep_or_leave(World& world, const Laws& laws, Rows& rows, const I& integrat
         if (!is_sound && set.moves(b))
           set.v_next[b] = Velocity::Constant(std::numeric_limits<typename Velocity::Scalar>::quiet_NaN());
     });
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (auto& x : rows.template pool<p>().lambda) x.setZero();
+    each_pool(rows, [](auto, auto& pool) {
+      for (auto& x : pool.lambda) x.setZero();
     });
   }
 }

@@ -27,12 +27,11 @@ namespace delassus {
 /// `inner::DirectSystem` takes W, which is not symmetric. A soft row is λ = −h k (φ + φ₊)/2 − c (φ₊ − φ), φ
 /// at the start. Source: docs/references.md, [SimoWong1991]; the quadratic invariants of Gauss' methods.
 template <class World, class Laws, class Rows>
-class MidpointNewton;
+class MidpointNewton {
+  template <class Set>
+  using MidpointOf = typename Set::Midpoint;
 
-template <class... Sets, class Laws, class Rows>
-class MidpointNewton<World<Sets...>, Laws, Rows> {
  public:
-  using World = delassus::World<Sets...>;
   using T = typename Rows::Scalar;
 
   Impulses<Rows> impulses;  ///< the guess before `solve`, N·s of the step, and its result
@@ -166,7 +165,12 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     each_pool(rows, [&](auto p, auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) {
         const auto& lambda = std::get<p>(impulses.pools)[i];
-        world.each([&](auto& set, auto s) { push<p>(set, s, i, lambda); });
+        world.each([&](auto& set, auto s) {
+          each_push<p>(set, s, i, lambda, [&](Index b, const auto& by) {
+            std::get<s>(impulse_)[b] += by;
+            load_ = std::max(load_, double(linear_part(by).norm() / set.mass(b)));
+          });
+        });
         for (int k = 0; k < pool.rows; ++k) {
           pool.compliance[i][k] = std::get<p>(yield_.pools)[i][k];
           soften(pool, i, k, double(std::get<p>(start_.pools)[i][k]), h);
@@ -198,18 +202,10 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
       f(b, typename Set::Velocity(blocks.H[e].transpose() * lambda));
     }
   }
-  /// impulse += Hᵀλ.
-  template <int p, class Set, class S, class Lambda>
-  void push(const Set& set, S s, Index i, const Lambda& lambda) {
-    each_push<p>(set, s, i, lambda, [&](Index b, const auto& by) {
-      std::get<s>(impulse_)[b] += by;
-      load_ = std::max(load_, double(linear_part(by).norm() / set.mass(b)));
-    });
-  }
   /// The matrices of the bodies where `balance` was: the force at each end of an item stiffens its body.
   void differentiate(World& world, const Laws& laws, const Rows& rows, double h) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i)
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i)
         world.each([&](auto& set, auto s) {
           each_push<p>(set, s, i, std::get<p>(impulses.pools)[i], [&](Index b, const auto& by) {
             each_end(laws.template pool<p>().item(i), [&](const Anchor& end) {
@@ -236,7 +232,7 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   /// One step of Newton's method; false when its matrix is singular.
   bool improve(World& world, Rows& rows, double epsilon) {
     assemble(world, rows, [&](const auto&, auto s, Index b, const auto& X) {
-      return std::get<s>(bodies_).template answer<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
+      return std::get<s>(bodies_).answer(b, X);
     });
     if (!system_.factor(epsilon)) return false;
     system_.load([&](auto p, Index i) { return gap<p>(world, rows, i); });
@@ -247,25 +243,10 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
   /// W = H₊ answer(set, s, b, H(mean)ᵀ) of where the last `balance` was.
   template <class Answer>
   void assemble(World& world, Rows& rows, const Answer& answer) {
-    world.each([&](const auto& set, auto s) {
-      using Set = std::remove_cvref_t<decltype(set)>;
-      for_each_index<Rows::pool_count>([&](auto p) {
-        auto& end = std::get<s>(rows.template pool<p>().sets);
-        const auto& middle = std::get<s>(middle_.template pool<p>().sets);
-        end.G.resize(end.H.size());
-        for (std::size_t e = 0; e < end.H.size(); ++e) {
-          const Index b = end.block[e];
-          const Mat<Set::width, Rows::template rows_of<p>, T> X = middle.H[e].transpose();
-          if (set.moves(b))
-            end.G[e] = answer(set, s, b, X);
-          else
-            end.G[e].setZero();
-        }
-      });
-    });
+    inner::answer_ends(world, rows, middle_, answer);
     system_.begin();
-    for_each_index<Rows::pool_count>([&](auto p) {
-      for (Index i = 0; i < rows.template pool<p>().items(); ++i) system_.template take<p>(rows, i, true);
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i) system_.template take<p>(rows, i, true);
     });
     system_.analyse(0);
   }
@@ -304,8 +285,8 @@ class MidpointNewton<World<Sets...>, Laws, Rows> {
     });
   }
 
-  std::tuple<typename Sets::Midpoint...> bodies_;
-  std::tuple<Array<typename Sets::Velocity>...> force_, impulse_;
+  typename World::template PerSet<MidpointOf> bodies_;
+  typename World::template PerSet<VelocitiesOf> force_, impulse_;
   Rows middle_;
   Impulses<Rows> start_, yield_;
   inner::DirectSystem<Rows> system_;

@@ -28,12 +28,8 @@ namespace delassus {
 /// two meet, λ₁ takes along the same H. Source: docs/references.md, [Andersen1983], [LeimkuhlerReich2004]
 /// chapters 7 and 8, and for the parts [LeimkuhlerMatthews2016].
 template <class World, class Laws, class Rows>
-class RattleStep;
-
-template <class... Sets, class Laws, class Rows>
-class RattleStep<World<Sets...>, Laws, Rows> {
+class RattleStep {
  public:
-  using World = delassus::World<Sets...>;
   using T = typename Rows::Scalar;
 
   /// Leaves q₊ and v_next in the sets and λ₁ + λ₂ in `rows`, which is linearised at the start on entry.
@@ -150,20 +146,8 @@ class RattleStep<World<Sets...>, Laws, Rows> {
   }
   /// λ₁ −= (H₊ ∂q₊/∂λ₁)⁻¹ φ(q₊).
   bool improve(const World& world, Rows& rows, double h) {
-    world.each([&](const auto& set, auto s) {
-      for_each_index<Rows::pool_count>([&](auto p) {
-        auto& end = std::get<s>(rows.template pool<p>().sets);
-        const auto& start = std::get<s>(start_.template pool<p>().sets);
-        constexpr int R = Rows::template rows_of<p>;
-        end.G.resize(end.H.size());
-        for (std::size_t e = 0; e < end.H.size(); ++e) {
-          if (set.moves(end.block[e]))
-            end.G[e] =
-                std::get<s>(paths_).template answer<R>(set, end.block[e], start.H[e].transpose(), T(h));
-          else
-            end.G[e].setZero();
-        }
-      });
+    inner::answer_ends(world, rows, start_, [&](const auto& set, auto s, Index b, const auto& X) {
+      return std::get<s>(paths_).answer(set, b, X, T(h));
     });
     if (!equalities_.factor(rows)) return false;
     equalities_.solve(
@@ -200,9 +184,9 @@ class RattleStep<World<Sets...>, Laws, Rows> {
           });
   }
 
-  std::tuple<typename Sets::Path...> paths_, before_;  ///< from the start of a part, of the step
-  std::tuple<Array<typename Sets::Velocity>...> force_, free_, sent_,
-      kicked_;  ///< w of a part, of the first
+  typename World::template PerSet<inner::PathOf> paths_, before_;  ///< from the start of a part, of the step
+  typename World::template PerSet<VelocitiesOf> force_, free_;
+  typename World::template PerSet<VelocitiesOf> sent_, kicked_;  ///< w of a part, of the first
   Rows start_;
   Impulses<Rows> first_, second_, sum_;  ///< λ₁ and λ₂ of a part, and of all parts
   Equalities<Rows> equalities_;

@@ -24,12 +24,8 @@ namespace delassus {
 /// untouched, and the projection takes away the rest. Source: [HairerWanner1996], chapter VII.2; orientations
 /// as four numbers, made unit.
 template <class World, class Laws, class Rows>
-class RungeKuttaStep;
-
-template <class... Sets, class Laws, class Rows>
-class RungeKuttaStep<World<Sets...>, Laws, Rows> {
+class RungeKuttaStep {
  public:
-  using World = delassus::World<Sets...>;
   using T = typename Rows::Scalar;
 
   /// Leaves q₊ and v_next in the sets and the impulses of the step in `rows`.
@@ -151,7 +147,7 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
   template <int p>
   Vec<Rows::template rows_of<p>, T> missing(const Rows& rows, Index i) const {
     Vec<Rows::template rows_of<p>, T> r = std::get<p>(turned_.pools)[i];
-    for_each_index<int(sizeof...(Sets))>([&](auto s) {
+    for_each_index<World::set_count>([&](auto s) {
       const auto& blocks = std::get<s>(rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         r.noalias() += blocks.H[e] * std::get<s>(a_)[blocks.block[e]];
@@ -185,7 +181,13 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
         last = size;
         equalities_.solve(
             rows, [&](auto p, Index i) { return rows.template pool<p>().phi[i]; },
-            [&](auto p, Index i, const auto& change) { displace<p>(world, rows, i, change); });
+            [&](auto p, Index i, const auto& change) {
+              world.each([&](auto& set, auto s) {
+                const auto& blocks = std::get<s>(rows.template pool<p>().sets);
+                for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+                  if (set.moves(blocks.block[e])) set.displace(blocks.block[e], blocks.G[e] * change);
+              });
+            });
       }
       for (int pass = 0; pass < 2; ++pass)
         equalities_.solve(
@@ -195,17 +197,9 @@ class RungeKuttaStep<World<Sets...>, Laws, Rows> {
             });
     }
   }
-  template <int p, class Change>
-  static void displace(World& world, const Rows& rows, Index i, const Change& change) {
-    world.each([&](auto& set, auto s) {
-      const auto& blocks = std::get<s>(rows.template pool<p>().sets);
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-        if (set.moves(blocks.block[e])) set.displace(blocks.block[e], blocks.G[e] * change);
-    });
-  }
 
-  std::tuple<typename Sets::Path...> paths_;
-  std::tuple<Array<typename Sets::Velocity>...> a_;
+  typename World::template PerSet<inner::PathOf> paths_;
+  typename World::template PerSet<VelocitiesOf> a_;
   Impulses<Rows> lambda_, force_, turned_;
   Equalities<Rows> equalities_;
   double speed_ = 0;

@@ -162,12 +162,10 @@ struct StepByAcceleration {
 
 /// The set goes to x₊, and takes v₊: what `advance` of an integrator by this step does.
 void arrive_with_velocity(auto& set, double h) {
-  if constexpr (requires { set.active(); }) {
-    set.advance(h);
-    auto& v = set.velocity();
-    for (const Index b : set.active())
-      if (set.moves(b) && is_finite(set.v_next[b]) && is_finite(set.v_free[b])) v[b] = set.v_free[b];
-  }
+  set.advance(h);
+  auto& v = set.velocity();
+  for (const Index b : set.active())
+    if (set.moves(b) && is_finite(set.v_next[b]) && is_finite(set.v_free[b])) v[b] = set.v_free[b];
 }
 
 }  // namespace delassus

@@ -26,16 +26,14 @@ double reach(const Set& set) {
 
 /// `One<Set>` is the step of one set: `solve(set, integrator, h, factorizations)` leaves it in `v_next` and
 /// `v_free`, q and v as they were. What of it outlives a step it says in `memory`, if there is any.
-template <template <class> class One, class World>
-class StepBySets;
+template <template <class> class One, class World, class Laws>
+class StepBySets {
+  static_assert(Laws::pool_count == 0,
+                "delassus: Bdf2, FullNewton, GeneralizedAlpha and Newmark move bodies without joints; take the laws out, or use "
+                "ImplicitEuler or ImplicitMidpoint");
 
-template <template <class> class One, class... Sets>
-class StepBySets<One, World<Sets...>> {
  public:
-  using World = delassus::World<Sets...>;
-
-  template <class Laws, class Rows, class I>
-  SolveReport solve(World& world, const Laws&, Rows&, const I& integrator, double h) {
+  SolveReport solve(World& world, const Laws&, const auto&, const auto& integrator, double h) {
     SolveReport report{.ended_by = "Newton"};
     world.each([&](auto& set, auto s) {
       report.status =
@@ -52,7 +50,7 @@ class StepBySets<One, World<Sets...>> {
     if constexpr (requires { one.memory(archive); }) one.memory(archive);
   }
 
-  std::tuple<One<Sets>...> sets_;
+  typename World::template PerSet<One> sets_;
 };
 
 }  // namespace delassus

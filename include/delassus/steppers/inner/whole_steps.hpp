@@ -22,17 +22,6 @@ inline void check_newton(const std::string& name, double tolerance, int max_iter
   DELASSUS_EXPECT(max_iterations > 0, name + ": max_iterations " + text(max_iterations) + " must be > 0");
 }
 
-/// p += f(q, v), and all of it times h: N·s.
-void kick(const auto& set, auto& p, double h) {
-  set.add_forces(p);
-  times(p, h);
-}
-
-/// The step has put the bodies where they are; their velocity is v_next.
-void finish_step(auto& set, double h) {
-  if constexpr (requires { set.finish_step(h); }) set.finish_step(h);
-}
-
 /// Linearize to Correct by the state of the integrator, whose solve(world, laws, rows, integrator, h) leaves v_next and λ,
 /// and returns a SolveReport.
 void solve_at_once(auto& step) {

@@ -54,9 +54,8 @@ class YieldingMidpoint : public MidpointNewton<World, Laws, Rows> {
  private:
   /// By the masses alone: the stiffness of a large idle share would weigh the rows.
   void assemble_masses(World& world, Rows& rows) {
-    this->assemble(world, rows, [](const auto& set, auto, Index b, const auto& X) {
-      return set.template solve_block<std::remove_cvref_t<decltype(X)>::ColsAtCompileTime>(b, X);
-    });
+    this->assemble(world, rows,
+                   [](const auto& set, auto, Index b, const auto& X) { return set.solve_block(b, X); });
   }
 
   LeastImpulses<inner::DirectSystem<Rows>> least_;
