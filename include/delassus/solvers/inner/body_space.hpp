@@ -1,7 +1,6 @@
 /// One island as a system of equations for the velocities of its bodies.
 #pragma once
 
-#include <delassus/constraints/law.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -11,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -20,10 +18,9 @@ namespace delassus::inner {
 ///   F(y) = y − G (λ(u) − λ̂),   u = d + W λ̂ + H y,   J = 1 + G S H,
 ///
 /// λ(u) the impulses that meet the laws with W = diag(R + ε w) at velocity u around λ̂: the proximal point.
-template <class Rows>
+template <class Rows, class System = NewtonSystem<NewtonItem, Rows>>
 class BodySpace {
  public:
-  using System = NewtonSystem<NewtonItem, Rows>;
   using T = typename Rows::Scalar;
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
@@ -54,7 +51,7 @@ class BodySpace {
     each(problem, [&](auto p, auto& c, auto& sides) {
       for (int k = 0; k < int(c.trial.size()); ++k) c.trial[k] = c.velocity[k] + fraction * c.move[k];
       auto local = proximal(c, epsilon);
-      c.slope = tangent<p>(problem, c.item, local);
+      c.slope = c.template tangent<p>(problem, local);
       c.lambda = local.lambda;
       const auto change = (c.lambda - c.centre).eval();
       for (Index s = c.first; s < c.last; ++s)
@@ -80,7 +77,7 @@ class BodySpace {
       for (std::size_t k = 0; k < kinds.size(); ++k)
         if (kinds[k] == RowKind::lower || kinds[k] == RowKind::upper)
           local.d[k] += (kinds[k] == RowKind::lower ? -1e-3 : 1e-3) * error;
-      c.slope = tangent<p>(problem, c.item, local);
+      c.slope = c.template tangent<p>(problem, local);
     });
   }
 
@@ -167,13 +164,14 @@ class BodySpace {
     each(problem, [&](auto p, auto& c, auto&) { problem.template assign<p>(c.item, which(c).template cast<T>()); });
   }
 
- private:
-  using Velocity = typename System::Velocities::value_type;
-
+ protected:
   template <class Problem, class F>
   void each(Problem& problem, F&& f) {
     system_.each_until([&](int work) { return problem.is_cut_off(work); }, f);
   }
+
+ private:
+  using Velocity = typename System::Velocities::value_type;
 
   /// The problem of one law: diag(R + ε w), u and λ̂.
   template <int r>
@@ -188,15 +186,6 @@ class BodySpace {
     for (int k = 0; k < r; ++k)
       velocity[k] = c.velocity[k] - c.error[k] + c.compliance[k] * (c.lambda[k] - c.centre[k]);
     return velocity;
-  }
-
-  /// A pool without a tangent is never in an island that is gathered.
-  template <int p, int r, class Problem>
-  static Mat<r, r> tangent(const Problem& problem, Index item, Local<r>& local) {
-    if constexpr (has_tangent<typename Problem::BookType, p, r>)
-      return problem.book().template tangent<p>(item, local);
-    else
-      return Mat<r, r>::Zero();
   }
 
   System system_;

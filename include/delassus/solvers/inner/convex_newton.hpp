@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 namespace delassus::inner {
 
@@ -47,7 +46,7 @@ struct ConvexNewton {
       if (drifts)
         work.extrapolate(problem, far);
       else
-        work.template recentre<Problem>();
+        work.recentre(problem);
       far = drifts ? 2 * far : std::max(0.25 * far, 1.0);
       last = residual;
       epsilon = std::clamp(residual, least, coarse);
@@ -56,8 +55,7 @@ struct ConvexNewton {
       polished = residual;
       if (polish(now)) return now.report;
     }
-    work.hand_over(
-        problem, [](const auto& c) -> const auto& { return c.best; });
+    work.hand_over(problem, [](const auto& c) { return c.best; });
     now.report.measure = problem.measure();
     return now.report;
   }
@@ -91,11 +89,11 @@ struct ConvexNewton {
     for (int k = 1, turned = 0; k <= max_iterations && turned <= turns; ++k) {
       now.report.factorizations += now.work.descend(now.problem, epsilon);
       if (is_done(now)) return true;
-      const double left = now.work.distance(epsilon), residual = now.report.measure.residual;
+      const double left = now.work.distance(now.problem, epsilon), residual = now.report.measure.residual;
       const bool is_near = left < std::min(10 * tolerance, 0.5 * residual);
       const bool is_solved =
           left < 0.1 * tolerance || (is_near && k > patience && k % between_turns == 0);
-      now.work.template recentre<std::remove_cvref_t<decltype(now.problem)>>(!is_solved);
+      now.work.recentre(now.problem, !is_solved);
       turned += is_solved;
       if (k % between_marks == 0) {
         if (turned == 0 && left > std::max(0.8 * marked, tolerance)) break;
@@ -105,8 +103,7 @@ struct ConvexNewton {
       epsilon = std::clamp(std::min(left, residual), least, coarse);
     }
     if (!(now.best.residual <= tolerance)) return false;
-    now.work.hand_over(
-        now.problem, [](const auto& c) -> const auto& { return c.best; });
+    now.work.hand_over(now.problem, [](const auto& c) { return c.best; });
     return is_done(now, now.problem.measure());
   }
 
@@ -146,8 +143,7 @@ struct ConvexNewton {
       now.work.mark(now.problem);
       epsilon = std::max(0.03 * epsilon, 1e-7);
     }
-    now.work.hand_over(
-        now.problem, [](const auto& c) -> const auto& { return c.before; });
+    now.work.hand_over(now.problem, [](const auto& c) { return c.before; });
     now.work.restart(now.problem, keeps_slips);
     return false;
   }

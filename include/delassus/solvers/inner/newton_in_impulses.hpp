@@ -6,11 +6,11 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
+#include <delassus/solvers/inner/halve_step.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace delassus::inner {
 
@@ -93,15 +93,9 @@ struct NewtonInImpulses {
       if (step > 0 && !problem.has_time_for(work)) break;
       if (!space.find_direction(epsilon)) return 1;
       ++report.factorizations;
-      double best = 0, least = std::numeric_limits<double>::infinity();
-      for (double t = 1; t > 2e-4; t *= 0.5) {
-        const double trial = space.evaluate(epsilon, t);
-        if (trial < least) least = trial, best = t;
-        if (trial <= (1 - 1e-3 * t) * size) break;
-      }
-      if (!(least < 0.999 * size)) return size / first;
-      space.advance(best);
-      size = space.evaluate(epsilon);
+      const double before = size, t = halve_step(size, 13, [&](double t) { return space.evaluate(epsilon, t); });
+      if (!(size < 0.999 * before)) return before / first;
+      space.advance(t);
     }
     return first > 0 ? size / first : 0;
   }

@@ -11,18 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 namespace delassus::inner {
-
-/// A book that answers with the tangent of pool p.
-template <class Book, int p, int R>
-inline constexpr bool has_tangent = requires(const Book& book, Local<R>& c) {
-  { book.template tangent<p>(Index(0), c) } -> std::same_as<Mat<R, R>>;
-};
 
 template <template <int> class Item, class Rows>
 class NewtonSystem;
