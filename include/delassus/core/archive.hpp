@@ -1,14 +1,12 @@
 /// What outlives a step, as bytes: each owner names it in `memory(archive)`.
 #pragma once
 
-#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <deque>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -24,24 +22,14 @@ void walk(Archive& archive, X& x) {
   if constexpr (requires { x.memory(archive); }) x.memory(archive);
   else archive.bytes(&x, sizeof x);
 }
-template <class Archive, class E>
-void walk(Archive& archive, std::vector<E>& list) {
+/// Of a list that can grow.
+template <class Archive, class List>
+  requires requires(List& list) { list.push_back(list[0]); }
+void walk(Archive& archive, List& list) {
   archive.size(list);
-  if constexpr (requires(E& e) { e.memory(archive); })
-    for (E& e : list) walk(archive, e);
-  else archive.bytes(list.data(), list.size() * sizeof(E));
-}
-template <class Archive, class E>
-void walk(Archive& archive, Array<E>& list) {
-  archive.size(list);
-  if constexpr (requires(E& e) { e.memory(archive); })
-    for (E& e : list) walk(archive, e);
-  else archive.bytes(list.data(), list.size() * sizeof(E));
-}
-template <class Archive, class E>
-void walk(Archive& archive, std::deque<E>& list) {
-  archive.size(list);
-  for (E& e : list) walk(archive, e);
+  if constexpr (requires { list[0].memory(archive); } || !requires { list.data(); })
+    for (auto& element : list) walk(archive, element);
+  else archive.bytes(list.data(), list.size() * sizeof(list[0]));
 }
 template <class Archive, class E, std::size_t n>
 void walk(Archive& archive, std::array<E, n>& list) {

@@ -23,7 +23,12 @@ class BlockLu {
   };
 
   /// All diagonal blocks and, both ways, the pairs (i, j), i ≠ j, in any order, repeats allowed.
-  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs);
+  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
+    pattern_.analyse(blocks, pairs);
+    diagonal_.resize(blocks);
+    pivot_.resize(blocks);
+    work_.resize(blocks);
+  }
 
   /// `ends(n)` is asked after the work of n products of blocks, and where it says so A is of no use; so it is
   /// in `factor`, and in `solve` x.
@@ -77,11 +82,7 @@ class BlockLu {
   }
 
   /// Whether det A < 0.
-  bool is_negative() const {
-    bool is = false;
-    for (const auto& pivot : pivot_) is ^= pivot.is_negative();
-    return is;
-  }
+  bool is_negative() const { return delassus::is_negative<w, T>(pivot_); }
 
   /// x ← A⁻¹ x.
   template <class Ends = Never>
@@ -108,13 +109,5 @@ class BlockLu {
   Array<PivotedLu<w, T>> pivot_;
   mutable Array<Vec<w, T>> work_;
 };
-
-template <int w, class T>
-void BlockLu<w, T>::analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
-  pattern_.analyse(blocks, pairs);
-  diagonal_.resize(blocks);
-  pivot_.resize(blocks);
-  work_.resize(blocks);
-}
 
 }  // namespace delassus

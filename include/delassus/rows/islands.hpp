@@ -44,7 +44,7 @@ class Islands {
       lowest_[p].assign(pool.items(), -1);
       for (Index i = 0; i < pool.items(); ++i) join(pool, i, first_block, moves, lowest_[p][i]);
     });
-    number(rows);
+    number();
     for_each_index<Rows::pool_count>([&](auto p) { sort(p); });
   }
 
@@ -99,8 +99,7 @@ class Islands {
     if (b < a) parent_[a] = b;
   }
 
-  template <class Rows>
-  void number(const Rows&) {
+  void number() {
     const Index blocks = Index(parent_.size());
     island_.assign(blocks, -1);
     for (const auto& pool : lowest_)

@@ -112,14 +112,6 @@ struct BasicDirectGaussSeidel {
  private:
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
 
-  /// A law whose rows are all equalities.
-  template <class Problem, int p>
-  static constexpr bool holds_exactly() {
-    for (const RowKind kind : Problem::BookType::template kinds<p>())
-      if (kind != RowKind::equality) return false;
-    return true;
-  }
-
   /// The bilateral constraints first; false where there are none, or the direct path cannot act.
   template <class Problem, class System>
   bool gather(const Problem& problem, System& joints) const {
@@ -128,12 +120,12 @@ struct BasicDirectGaussSeidel {
     int swept = 0;
     for (const bool is_bilateral : {true, false})
       problem.each([&](auto p, Index i) {
-        if (holds_exactly<Problem, p>() != is_bilateral) return;
+        if (inner::are_equalities(Problem::BookType::template kinds<p>()) != is_bilateral) return;
         can &= joints.template take<p>(problem.rows(), i, is_bilateral);
         if (!is_bilateral) swept += System::Rows::template rows_of<p>;
       });
     if (!can || joints.bilateral() == 0 || swept > max_swept_rows) return false;
-    joints.analyse(std::size_t(problem.island()));
+    joints.analyse(problem.island());
     return true;
   }
 

@@ -44,11 +44,6 @@ class IslandProblem {
   IslandProblem<Book, Rows, OtherOperator, Observer, OtherGroups> with(OtherOperator& W, const OtherGroups& items) const {
     return {book_, rows_, W, items, island_, h_, observer_};
   }
-  /// The same items too.
-  template <class OtherOperator>
-  IslandProblem<Book, Rows, OtherOperator, Observer, Groups> with(OtherOperator& W) const {
-    return {book_, rows_, W, islands_, island_, h_, observer_};
-  }
   Operator& compliance() const { return W_; }
   const Groups& groups() const { return islands_; }
   /// Laws that keep something of their own block of W make it anew from `own_block`.
@@ -187,12 +182,10 @@ class IslandProblem {
   /// The way back, each λ_i brought into its law's cone.
   void scatter(const Array<double>& from) {
     std::size_t at = 0;
-    each([&](auto p, Index i) {
+    change([&](auto p, Index i, auto& next) {
       const double root = root_of_weight<p>(i);
-      Vec<Rows::template rows_of<p>, T> next;
       for (T& x : next) x = root > 0 ? T(from[at++] / root) : (++at, T(0));
       book_.template clamp<p>(i, next);
-      assign<p>(i, next);
     });
   }
 
@@ -207,6 +200,20 @@ class IslandProblem {
   template <int p>
   double root_of_weight(Index i) const {
     return std::sqrt(double(W_.template diagonal<p>(i).trace()) / Rows::template rows_of<p>);
+  }
+
+  /// λ_i ← what f(p, i, λ_i) makes of it, for every constraint, and W is told.
+  template <class F>
+  void change(F&& f) {
+    each([&](auto p, Index i) {
+      auto next = rows_.template pool<p>().lambda[i];
+      f(p, i, next);
+      assign<p>(i, next);
+    });
+  }
+  /// λ ← 0.
+  void clear() {
+    change([](auto, Index, auto& next) { next.setZero(); });
   }
 
   /// λ_i ← next, and W is told.

@@ -40,7 +40,7 @@ class RotatedInverse {
   void analyse(const auto& body) {
     factor_.analyse(Index(body.blocks().size()), body.pairs(), body.mesh().points);
     const std::size_t n = body.blocks().size();
-    for (NodeVectors* list : {&x_, &r_, &z_, &p_, &q_, &then_}) list->assign(n, Velocity::Zero());
+    for (NodeVectors* list : {&r_, &z_, &p_, &q_, &then_}) list->assign(n, Velocity::Zero());
     for (auto& guess : guess_) guess.assign(n, Velocity::Zero());
     turned_.assign(n, Vec<3, S>::Zero());
     slot_.assign(n, -1);
@@ -192,7 +192,7 @@ class RotatedInverse {
   SystemScale scale_;
   Array<Index> known_, slot_;
   Array<S> kept_;
-  NodeVectors x_, r_, z_, p_, q_, guess_[2];
+  NodeVectors r_, z_, p_, q_, guess_[2];
   Array<Vec<3, S>> turned_;
 };
 

@@ -19,27 +19,16 @@ namespace delassus::inner {
 ///
 /// λ(u) the impulses that meet the laws with W = diag(R + ε w) at velocity u around λ̂: the proximal point.
 template <class Rows, class System = NewtonSystem<NewtonItem, Rows>>
-class BodySpace {
+class BodySpace : public System {
  public:
   using T = typename Rows::Scalar;
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
   template <class Problem>
   bool gather(Problem& problem) {
-    if (!system_.gather(problem)) return false;
-    for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
+    if (!System::gather(problem)) return false;
+    for (auto* array : {&y_, &change_, &residual_}) array->assign(this->blocks(), Velocity::Zero());
     return true;
-  }
-
-  /// Of a factorization and what goes with it, in sweeps.
-  double cost_in_sweeps() { return system_.cost_in_sweeps(); }
-
-  /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
-  /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
-  /// answers.
-  template <class Problem>
-  double energy_of_stopping(Problem& problem) {
-    return system_.energy_of_stopping(problem);
   }
 
   /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
@@ -85,10 +74,10 @@ class BodySpace {
   template <class Problem>
   bool find_direction(Problem& problem) {
     const auto ends = [&](int work) { return problem.is_cut_off(work); };
-    if (!system_.factor(ends)) return false;
+    if (!this->factor(ends)) return false;
     for (std::size_t b = 0; b < change_.size(); ++b)
       for (int k = 0; k < System::width; ++k) change_[b][k] = -residual_[b][k];
-    system_.solve(change_, ends);
+    this->solve(change_, ends);
     each(problem, [&](auto, auto& c, auto& sides) {
       c.move.setZero();
       for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, change_[sides[s].block], c.move);
@@ -167,7 +156,7 @@ class BodySpace {
  protected:
   template <class Problem, class F>
   void each(Problem& problem, F&& f) {
-    system_.each_until([&](int work) { return problem.is_cut_off(work); }, f);
+    this->each_until([&](int work) { return problem.is_cut_off(work); }, f);
   }
 
  private:
@@ -188,7 +177,6 @@ class BodySpace {
     return velocity;
   }
 
-  System system_;
   double error_ = 0;
   typename System::Velocities y_, change_, residual_;
 };

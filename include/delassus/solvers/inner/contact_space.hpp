@@ -73,18 +73,15 @@ class ContactSpace {
     problem.each([&](auto p, Index i) {
       for (const auto x : problem.rows().template pool<p>().lambda[i]) lambda[at++] = double(x);
     });
-    recentre();
+    centre_ = lambda;
   }
-  void recentre() { centre_ = lambda; }
   /// The problem takes λ, each brought into its law's cone.
   template <class Problem>
   void give(Problem& problem) const {
     std::size_t at = 0;
-    problem.each([&](auto p, Index i) {
-      Vec<Rows::template rows_of<p>, typename Rows::Scalar> next;
+    problem.change([&](auto p, Index i, auto& next) {
       for (auto& x : next) x = typename Rows::Scalar(lambda[at++]);
       problem.book().template clamp<p>(i, next);
-      problem.template assign<p>(i, next);
     });
   }
 
@@ -135,11 +132,9 @@ class ContactSpace {
   void read_W(Problem& problem) {
     using T = typename Rows::Scalar;
     const std::size_t n = lambda.size();
-    Impulses<Rows>& was = was_;
-    was.resize_like(problem.rows());
-    problem.save(was);
-    problem.each(
-        [&](auto p, Index i) { problem.template assign<p>(i, Vec<Rows::template rows_of<p>, T>::Zero()); });
+    was_.resize_like(problem.rows());
+    problem.save(was_);
+    problem.clear();
     const auto read = [&](double* to) {
       std::size_t at = 0;
       problem.each([&](auto p, Index i) {
@@ -164,7 +159,7 @@ class ContactSpace {
       }
       problem.template assign<p>(i, Vec<R, T>::Zero());
     });
-    problem.load(was);
+    problem.load(was_);
   }
 
   /// u ← d + W x.

@@ -4,12 +4,12 @@
 #include <delassus/core/array.hpp>
 #include <delassus/linear/sparse_lu.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/island_matrices.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -104,23 +104,17 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
   /// Lists sides by block and brings the analysis of graph `which` up to date.
-  void analyse(std::size_t which) {
+  void analyse(Index which) {
     list_sides();
     number_hubs();
     list_pairs();
-    if (graphs_.size() <= which) graphs_.resize(which + 1);
-    graph_ = &graphs_[which];
-    if (graph_->size != size_ || graph_->pairs != pairs_) {
-      graph_->size = size_;
-      graph_->pairs.assign(pairs_.begin(), pairs_.end());
-      graph_->matrix.analyse(size_, pairs_);
-    }
+    matrix_ = &matrices_.of(which, size_, pairs_);
     x_.resize(size_);
   }
 
   /// False when a pivot block is singular to working precision.
   bool factor(double epsilon) {
-    auto& A = graph_->matrix;
+    auto& A = *matrix_;
     A.set_identity();
     for (Index k = 0; k < bilateral_; ++k) {
       auto& own = A.at(k, k);
@@ -157,7 +151,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     for (Row& x : x_) x.setZero();
   }
   void set_right_side(Index k, const Row& r) { x_[k] = r; }
-  void solve() { graph_->matrix.solve(x_); }
+  void solve() { matrix_->solve(x_); }
   /// δ of bilateral constraint k after `solve`.
   const Row& answer(Index k) const { return x_[k]; }
   /// Sets the answers aside, so that the right side can be loaded anew.
@@ -190,12 +184,6 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
  private:
-  struct Graph {
-    Index size = -1;
-    Array<std::pair<Index, Index>> pairs;
-    SparseLu<w, double> matrix;
-  };
-
   Index number(int s, Index b) {
     auto& number = number_[s];
     if (Index(number.size()) <= b) number.resize(b + 1, -1);
@@ -262,8 +250,8 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   Array<Side> sides_;
   Array<Index> start_, order_, next_, held_, hub_;
   Array<std::pair<Index, Index>> pairs_;
-  std::vector<Graph> graphs_;  ///< the analysis of each island is kept while its graph stands
-  Graph* graph_ = nullptr;
+  IslandMatrices<SparseLu<w, double>> matrices_;
+  SparseLu<w, double>* matrix_ = nullptr;
   Array<Row> x_, step_;
 };
 

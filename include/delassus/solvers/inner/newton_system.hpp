@@ -6,6 +6,7 @@
 #include <delassus/math/small_products.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/island_matrices.hpp>
 #include <delassus/solvers/inner/newton_item.hpp>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -104,7 +104,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     const double of_block = width * width * width / 6.0;
     return (of_block * matrix_->products() + 200 * constraints) / (entries + 5 * constraints);
   }
-  /// Σ w_i P², see `BodySpace`; a body's mass at a contact is rows/tr(H G).
+  /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
+  /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
+  /// answers; at a contact that is rows/tr(H G).
   template <class Problem>
   double energy_of_stopping(Problem& problem) {
     double weights = 0, fastest = 0, mass = 0;
@@ -148,7 +150,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
   bool finish(Index island) {
     balance();
-    analyse(island);
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    matrix_ = &matrices_.of(island, Index(blocks()), pairs_);
     return true;
   }
 
@@ -187,13 +191,6 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   Array<std::pair<Index, Index>> pairs_;  ///< of blocks that a constraint joins
 
  private:
-  /// The graph of an island and the matrix analysed for it.
-  struct Graph {
-    std::size_t blocks = 0;
-    Array<std::pair<Index, Index>> pairs;
-    BlockLu<width, double> matrix;
-  };
-
   /// Whether each block answers to its impulses alone, by G.
   template <class Problem>
   static bool knows_answers(const Problem& problem) {
@@ -283,23 +280,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
   }
 
-  /// The matrix of the island keeps its analysis while the graph of its bodies stands.
-  void analyse(Index island) {
-    std::sort(pairs_.begin(), pairs_.end());
-    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-    if (Index(graphs_.size()) <= island) graphs_.resize(island + 1);
-    Graph& graph = graphs_[island];
-    if (graph.blocks != blocks() || graph.pairs != pairs_) {
-      graph.blocks = blocks();
-      graph.pairs.assign(pairs_.begin(), pairs_.end());
-      graph.matrix.analyse(Index(blocks()), pairs_);
-    }
-    matrix_ = &graph.matrix;
-  }
-
   std::array<Array<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
   Array<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
-  std::vector<Graph> graphs_;
+  IslandMatrices<BlockLu<width, double>> matrices_;
   BlockLu<width, double>* matrix_ = nullptr;
   Array<Index> count_;  ///< of sides on each block
   Array<double> mass_;
