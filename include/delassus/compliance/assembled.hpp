@@ -53,8 +53,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   using Sum = double;
   static constexpr int pools = int(sizeof...(R));
 
-  template <class World>
-  void build(const World& world, Rows& rows) {
+  void build(const auto& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
       if constexpr (couples<decltype(set)>)
         if (set.is_coupled()) return coupling_of(set).template prepare<s>(set, rows);
@@ -80,8 +79,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
 
   /// The rows of those items alone of which keep(pool, item) is true; the others have no blocks, and of W_ii only
   /// their own compliance. Pre: G stands, and no set couples its blocks.
-  template <class World, class Keep>
-  void build_where(const World& world, const Rows& rows, const Keep& keep) {
+  void build_where(const auto& world, const Rows& rows, const auto& keep) {
     world.each([&](const auto& set, auto s) { incidence_.template find<s>(rows, set.blocks()); });
     for_each_index<pools>([&](auto a) { build_rows<a>(world, rows, [&](Index i) { return keep(a, i); }); });
   }

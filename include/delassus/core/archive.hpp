@@ -17,8 +17,7 @@ namespace inner {
 
 /// Calls one(x) for the parts of x that can be copied byte by byte, and size(container) before the elements of a container.
 /// An owner with memory(archive) is asked; what holds a pointer and has no memory(archive) must not be named.
-template <class Archive, class X>
-void walk(Archive& archive, X& x) {
+void walk(auto& archive, auto& x) {
   if constexpr (requires { x.memory(archive); }) x.memory(archive);
   else archive.bytes(&x, sizeof x);
 }
@@ -56,8 +55,7 @@ class ArchiveWriter {
     const char* first = static_cast<const char*>(from);
     data.insert(data.end(), first, first + count);
   }
-  template <class List>
-  void size(const List& list) {
+  void size(const auto& list) {
     const std::uint64_t count = list.size();
     bytes(&count, sizeof count);
   }
@@ -78,8 +76,7 @@ class ArchiveReader {
     if (count > 0) std::memcpy(to, left_.data(), count);
     left_ = left_.subspan(count);
   }
-  template <class List>
-  void size(List& list) {
+  void size(auto& list) {
     std::uint64_t count = 0;
     bytes(&count, sizeof count);
     // Every element takes a byte at least: a count beyond that is damage, and must not become an allocation.

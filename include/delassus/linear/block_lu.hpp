@@ -23,12 +23,7 @@ class BlockLu {
   };
 
   /// All diagonal blocks and, both ways, the pairs (i, j), i ≠ j, in any order, repeats allowed.
-  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
-    pattern_.analyse(blocks, pairs);
-    diagonal_.resize(blocks);
-    pivot_.resize(blocks);
-    work_.resize(blocks);
-  }
+  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs);
 
   /// `ends(n)` is asked after the work of n products of blocks, and where it says so A is of no use; so it is
   /// in `factor`, and in `solve` x.
@@ -109,5 +104,13 @@ class BlockLu {
   Array<PivotedLu<w, T>> pivot_;
   mutable Array<Vec<w, T>> work_;
 };
+
+template <int w, class T>
+void BlockLu<w, T>::analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
+  pattern_.analyse(blocks, pairs);
+  diagonal_.resize(blocks);
+  pivot_.resize(blocks);
+  work_.resize(blocks);
+}
 
 }  // namespace delassus

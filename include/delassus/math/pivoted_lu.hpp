@@ -51,8 +51,7 @@ class PivotedLu {
   }
 
   /// X ← X A⁻ᵀ for a matrix X of any height: column(k), k < w, are its columns, to be written to.
-  template <class Column>
-  void solve_rows(const Column& column) const {
+  void solve_rows(const auto& column) const {
     for (int k = 0; k < w; ++k)
       if (swap_[k] != k) column(k).swap(column(swap_[k]));
     for (int k = 0; k < w; ++k)

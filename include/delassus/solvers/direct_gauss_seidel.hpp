@@ -77,7 +77,10 @@ struct BasicDirectGaussSeidel {
     report.ended_by = "factorization";
     bool is_contradiction = false;
     for (const double epsilon : {fine, coarse}) {
-      release(problem, joints);
+      joints.each([&](auto p, Index k) {
+        const Index item = joints.node(k).item;
+        problem.template assign<p>(item, 0 * problem.impulse(p, item));
+      });
       ++report.factorizations;
       if (!joints.factor(epsilon)) continue;
       if (settle(problem, joints)) break;
@@ -129,20 +132,10 @@ struct BasicDirectGaussSeidel {
     return true;
   }
 
-  /// λ_b ← 0.
-  template <class Problem, class System>
-  static void release(Problem& problem, System& joints) {
-    joints.each([&](auto p, Index k) {
-      const Index item = joints.node(k).item;
-      problem.template assign<p>(item, 0 * problem.rows().template pool<p>().lambda[item]);
-    });
-  }
-
   /// λ_b ← λ_b − W_bb⁻¹ (d + W λ)_b, repeated while that halves the velocity of the joints' rows: what ε and
   /// rounding left goes. A repetition that makes it worse is taken back. False when rows contradict each
   /// other: a thousandth stays.
-  template <class Problem, class System>
-  static bool settle(Problem& problem, System& joints) {
+  static bool settle(auto& problem, auto& joints) {
     const double first = joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
     double size = first;
     for (int repetition = 0; repetition < 8 && size > 0; ++repetition) {

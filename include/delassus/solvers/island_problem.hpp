@@ -56,8 +56,7 @@ class IslandProblem {
   Index island() const { return island_; }
   const Rows& rows() const { return rows_; }
   /// λ_i to write to; W is not told.
-  template <class Pool>
-  auto& impulse(Pool p, Index i) {
+  auto& impulse(auto p, Index i) {
     return rows_.template pool<p>().lambda[i];
   }
   const Book& book() const { return book_; }
@@ -190,8 +189,7 @@ class IslandProblem {
   }
 
   /// f(p, i) for every constraint, in order.
-  template <class F>
-  void each(F&& f) const {
+  void each(auto&& f) const {
     each_pool([&](auto p, auto items) {
       for (const Index i : items) f(p, i);
     });
@@ -203,8 +201,7 @@ class IslandProblem {
   }
 
   /// λ_i ← what f(p, i, λ_i) makes of it, for every constraint, and W is told.
-  template <class F>
-  void change(F&& f) {
+  void change(auto&& f) {
     each([&](auto p, Index i) {
       auto next = rows_.template pool<p>().lambda[i];
       f(p, i, next);
@@ -239,8 +236,7 @@ class IslandProblem {
 
  private:
   /// f(p, items of the island) for every pool. One without items anywhere costs one look; the only pool has some.
-  template <class F>
-  void each_pool(F&& f) const {
+  void each_pool(auto&& f) const {
     for_each_index<pools>([&](auto p) {
       if (pools == 1 || rows_.template pool<p>().items() > 0) f(p, islands_.items(p, island_));
     });

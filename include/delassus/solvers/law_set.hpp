@@ -39,8 +39,7 @@ class LawSet<Constraints<Laws...>, T> {
     std::apply([&](auto&... memory) { (memory.reserve(items), ...); }, memory_);
   }
 
-  template <class Operator, class Rows>
-  void prepare(const Operator& W, const Rows& rows, double h) {
+  void prepare(const auto& W, const auto& rows, double h) {
     for_each_index<sizeof...(Laws)>([&](auto p) {
       auto& memory = std::get<p>(memory_);
       memory.resize(rows.template pool<p>().items());

@@ -35,8 +35,7 @@ template <template <class...> class Solver, class... More>
 double wanted_residual(const Solver<Residual, More...>& solver) {
   return solver.all_verified ? 0 : solver.tolerance;
 }
-template <class Solver>
-double wanted_residual(const Solver& solver) {
+double wanted_residual(const auto& solver) {
   if constexpr (requires { solver.solver; })
     return wanted_residual(solver.solver);
   else
@@ -144,8 +143,7 @@ struct MinimumNorm {
 
    private:
     /// f(p, i, the unknowns as impulses: a function of their number, how many) for each free constraint.
-    template <class F>
-    void each_free(F&& f) {
+    void each_free(auto&& f) {
       std::size_t k = 0;
       problem.each([&](auto p, Index i) {
         constexpr int R = Problem::RowsType::template rows_of<p>;

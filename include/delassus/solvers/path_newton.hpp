@@ -119,8 +119,7 @@ struct BasicPathNewton {
       return least;
     }
     /// Σ over the path's length of two directions, the second by its member.
-    template <class Which>
-    double along(const Which& which) {
+    double along(const auto& which) {
       return work.product(
           tau(), [](const auto& c) { return c.tangent; }, which);
     }
@@ -222,8 +221,7 @@ struct BasicPathNewton {
     }
   };
 
-  template <class Problem>
-  bool meets(const Measure& m, const Problem& problem) const {
+  bool meets(const Measure& m, const auto& problem) const {
     return inner::is_done<Criterion>(*this, m, problem.row_count());
   }
 };

@@ -69,9 +69,7 @@ class RotatedInverse {
     spread_.assign(x.size(), Mat<3, 3, T>::Zero());
     for (const auto& [i, j] : body.pairs()) {
       const Velocity now = x[j] - x[i], before = then_[j] - then_[i];
-      Mat<3, 3, T> edge;
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) edge(r, c) = now[r] * before[c];
+      const Mat<3, 3, T> edge = columns<T>(now * before[0], now * before[1], now * before[2]);
       spread_[i] += edge, spread_[j] += edge;
     }
     for (std::size_t k = 0; k < x.size(); ++k) turn_next_to(spread_[k], rotation_[k], turn_[k]);

@@ -181,8 +181,7 @@ class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   struct ThroughAll {
     const World& world;
     RotatedOperator& own;
-    template <class F>
-    void each(F&& f) const {
+    void each(auto&& f) const {
       world.each([&](const auto& set, auto s) {
         using Set = std::remove_cvref_t<decltype(set)>;
         if constexpr (AssembledSet<Set>)

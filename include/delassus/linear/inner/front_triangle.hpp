@@ -67,8 +67,7 @@ class FrontTriangle {
 
   /// The columns of front s ← the matrix's own entries, diagonal(place) and below(entry) by blocks, and what
   /// its children left there.
-  template <class Diagonal, class Below>
-  void open(const FrontPlan& plan, Index s, const Diagonal& diagonal, const Below& below) {
+  void open(const FrontPlan& plan, Index s, const auto& diagonal, const auto& below) {
     const Supernode& x = plan.supernode(s);
     const Columns<T> L = columns(plan, s);
     std::fill_n(L.data, L.stride * w * x.width, T(0));
@@ -90,8 +89,7 @@ class FrontTriangle {
   }
 
  private:
-  template <class Block>
-  static void put(Columns<T> to, const Block& block) {
+  static void put(Columns<T> to, const auto& block) {
     for (int c = 0; c < w; ++c) std::copy_n(block.data() + w * c, w, to.at(0, c));
   }
 

@@ -24,8 +24,7 @@ class BodySpace : public System {
   using T = typename Rows::Scalar;
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(auto& problem) {
     if (!System::gather(problem)) return false;
     for (auto* array : {&y_, &change_, &residual_}) array->assign(this->blocks(), Velocity::Zero());
     return true;
@@ -33,14 +32,13 @@ class BodySpace : public System {
 
   /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
   /// see, in units of energy.
-  template <class Problem>
-  double evaluate(Problem& problem, double epsilon, double fraction) {
+  double evaluate(auto& problem, double epsilon, double fraction) {
     for (std::size_t b = 0; b < residual_.size(); ++b)
       for (int k = 0; k < System::width; ++k) residual_[b][k] = y_[b][k] + fraction * change_[b][k];
     each(problem, [&](auto p, auto& c, auto& sides) {
       for (int k = 0; k < int(c.trial.size()); ++k) c.trial[k] = c.velocity[k] + fraction * c.move[k];
       auto local = proximal(c, epsilon);
-      c.slope = c.template tangent<p>(problem, local);
+      c.slope = c.template slope_at<p>(problem, local);
       c.lambda = local.lambda;
       const auto change = (c.lambda - c.centre).eval();
       for (Index s = c.first; s < c.last; ++s)
@@ -66,13 +64,12 @@ class BodySpace : public System {
       for (std::size_t k = 0; k < kinds.size(); ++k)
         if (kinds[k] == RowKind::lower || kinds[k] == RowKind::upper)
           local.d[k] += (kinds[k] == RowKind::lower ? -1e-3 : 1e-3) * error;
-      c.slope = c.template tangent<p>(problem, local);
+      c.slope = c.template slope_at<p>(problem, local);
     });
   }
 
   /// J δ = −F; false when J is singular to working precision.
-  template <class Problem>
-  bool find_direction(Problem& problem) {
+  bool find_direction(auto& problem) {
     const auto ends = [&](int work) { return problem.is_cut_off(work); };
     if (!this->factor(ends)) return false;
     for (std::size_t b = 0; b < change_.size(); ++b)
@@ -86,8 +83,7 @@ class BodySpace : public System {
   }
 
   /// Goes where the last evaluation was.
-  template <class Problem>
-  void advance(Problem& problem, double fraction) {
+  void advance(auto& problem, double fraction) {
     for (std::size_t b = 0; b < y_.size(); ++b)
       for (int k = 0; k < System::width; ++k) y_[b][k] += fraction * change_[b][k], change_[b][k] = 0;
     each(problem, [](auto, auto& c, auto&) {
@@ -101,8 +97,7 @@ class BodySpace : public System {
   double error() const { return error_; }
 
   /// The measure of λ(u), whose own velocity is d + W λ = u − H F + R (λ − λ̂).
-  template <class Problem>
-  Measure measure(Problem& problem) {
+  Measure measure(auto& problem) {
     MeasureSums sums;
     each(problem, [&](auto p, auto& c, auto&) {
       constexpr int r = Rows::template rows_of<p>;
@@ -116,8 +111,7 @@ class BodySpace : public System {
   }
 
   /// λ̂ ← λ(u).
-  template <class Problem>
-  void recentre(Problem& problem) {
+  void recentre(auto& problem) {
     each(problem, [&](auto, auto& c, auto&) {
       c.velocity = own_velocity(c);
       c.centre = c.lambda;
@@ -126,8 +120,7 @@ class BodySpace : public System {
   }
 
   /// λ̂ ← what the rows have now, its velocity by W; `best` stays. False when that is not finite.
-  template <class Problem>
-  bool restart(Problem& problem) {
+  bool restart(auto& problem) {
     bool is_finite = true;
     each(problem, [&](auto p, auto& c, auto&) {
       const auto local = problem.template local<p>(c.item);
@@ -142,20 +135,17 @@ class BodySpace : public System {
   }
 
   /// best ← λ(u).
-  template <class Problem>
-  void keep(Problem& problem) {
+  void keep(auto& problem) {
     each(problem, [](auto, auto& c, auto&) { c.best = c.lambda; });
   }
 
   /// The rows take one of the impulses kept here: `&NewtonItem<R>::best`, by a generic lambda.
-  template <class Problem, class Which>
-  void hand_over(Problem& problem, const Which& which) {
+  void hand_over(auto& problem, const auto& which) {
     each(problem, [&](auto p, auto& c, auto&) { problem.template assign<p>(c.item, which(c).template cast<T>()); });
   }
 
  protected:
-  template <class Problem, class F>
-  void each(Problem& problem, F&& f) {
+  void each(auto& problem, auto&& f) {
     this->each_until([&](int work) { return problem.is_cut_off(work); }, f);
   }
 

@@ -67,8 +67,7 @@ class ContactSpace {
   }
 
   /// λ̂ ← λ ← what the problem has.
-  template <class Problem>
-  void take(const Problem& problem) {
+  void take(const auto& problem) {
     std::size_t at = 0;
     problem.each([&](auto p, Index i) {
       for (const auto x : problem.rows().template pool<p>().lambda[i]) lambda[at++] = double(x);
@@ -76,8 +75,7 @@ class ContactSpace {
     centre_ = lambda;
   }
   /// The problem takes λ, each brought into its law's cone.
-  template <class Problem>
-  void give(Problem& problem) const {
+  void give(auto& problem) const {
     std::size_t at = 0;
     problem.change([&](auto p, Index i, auto& next) {
       for (auto& x : next) x = typename Rows::Scalar(lambda[at++]);
@@ -128,8 +126,7 @@ class ContactSpace {
 
  private:
   /// W column by column, from the answer to an impulse on each row; d with it.
-  template <class Problem>
-  void read_W(Problem& problem) {
+  void read_W(auto& problem) {
     using T = typename Rows::Scalar;
     const std::size_t n = lambda.size();
     was_.resize_like(problem.rows());

@@ -38,8 +38,7 @@ class Contradiction {
   explicit Contradiction(Problem& problem) : problem_(problem) {}
 
   /// From the direction in which λ has gone since `before` was saved; λ is something else afterwards.
-  template <class Impulses>
-  bool is_proved(const Impulses& before) {
+  bool is_proved(const auto& before) {
     if constexpr (sizeof(T) < sizeof(double)) return false;
     problem_.change([&](auto p, Index i, auto& z) {
       z -= std::get<p>(before.pools)[i];

@@ -79,8 +79,7 @@ struct ConvexNewton {
   /// what is missing: from the solution, after a while from less than what the law is missed by, the slips
   /// follow for some turns. Where impulses are redundant and gaps do not fit, proximal points go a long way by
   /// small steps: `polish` may jump to its end.
-  template <class S>
-  bool solve_of_slips(S& now) const {
+  bool solve_of_slips(auto& now) const {
     constexpr int turns = 20, between_turns = 10, between_polishes = 20, between_marks = 50;
     now.work.forget(now.problem);
     now.work.keep(now.problem);
@@ -108,12 +107,10 @@ struct ConvexNewton {
   }
 
   /// Hands λ over, measures it by W itself, and keeps the best; true when that is within the tolerance.
-  template <class S>
-  bool is_done(S& now) const {
+  bool is_done(auto& now) const {
     return is_done(now, now.work.measure(now.problem));
   }
-  template <class S>
-  bool is_done(S& now, const Measure& measure) const {
+  bool is_done(auto& now, const Measure& measure) const {
     now.report.measure = measure;
     if (now.report.measure.residual < now.best.residual) {
       now.best = now.report.measure;
@@ -126,8 +123,7 @@ struct ConvexNewton {
 
   /// Proximal points of the laws as they are, while each halves the residual; where that does not end it, or with
   /// other slips than those that stay, which is another motion, λ is what it was.
-  template <class S>
-  bool polish(S& now, bool keeps_slips = false) const {
+  bool polish(auto& now, bool keeps_slips = false) const {
     now.work.mark(now.problem);
     double before = now.report.measure.residual, epsilon = 1e-3;
     for (int k = 0; k < 12; ++k) {

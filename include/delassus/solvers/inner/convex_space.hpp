@@ -21,7 +21,7 @@ struct ConvexItem : NewtonItem<R> {
   bool is_exact;       ///< S and λ(u) are those of the law as it is, with the slip that u has
 
   template <int p, class Problem>
-  Mat<R, R> tangent(const Problem& problem, Local<R>& local) const {
+  Mat<R, R> slope_at(const Problem& problem, Local<R>& local) const {
     if (is_exact) return problem.book().template tangent<p>(this->item, local);
     return problem.book().template convex_tangent<p>(this->item, local, slip);
   }
@@ -51,8 +51,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
 
   /// One proximal point, as sharp as rounding lets it be.
-  template <class Problem>
-  int descend(Problem& problem, double epsilon) {
+  int descend(auto& problem, double epsilon) {
     double size = evaluate(problem, epsilon, 0);
     const double rounding = reach(problem, epsilon);
     for (int k = 0; k < 100; ++k) {
@@ -66,8 +65,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
   /// The same for the laws as they are: no convex function leads the way, the steps are halved until F
   /// falls.
-  template <class Problem>
-  int polish(Problem& problem, double epsilon) {
+  int polish(auto& problem, double epsilon) {
     each(problem, [](auto, auto& c, auto&) { c.is_exact = true; });
     double size = evaluate(problem, epsilon, 0);
     const double rounding = reach(problem, epsilon);
@@ -84,8 +82,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   /// Where points of contact are redundant and their gaps do not fit, λ drifts along a line that leaves the
   /// bodies alone, the same way at each proximal point, until a contact opens: goes `factor` times that way
   /// at once.
-  template <class Problem>
-  void extrapolate(Problem& problem, double factor) {
+  void extrapolate(auto& problem, double factor) {
     each(problem, [&](auto p, auto& c, auto&) {
       Vec<Rows::template rows_of<p>, T> next = (c.lambda + factor * (c.lambda - c.centre)).template cast<T>();
       problem.book().template clamp<p>(c.item, next);
@@ -94,26 +91,22 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
     restart(problem);
   }
   /// Begins anew from the λ that the rows have, with its slips unless those stay.
-  template <class Problem>
-  void restart(Problem& problem, bool keeps_slips = false) {
+  void restart(auto& problem, bool keeps_slips = false) {
     Base::restart(problem);
     begin(problem, keeps_slips);
   }
   /// λ̂ ← λ(u), s ← |u_t| unless the slips stay.
-  template <class Problem>
-  void recentre(Problem& problem, bool keeps_slips = false) {
+  void recentre(auto& problem, bool keeps_slips = false) {
     Base::recentre(problem);
     begin(problem, keeps_slips);
   }
   /// λ ← 0; the slips stay.
-  template <class Problem>
-  void forget(Problem& problem) {
+  void forget(auto& problem) {
     hand_over(problem, [](const auto& c) { return (0 * c.lambda).eval(); });
     restart(problem, true);
   }
   /// What the proximal point leaves of the convex problem, √Σ |ε w (λ − λ̂)|²/w against √Σ |u|²/w.
-  template <class Problem>
-  double distance(Problem& problem, double epsilon) {
+  double distance(auto& problem, double epsilon) {
     double left = 0, whole = 0;
     each(problem, [&](auto, auto& c, auto&) {
       left += c.weight * (c.lambda - c.centre).squaredNorm();
@@ -136,13 +129,11 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
 
   /// Of λ(u), by W itself.
-  template <class Problem>
-  Measure measure(Problem& problem) {
+  Measure measure(auto& problem) {
     hand_over(problem, [](const auto& c) { return c.lambda; });
     return problem.measure();
   }
-  template <class Problem>
-  void mark(Problem& problem) {
+  void mark(auto& problem) {
     each(problem, [&](auto p, auto& c, auto&) {
       c.before = problem.rows().template pool<p>().lambda[c.item].template cast<double>();
     });
@@ -160,8 +151,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
 
   /// What rounding leaves of |F|: of u, which ε magnifies, and of λ.
-  template <class Problem>
-  double reach(Problem& problem, double epsilon) {
+  double reach(auto& problem, double epsilon) {
     double velocity = 0, impulse = 0;
     each(problem, [&](auto, auto& c, auto&) {
       velocity += c.velocity.squaredNorm() / c.weight;
@@ -180,8 +170,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
 
   /// J δ = −F, and the impulses of δ: G step = δ with step = −(total − λ + λ̂) − S H δ.
-  template <class Problem>
-  bool find_direction(Problem& problem) {
+  bool find_direction(auto& problem) {
     if (!Base::find_direction(problem)) return false;
     each(problem,
          [](auto, auto& c, auto&) { c.step = c.lambda - c.centre - c.total - c.slope * c.move; });
@@ -189,8 +178,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
 
   /// dΦ/dt along δ at y + t δ: Σ step·H F.
-  template <class Problem>
-  double slope(Problem& problem, double epsilon, double t) {
+  double slope(auto& problem, double epsilon, double t) {
     evaluate(problem, epsilon, t);
     double sum = 0;
     each(problem, [&](auto, auto& c, auto&) { sum += c.step.dot(c.error); });
@@ -198,8 +186,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
 
   /// The t in (0, 1] where Φ is least along δ, to a tenth of its slope.
-  template <class Problem>
-  double search_line(Problem& problem, double epsilon) {
+  double search_line(auto& problem, double epsilon) {
     const double start = slope(problem, epsilon, 0);
     double low = 0, high = 1, at_low = start, t = 1;
     double now = slope(problem, epsilon, 1), at_high = now;
@@ -215,8 +202,7 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
     return t;
   }
 
-  template <class Problem>
-  void advance(Problem& problem, double t) {
+  void advance(auto& problem, double t) {
     Base::advance(problem, t);
     each(problem, [&](auto, auto& c, auto&) { c.total += t * c.step; });
   }

@@ -133,8 +133,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
   /// The right side ← −velocity(p, item), where something answers. Returns √Σ u²/W_kk, the size of it.
-  template <class Velocity>
-  double load(const Velocity& velocity) {
+  double load(const auto& velocity) {
     clear();
     double square = 0;
     each([&](auto p, Index k) {
@@ -175,8 +174,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   bool is_held(Index block) const { return held_[block] > 0; }
 
   /// f(p, k) for the bilateral constraints, p their pool as a constant.
-  template <class F>
-  void each(F&& f) const {
+  void each(auto&& f) const {
     for_each_index<pools>([&](auto p) {
       for (Index k = 0; k < bilateral_; ++k)
         if (nodes_[k].pool == p) f(p, k);
@@ -213,8 +211,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     next_.assign(start_.begin(), start_.end());
     for (Index e = 0; e < end; ++e) order_[next_[sides_[e].block]++] = e;
   }
-  template <class F>
-  void each_bilateral(Index b, F&& f) const {
+  void each_bilateral(Index b, auto&& f) const {
     for (Index k = start_[b]; k < start_[b + 1]; ++k) f(sides_[order_[k]]);
   }
 
@@ -235,8 +232,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
           });
       });
   }
-  template <class Matrix>
-  static void join_hub(Matrix& A, const Side& e, Index hub) {
+  static void join_hub(auto& A, const Side& e, Index hub) {
     for (int k = 0; k < width; ++k) {
       A.at(e.node, hub + k / w).col(k % w) += e.H.col(k);
       A.at(hub + k / w, e.node).row(k % w) -= e.G.row(k);

@@ -8,8 +8,7 @@ namespace delassus::inner {
 /// Halves a step until the size of F has fallen by a thousandth of it, else takes the best of `most` tries; leaves F
 /// evaluated there. evaluate(t) gives the size of F after the share t of the step; `size` is that at its start, and then
 /// that where it ends. Returns the share.
-template <class Evaluate>
-double halve_step(double& size, int most, const Evaluate& evaluate) {
+double halve_step(double& size, int most, const auto& evaluate) {
   double best = 0, least = std::numeric_limits<double>::infinity(), fraction = 1;
   for (int halving = 0; halving < most; ++halving, fraction *= 0.5) {
     const double trial = evaluate(fraction);

@@ -41,8 +41,7 @@ struct NewtonInImpulses {
   /// each: n³/3, some three products for the matrix, and those of the halved steps.
   static double cost_in_sweeps(int rows) { return rows / 3.0 + 10; }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
+  SolveReport solve(auto& problem, auto& work) const {
     SolveReport report = sweeps.solve(problem, work.sweeps);
     if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
     if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem)) {
@@ -58,8 +57,7 @@ struct NewtonInImpulses {
   }
 
  private:
-  template <class Problem, class Workspace>
-  void descend(Problem& problem, Workspace& work, SolveReport& report) const {
+  void descend(auto& problem, auto& work, SolveReport& report) const {
     auto& space = work.space;
     const int rows = problem.row_count();
     double epsilon = 1e-4, last = Criterion::sum(report.measure);
@@ -84,8 +82,7 @@ struct NewtonInImpulses {
   }
 
   /// Newton's method around one λ̂, until |F| has fallen by a hundred or does not fall; how far it fell.
-  template <class Problem, class Space>
-  double approach(Problem& problem, Space& space, double epsilon, SolveReport& report) const {
+  double approach(auto& problem, auto& space, double epsilon, SolveReport& report) const {
     const double work = cost_in_sweeps(problem.row_count()), first = space.evaluate(epsilon);
     double size = first;
     for (int step = 0; step < 12 && size > 1e-2 * first && report.factorizations < max_factorizations;

@@ -32,7 +32,7 @@ struct NewtonItem {
 
   /// S and λ of the law whose problem is `local`. A pool without a tangent is never in an island that is gathered.
   template <int p, class Problem>
-  Mat<R, R> tangent(const Problem& problem, Local<R>& local) const {
+  Mat<R, R> slope_at(const Problem& problem, Local<R>& local) const {
     if constexpr (has_tangent<typename Problem::BookType, p, R>)
       return problem.book().template tangent<p>(item, local);
     else

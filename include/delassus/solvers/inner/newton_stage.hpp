@@ -39,8 +39,7 @@ class NewtonStage {
   using Space = NewtonSpace<typename Problem::RowsType>;
   using Body = BodySpace<typename Problem::RowsType>;
 
-  template <class Chain>
-  NewtonStage(const Chain& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space)
+  NewtonStage(const auto& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space)
       : limits_{.tolerance = chain.tolerance,
                 .scale_tolerance = chain.scale_tolerance,
                 .all_verified = chain.all_verified},

@@ -37,8 +37,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
   /// law without a tangent, a set whose A couples blocks, or rows that nothing answers to.
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(auto& problem) {
     static_assert(sizeof...(w) > 0,
                   "delassus: Newton's method needs the bodies of a problem, and this one, as a "
                   "FrictionProblem, has W alone; "
@@ -54,16 +53,14 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   std::size_t blocks() const { return unit_.size(); }
 
   /// f(p, item, sides of pool p) for every constraint.
-  template <class F>
-  void each(F&& f) {
+  void each(auto&& f) {
     for_each_index<pools>([&](auto p) {
       for (auto& c : std::get<p>(items_)) f(p, c, std::get<p>(sides_));
     });
   }
 
   /// The same until `ends(n)`, asked after the work of n products of blocks of bodies, says so.
-  template <class Ends, class F>
-  void each_until(Ends&& ends, F&& f) {
+  void each_until(auto&& ends, auto&& f) {
     for_each_index<pools>([&](auto p) {
       for (auto& c : std::get<p>(items_)) {
         if (ends(1)) return;
@@ -107,8 +104,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
   /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
   /// answers; at a contact that is rows/tr(H G).
-  template <class Problem>
-  double energy_of_stopping(Problem& problem) {
+  double energy_of_stopping(auto& problem) {
     double weights = 0, fastest = 0, mass = 0;
     mass_.assign(blocks(), 0.0);
     const auto ends = [&](int work) { return problem.is_cut_off(work); };
@@ -192,8 +188,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
 
  private:
   /// Whether each block answers to its impulses alone, by G.
-  template <class Problem>
-  static bool knows_answers(const Problem& problem) {
+  static bool knows_answers(const auto& problem) {
     bool knows = true;
     problem.each([&](auto p, Index i) {
       const auto& pool = problem.rows().template pool<p>();
@@ -206,8 +201,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
 
   /// f(s, e) for every entry of item i on a block that moves: where A⁻¹ = 0, G is zero.
-  template <class Pool, class F>
-  static void each_side(const Pool& pool, Index i, F&& f) {
+  static void each_side(const auto& pool, Index i, auto&& f) {
     for_each_index<Rows::set_count>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
@@ -215,8 +209,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
   }
 
-  template <class Problem>
-  void number_blocks(const Problem& problem) {
+  void number_blocks(const auto& problem) {
     for (const auto& [s, b] : blocks_) number_[s][b] = -1;
     blocks_.clear();
     problem.each([&](auto p, Index i) {

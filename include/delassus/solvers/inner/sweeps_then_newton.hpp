@@ -40,8 +40,7 @@ struct SweepsThenNewton {
   }
 
  private:
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work, int factorizations) const {
+  SolveReport solve(auto& problem, auto& work, int factorizations) const {
     work.newton.best.resize_like(problem.rows());
     work.best.resize_like(problem.rows());
     SolveReport report = newton(first, factorizations).solve(problem, work.newton);
