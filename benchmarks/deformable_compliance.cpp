@@ -1,10 +1,9 @@
 // Also built with: -march=native
 //
-// W = H A⁻¹ Hᵀ of contacts on a soft box, and what it needs: factorization, refactorization of a region. Each
-// against another way, turn by turn in one run; CPU time of one thread. "The model's way" is the algorithm of
-// the component that is modelled: forward substitution of every row of H through all columns of an LDLᵀ
-// factor, then a dot product a pair of rows. Arguments: nodes (of tetrahedral_box.hpp), contacts, nodes a
-// contact.
+// W = H A⁻¹ Hᵀ of contacts on a soft box, and the factorization it needs. Each against another way, turn by turn
+// in one run; CPU time of one thread. "The model's way" is the algorithm of the component that is modelled:
+// forward substitution of every row of H through all columns of an LDLᵀ factor, then a dot product a pair of
+// rows. Arguments: nodes (of tetrahedral_box.hpp), contacts, nodes a contact.
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 
@@ -104,22 +103,6 @@ void factor_against_eigen_ldlt(benchmark::State& state) {
       state, [&] { ours.factor.factor(); }, [&] { ldlt.factorize(A); }, state.range(0) > 3000 ? 100 : 10);
 }
 
-/// Fifty nodes at a corner of the top change; against the whole factorization of the same pattern.
-void refactor_against_factor(benchmark::State& state) {
-  const Box box = box_of(Index(state.range(0)));
-  std::vector<Index> region;
-  for (Index k = 0; k < 3; ++k)
-    for (Index j = 0; j < 4; ++j)
-      for (Index i = 0; i < 4; ++i) region.push_back(box.node(i, j, box.nz - 1 - k));
-  MultifrontalCholesky<3, double> f;
-  f.analyse(box.nodes(), box.pairs, box.positions, region);
-  box.fill(f);
-  f.factor();
-  against::run(
-      state, [&] { f.refactor(region); }, [&] { f.factor(); }, 10);
-  state.counters["region"] = double(region.size());
-}
-
 void of_boxes(benchmark::internal::Benchmark* b) { b->UseManualTime()->Unit(benchmark::kMillisecond); }
 
 }  // namespace
@@ -137,4 +120,3 @@ BENCHMARK(compliance_against_the_models_way)
     ->Args({3000, 126, 3})
     ->Apply(of_boxes);
 BENCHMARK(factor_against_eigen_ldlt)->Arg(500)->Arg(1000)->Arg(3000)->Arg(10000)->Apply(of_boxes);
-BENCHMARK(refactor_against_factor)->Arg(1000)->Arg(3000)->Arg(10000)->Apply(of_boxes);

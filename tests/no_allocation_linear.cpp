@@ -13,11 +13,10 @@
 using namespace delassus;
 using namespace block_graphs;
 
-TEST_CASE("factoring, refactoring, solving and compliances allocate nothing the second time") {
+TEST_CASE("factoring, solving and compliances allocate nothing the second time") {
   const auto g = grid<3>(9, 9, 9, 41);
   MultifrontalCholesky<3, double> f;
-  const std::vector<Index> region{0, 1, 9, 10, 81, 82};
-  f.analyse(g.n, g.pairs, g.positions, region);
+  f.analyse(g.n, g.pairs, g.positions);
   std::vector<Vec3> x(g.n, Vec3(1, 2, 3));
   const std::vector<Index> nodes{1, 5, 700, 300};
   std::vector<double> C(144);
@@ -30,9 +29,6 @@ TEST_CASE("factoring, refactoring, solving and compliances allocate nothing the 
     f.solve(x);
     f.compliance(nodes, C);
     compliance.find(f, nodes, C);
-    f.set_zero(region);
-    for (const Index i : region) f.add_diagonal(i, 1e3 * Mat3::Identity());
-    REQUIRE(f.refactor(region));
   }
   CHECK(allocations == before);
 }

@@ -18,9 +18,9 @@ using namespace block_graphs;
 namespace {
 
 template <int w, class T>
-MultifrontalCholesky<w, T> factored(const Blocks<w>& g, std::span<const Index> region = {}) {
+MultifrontalCholesky<w, T> factored(const Blocks<w>& g) {
   MultifrontalCholesky<w, T> f;
-  f.analyse(g.n, g.pairs, g.positions, region);
+  f.analyse(g.n, g.pairs, g.positions);
   g.fill(f);
   REQUIRE(f.factor());
   return f;
@@ -89,15 +89,13 @@ TEST_CASE("a float factor gives the compliance in single precision") {
   CHECK(error > 1e-12);  // it was float
 }
 
-TEST_CASE(
-    "the order of the nodes orders the compliance, and a region that is last changes nothing but its cost") {
+TEST_CASE("the order of the nodes orders the compliance") {
   const auto g = grid<3>(5, 5, 5, 23);
   const std::vector<Index> nodes{62, 3, 124, 17}, turned{17, 124, 3, 62};
   const auto f = factored<3, double>(g);
   const Eigen::MatrixXd C = compliance(f, nodes), D = compliance(f, turned);
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < 4; ++b) CHECK(D.block<3, 3>(3 * a, 3 * b) == C.block<3, 3>(9 - 3 * a, 9 - 3 * b));
-  CHECK((compliance(factored<3, double>(g, nodes), nodes) - C).cwiseAbs().maxCoeff() < 1e-12);
 }
 
 }  // namespace node_compliance_tests

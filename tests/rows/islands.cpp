@@ -26,7 +26,7 @@ struct Graph {
   }
   void find() {
     const std::vector<Index> first{0};
-    islands.find(rows, first, 10, [&](auto, Index b) { return bool(moves[b]); });
+    islands.find(rows, first, 10, [&](auto, Index b) { return bool(moves[b]); }, [](auto&&) {});
   }
   std::vector<Index> items(int pool, Index island) const {
     const auto found = islands.items(pool, island);

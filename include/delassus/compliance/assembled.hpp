@@ -53,16 +53,10 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   using Sum = double;
   static constexpr int pools = int(sizeof...(R));
 
-  template <class World>
-  void build(const World& world, Rows& rows) {
+  void build(const auto& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
       if constexpr (couples<decltype(set)>)
-        if (set.is_coupled()) {
-          if constexpr (NodeCompliantSet<std::remove_cvref_t<decltype(set)>>)
-            return nodal_.template prepare<s>(set, rows);
-          else
-            return columns_.template prepare<s>(set, rows);
-        }
+        if (set.is_coupled()) return coupling_of(set).template prepare<s>(set, rows);
       using Set = std::remove_cvref_t<decltype(set)>;
       if constexpr (!Inverse::is_whole && inner::may_couple<Set>) {
         constexpr bool has_masses = requires(const Mat<Set::width, 1, typename Set::Scalar>& x) {
@@ -72,10 +66,8 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
                       "delassus: UncoupledCompliance takes the mass of each node alone, which this set of bodies does not give (Rods "
                       "do not); use AssembledCompliance");
         if constexpr (has_masses) {
-          if (set.is_coupled())
-            inner::apply_mass_inverse(set, rows, s);
-          else
-            inner::apply_inverse(set, rows, s);
+          if (set.is_coupled()) inner::apply_inverse<true>(set, rows, s);
+          else inner::apply_inverse(set, rows, s);
         }
       } else {
         inner::apply_inverse(set, rows, s);
@@ -87,8 +79,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
 
   /// The rows of those items alone of which keep(pool, item) is true; the others have no blocks, and of W_ii only
   /// their own compliance. Pre: G stands, and no set couples its blocks.
-  template <class World, class Keep>
-  void build_where(const World& world, const Rows& rows, const Keep& keep) {
+  void build_where(const auto& world, const Rows& rows, const auto& keep) {
     world.each([&](const auto& set, auto s) { incidence_.template find<s>(rows, set.blocks()); });
     for_each_index<pools>([&](auto a) { build_rows<a>(world, rows, [&](Index i) { return keep(a, i); }); });
   }
@@ -187,6 +178,13 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   template <class Set>
   static constexpr bool couples = Inverse::is_whole && inner::may_couple<std::remove_cvref_t<Set>>;
 
+  /// What knows A⁻¹ of a set that couples its blocks.
+  template <class Set>
+  auto& coupling_of(const Set&) {
+    if constexpr (NodeCompliantSet<Set>) return nodal_;
+    else return columns_;
+  }
+
   /// Row by row: every entry e of item i meets all entries f on its block, and W_ij += H_e G_f.
   template <int a, class World, class Keep>
   void build_rows(const World& world, const Rows& rows, const Keep& keep) {
@@ -202,16 +200,13 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
       diagonal[i].setZero();
       if (keep(i)) world.each([&](const auto& set, auto s) {
         if constexpr (couples<decltype(set)>)
-          if (set.is_coupled()) {
-            if constexpr (NodeCompliantSet<std::remove_cvref_t<decltype(set)>>)
-              return nodal_.template each<s, a>(rows, i,
-                                                [&](auto b, Index j, const auto& W) { add<a, b>(i, j, W); });
-            else
-              return add_coupled<a, s>(rows, i);
-          }
+          if (set.is_coupled())
+            return coupling_of(set).template each<s, a>(
+                rows, i, [&](auto b, Index j, const auto& W) { add<a, b>(i, j, W); });
         add_row<a, s>(rows, i);
       });
-      inner::add_compliance(diagonal[i], pool.compliance[i], pool.relative_compliance[i]);
+      for (int k = 0; k < pool.rows; ++k)
+        diagonal[i](k, k) += pool.compliance[i][k] + pool.relative_compliance[i][k] * diagonal[i](k, k);
       for_each_index<pools>([&](auto b) {
         if (place_[b].empty()) return;  // a pool without items costs one look
         auto& W = std::get<b>(std::get<a>(blocks_));
@@ -231,19 +226,6 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
         for (const auto& [j, f] : incidence_.template at<s, b>(mine.block[e]))
           add<a, b>(i, j, mine.H[e] * theirs.G[f]);
       });
-  }
-
-  template <int a, int s>
-  void add_coupled(const Rows& rows, Index i) {
-    const auto& mine = std::get<s>(rows.template pool<a>().sets);
-    if (mine.offset[i] == mine.offset[i + 1]) return;
-    for_each_index<pools>([&](auto b) {
-      columns_.template each<s, b>([&](Index j, const auto& column) {
-        // Zero where the two act on bodies that A does not couple: there W has no block.
-        for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
-          if (!is_zero(column[mine.block[e]])) add<a, b>(i, j, mine.H[e] * column[mine.block[e]]);
-      });
-    });
   }
 
   /// W_ij += block, opening the column when it is the first.

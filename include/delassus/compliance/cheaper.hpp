@@ -32,8 +32,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   /// eight contacts. H y takes as long as about so many blocks (docs/performance.md).
   static constexpr Index most_rows = 24;
 
-  template <class World>
-  void build(const World& world, Rows& rows) {
+  void build(const auto& world, Rows& rows) {
     is_whole_ = false;
     world.each([&](const auto& set, auto) { is_whole_ = is_whole_ || inner::is_coupled(set); });
     if (is_whole_) return matrix_.build(world, rows);
@@ -84,8 +83,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     bool is_crowded;
   };
 
-  template <class World>
-  void find_crowded(const World& world, const Rows& rows) {
+  void find_crowded(const auto& world, const Rows& rows) {
     world.each([&](const auto& set, auto s) { blocks_[s].assign(set.blocks(), {}); });
     each_entry(rows, [&](auto p, Index, Block& block) { block.rows += Rows::template rows_of<p>; });
     for_each_index<pools>([&](auto p) { kinds_[p].assign(rows.template pool<p>().items(), {}); });
@@ -113,8 +111,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     });
   }
   /// f(pool, item, block) for every entry of every item.
-  template <class F>
-  void each_entry(const Rows& rows, F&& f) {
+  void each_entry(const Rows& rows, auto&& f) {
     for_each_index<pools>([&](auto p) {
       for (Index i = 0; i < rows.template pool<p>().items(); ++i)
         each_entry_of<p>(rows, i, [&](Block& block) { f(p, i, block); });

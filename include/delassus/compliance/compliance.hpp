@@ -19,34 +19,18 @@ concept Compliance = Plays<C, role::Compliance>;
 
 namespace inner {
 
-/// G_e = A⁻¹ H_eᵀ for every entry of every pool in one block-diagonal set.
-template <class Set, class Rows, class S>
+/// G_e = A⁻¹ H_eᵀ for every entry of every pool in one block-diagonal set; M⁻¹ H_eᵀ of the masses alone.
+template <bool of_masses = false, class Set, class Rows, class S>
 void apply_inverse(const Set& set, Rows& rows, S s) {
   for_each_index<Rows::pool_count>([&](auto p) {
     auto& blocks = std::get<s>(rows.template pool<p>().sets);
     constexpr int R = Rows::template rows_of<p>;
     blocks.G.resize(blocks.H.size());
-    for (std::size_t e = 0; e < blocks.H.size(); ++e)
-      blocks.G[e] = set.template solve_block<R>(blocks.block[e], blocks.H[e].transpose());
+    for (std::size_t e = 0; e < blocks.H.size(); ++e) {
+      if constexpr (of_masses) blocks.G[e] = set.template solve_mass<R>(blocks.block[e], blocks.H[e].transpose());
+      else blocks.G[e] = set.template solve_block<R>(blocks.block[e], blocks.H[e].transpose());
+    }
   });
-}
-
-/// G_e = M⁻¹ H_eᵀ: the same of the masses alone.
-template <class Set, class Rows, class S>
-void apply_mass_inverse(const Set& set, Rows& rows, S s) {
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& blocks = std::get<s>(rows.template pool<p>().sets);
-    constexpr int R = Rows::template rows_of<p>;
-    blocks.G.resize(blocks.H.size());
-    for (std::size_t e = 0; e < blocks.H.size(); ++e)
-      blocks.G[e] = set.template solve_mass<R>(blocks.block[e], blocks.H[e].transpose());
-  });
-}
-
-/// W_ii + diag(R) + diag(relative_compliance · W_kk).
-template <int R, class T>
-void add_compliance(Mat<R, R, T>& W, const Vec<R, T>& compliance, const Vec<R, T>& relative_compliance) {
-  for (int k = 0; k < R; ++k) W(k, k) += compliance[k] + relative_compliance[k] * W(k, k);
 }
 
 /// What answers with A⁻¹ for set s: the operator where it has factors of its own, else the set. An operator

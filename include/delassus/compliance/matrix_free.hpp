@@ -25,8 +25,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   using Rows = RowSystem<T, Widths<w...>, R...>;
   using Sum = double;
 
-  template <class World>
-  void build(const World& world, Rows& rows) {
+  void build(const auto& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
       DELASSUS_EXPECT(!inner::is_coupled(set),
                       "MatrixFreeCompliance: springs between particles couple A under an implicit integrator, and so do "
@@ -75,8 +74,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   }
 
  private:
-  template <class Y>
-  static void zero(Y& y) {
+  static void zero(auto& y) {
     for (auto& x : y) x.setZero();
   }
 

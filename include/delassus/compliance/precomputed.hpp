@@ -24,8 +24,7 @@ class FactorAtRest {
   }
 
   /// The k-th body of its set has a new factor: the first one comes from its file, or makes it.
-  template <class Inverse>
-  void complete(Index k, Inverse& inverse, const auto& body) {
+  void complete(Index k, auto& inverse, const auto& body) {
     if (std::size_t(k) >= is_filed_.size()) is_filed_.resize(std::size_t(k) + 1, 0);
     const bool has_file = !file_.empty() && !is_filed_[k];
     is_filed_[k] = 1;

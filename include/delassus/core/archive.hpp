@@ -1,14 +1,12 @@
 /// What outlives a step, as bytes: each owner names it in `memory(archive)`.
 #pragma once
 
-#include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <deque>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -19,29 +17,18 @@ namespace inner {
 
 /// Calls one(x) for the parts of x that can be copied byte by byte, and size(container) before the elements of a container.
 /// An owner with memory(archive) is asked; what holds a pointer and has no memory(archive) must not be named.
-template <class Archive, class X>
-void walk(Archive& archive, X& x) {
+void walk(auto& archive, auto& x) {
   if constexpr (requires { x.memory(archive); }) x.memory(archive);
   else archive.bytes(&x, sizeof x);
 }
-template <class Archive, class E>
-void walk(Archive& archive, std::vector<E>& list) {
+/// Of a list that can grow.
+template <class Archive, class List>
+  requires requires(List& list) { list.push_back(list[0]); }
+void walk(Archive& archive, List& list) {
   archive.size(list);
-  if constexpr (requires(E& e) { e.memory(archive); })
-    for (E& e : list) walk(archive, e);
-  else archive.bytes(list.data(), list.size() * sizeof(E));
-}
-template <class Archive, class E>
-void walk(Archive& archive, Array<E>& list) {
-  archive.size(list);
-  if constexpr (requires(E& e) { e.memory(archive); })
-    for (E& e : list) walk(archive, e);
-  else archive.bytes(list.data(), list.size() * sizeof(E));
-}
-template <class Archive, class E>
-void walk(Archive& archive, std::deque<E>& list) {
-  archive.size(list);
-  for (E& e : list) walk(archive, e);
+  if constexpr (requires { list[0].memory(archive); } || !requires { list.data(); })
+    for (auto& element : list) walk(archive, element);
+  else archive.bytes(list.data(), list.size() * sizeof(list[0]));
 }
 template <class Archive, class E, std::size_t n>
 void walk(Archive& archive, std::array<E, n>& list) {
@@ -68,8 +55,7 @@ class ArchiveWriter {
     const char* first = static_cast<const char*>(from);
     data.insert(data.end(), first, first + count);
   }
-  template <class List>
-  void size(const List& list) {
+  void size(const auto& list) {
     const std::uint64_t count = list.size();
     bytes(&count, sizeof count);
   }
@@ -90,8 +76,7 @@ class ArchiveReader {
     if (count > 0) std::memcpy(to, left_.data(), count);
     left_ = left_.subspan(count);
   }
-  template <class List>
-  void size(List& list) {
+  void size(auto& list) {
     std::uint64_t count = 0;
     bytes(&count, sizeof count);
     // Every element takes a byte at least: a count beyond that is damage, and must not become an allocation.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
-#include <delassus/core/expect.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_triangle.hpp>
 #include <delassus/linear/node_compliance.hpp>
@@ -10,33 +9,26 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
 /// P A Pᵀ = L Lᵀ with w × w blocks, P by nested dissection. Every supernode is a dense front: its entries of
 /// A plus what its children leave, its columns factored, the rest left to its parent. The pattern is analysed
-/// once; from the second time on `factor`, `refactor`, `solve` and `compliance` do not allocate. For some
-/// hundred nodes or more; below that `BlockCholesky` does. Source: I. S. Duff, J. K. Reid, "The multifrontal
-/// solution of indefinite sparse symmetric linear equations".
+/// once; from the second time on `factor`, `solve` and `compliance` do not allocate. For some hundred nodes or
+/// more; below that `BlockCholesky` does. Source: I. S. Duff, J. K. Reid, "The multifrontal solution of
+/// indefinite sparse symmetric linear equations".
 template <int w, class T>
 class MultifrontalCholesky {
  public:
   using Block = Mat<w, w, T>;
 
   /// Pattern of the lower triangle: all diagonal blocks and the pairs (i, j), i ≠ j, in any order, repeats
-  /// allowed. `positions` is empty or one point a block, m; they make a better order. The blocks of `region`,
-  /// each named once, are eliminated last, so that `refactor` can begin there.
+  /// allowed. `positions` is empty or one point a block, m; they make a better order.
   void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs,
-               std::span<const Vec3> positions = {}, std::span<const Index> region = {}) {
-    plan_.analyse(w, blocks, pairs, positions, region);
+               std::span<const Vec3> positions = {}) {
+    plan_.analyse(w, blocks, pairs, positions);
     A_.resize(blocks + plan_.entries.row.size());
-    is_factored_ = false;
-    path_.clear();
-    for (Index s = 0; s < fronts(); ++s)
-      if (pattern().is_last(plan_.supernode(s).first)) path_.emplace_back(s, false);
   }
 
   Index blocks() const { return plan_.blocks(); }
@@ -46,63 +38,23 @@ class MultifrontalCholesky {
   void set_zero() {
     for (Block& b : A_) b.setZero();
   }
-  /// A_ij = 0 for all i and j among `nodes`, which are of the region: what lies between them is put in anew.
-  void set_zero(std::span<const Index> nodes) {
-    for (const Index i : nodes) {
-      expect_in_region(i);
-      for (const Index j : nodes)
-        if (const BlockPlace at = find(i, j); at.index >= 0) A_[at.index].setZero();
-    }
-  }
-
-  /// Where A_ij is kept.
-  struct BlockPlace {
-    Index index = -1;  ///< −1: nowhere, the pattern does not have it
-    bool is_transposed = false;
-  };
-  /// Looked up once, the places of an element's blocks are a table by which it is added without a search.
-  BlockPlace find(Index i, Index j) const {
-    const Index row = pattern().place(i), column = pattern().place(j);
-    if (row == column) return {row, false};
-    const Index e = plan_.entries.find(std::max(row, column), std::min(row, column));
-    return {e < 0 ? e : blocks() + e, row < column};
-  }
-  /// A_ij += block, and A_ji += blockᵀ, at the place of (i, j), which the pattern has.
-  void add(BlockPlace at, const Block& block) {
-    if (at.is_transposed)
-      A_[at.index] += block.transpose();
-    else
-      A_[at.index] += block;
-  }
   /// A_ii += block.
   void add_diagonal(Index i, const Block& block) { A_[pattern().place(i)] += block; }
   /// A_ij += block and A_ji += blockᵀ, i ≠ j.
-  void add_pair(Index i, Index j, const Block& block) { add(find(i, j), block); }
+  void add_pair(Index i, Index j, const Block& block) {
+    const Index row = pattern().place(i), column = pattern().place(j);
+    if (row > column)
+      A_[blocks() + plan_.entries.find(row, column)] += block;
+    else
+      A_[blocks() + plan_.entries.find(column, row)] += block.transpose();
+  }
 
   /// Makes the factor of A; false when A is not positive definite or not finite: then nothing may be solved.
   bool factor() {
     L_.resize(plan_);
-    is_factored_ = false;
     for (Index s = 0; s < fronts(); ++s)
       if (!factor_front(s)) return false;
-    return is_factored_ = true;
-  }
-
-  /// The factor again when no blocks A_ij have changed but those with both i and j among `nodes`, which are
-  /// of the region: only the fronts on the paths from there to the roots are made anew. Equal to `factor()`
-  /// to the bit.
-  bool refactor(std::span<const Index> nodes) {
-    for (const Index i : nodes) expect_in_region(i);
-    if (!is_factored_) return factor();
-    is_factored_ = false;
-    for (auto& [s, is_changed] : path_) is_changed = false;
-    for (const Index i : nodes) is_on_path(pattern().supernode_of(pattern().place(i))) = true;
-    for (const auto& [s, is_changed] : path_) {
-      if (!is_changed) continue;
-      if (!factor_front(s)) return false;
-      if (plan_.supernode(s).parent >= 0) is_on_path(plan_.supernode(s).parent) = true;
-    }
-    return is_factored_ = true;
+    return true;
   }
 
   /// x ← A⁻¹ x.
@@ -129,16 +81,6 @@ class MultifrontalCholesky {
   using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
   Index fronts() const { return plan_.fronts(); }
-  /// Of a supernode of the region.
-  bool& is_on_path(Index s) {
-    return std::lower_bound(path_.begin(), path_.end(), std::pair(s, false))->second;
-  }
-  void expect_in_region(Index i) const {
-    DELASSUS_EXPECT(
-        i >= 0 && i < blocks() && pattern().is_last(pattern().place(i)),
-        "node " + std::to_string(i) +
-            " is to be factored again, but is not in the region that the pattern was analysed with");
-  }
 
   bool factor_front(Index s) {
     const Index height = w * Index(plan_.supernode(s).rows.size()), width = w * plan_.supernode(s).width,
@@ -188,8 +130,6 @@ class MultifrontalCholesky {
   inner::FrontPlan plan_;
   Array<Block> A_;  ///< the diagonal blocks by place, then those below by entry
   inner::FrontTriangle<w, T> L_;
-  std::vector<std::pair<Index, bool>> path_;  ///< the supernodes of the region; true: has to be made anew
-  bool is_factored_ = false;
   inner::DenseKernel<T> kernel_;
   mutable NodeCompliance<w, T> compliance_;
   mutable Array<T> y_, gather_;

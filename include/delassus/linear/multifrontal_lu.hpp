@@ -52,11 +52,7 @@ class MultifrontalLu {
   }
 
   /// Whether det A < 0.
-  bool is_negative() const {
-    bool is = false;
-    for (const auto& pivot : pivot_) is ^= pivot.is_negative();
-    return is;
-  }
+  bool is_negative() const { return delassus::is_negative<w, T>(pivot_); }
 
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w, T>> x) const {

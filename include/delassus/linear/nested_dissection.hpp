@@ -48,18 +48,11 @@ template <class Index>
 struct BasicNestedDissection {
   Index leaf = 12;
 
-  /// order[k]: the node eliminated at place k. `positions` is empty or has one point a node, m. The nodes
-  /// `last`, each named once, come after all others.
-  Array<Index> order(const NodeGraph& graph, std::span<const Vec3> positions = {},
-                           std::span<const Index> last = {}) const {
+  /// order[k]: the node eliminated at place k. `positions` is empty or has one point a node, m.
+  Array<Index> order(const NodeGraph& graph, std::span<const Vec3> positions = {}) const {
     Work work{graph, positions, Array<Index>(graph.nodes()), Array<Index>(graph.nodes(), 0)};
     std::iota(work.order.begin(), work.order.end(), 0);
-    for (const Index i : last) work.mark[i] = 1;
-    std::stable_partition(work.order.begin(), work.order.end(), [&](Index i) { return work.mark[i] == 0; });
-    work.last_mark = 1;
-    const Index first_last = graph.nodes() - Index(last.size());
-    cut(work, 0, first_last);
-    cut(work, first_last, graph.nodes());
+    cut(work, 0, graph.nodes());
     return work.order;
   }
 

@@ -26,8 +26,7 @@ class NodeCompliance {
  public:
   /// C, (w n) × (w n) numbers by columns, of the nodes, each named once. `factor` offers `pattern()` and
   /// `columns_of(supernode)`.
-  template <class Factor>
-  void find(const Factor& factor, std::span<const Index> nodes, std::span<T> C) {
+  void find(const auto& factor, std::span<const Index> nodes, std::span<T> C) {
     const SupernodalPattern& pattern = factor.pattern();
     const Index columns = w * Index(nodes.size());
     find_reach(pattern, nodes);

@@ -28,13 +28,9 @@ struct Supernode {
 template <class Index>
 class BasicSupernodalPattern {
  public:
-  /// `order[k]`: the node eliminated at place k; the postorder may permute it further. The last `last` nodes
-  /// of it are not merged with others: what lies above them in the tree are nodes of their kind.
-  void analyse(const NodeGraph& graph, Array<Index> order, Index last = 0) {
+  /// `order[k]`: the node eliminated at place k; the postorder may permute it further.
+  void analyse(const NodeGraph& graph, Array<Index> order) {
     node_ = std::move(order);
-    is_last_.clear();
-    if (last > 0) is_last_.assign(node_.size(), false);
-    for (Index k = nodes() - last; k < nodes(); ++k) is_last_[node_[k]] = true;
     number_places();
     find_tree(graph);
     postorder();
@@ -49,7 +45,6 @@ class BasicSupernodalPattern {
   Index place(Index node) const { return place_[node]; }
   Index node(Index place) const { return node_[place]; }
   Index supernode_of(Index place) const { return owner_[place]; }
-  bool is_last(Index place) const { return !is_last_.empty() && is_last_[node_[place]]; }
   const std::vector<Supernode>& supernodes() const { return supernodes_; }
 
  private:
@@ -118,7 +113,7 @@ class BasicSupernodalPattern {
     for (Index k = 0, next = 0; k < nodes(); k = next) {
       next = k + 1;
       while (next < nodes() && parent_[next - 1] == next && child_count_[next] == 1 &&
-             rows_[next].size() + 1 == rows_[next - 1].size() && is_last(next) == is_last(k))
+             rows_[next].size() + 1 == rows_[next - 1].size())
         ++next;
       Supernode s;
       s.first = k;
@@ -153,7 +148,6 @@ class BasicSupernodalPattern {
 
   bool pays(const Supernode& a, const Supernode& b) const {
     if (a.below() == 0 || a.rows[a.width] >= b.first + b.width) return false;  // b is not the parent
-    if (is_last(a.first) != is_last(b.first)) return false;
     const double width = a.width + b.width, height = a.width + double(b.rows.size());
     const double zeros = a.width * (height - double(a.rows.size())),
                  all = width * height - 0.5 * width * width;
@@ -177,7 +171,6 @@ class BasicSupernodalPattern {
   }
 
   Array<Index> node_, place_, parent_, owner_, child_count_;
-  std::vector<bool> is_last_;  ///< by node; empty without last nodes
   std::vector<Array<Index>> rows_;
   std::vector<Supernode> supernodes_;
 };
@@ -199,11 +192,10 @@ struct BasicLowerEntries {
       start.push_back(Index(row.size()));
     }
   }
-  /// The entry of a row in a column; −1 where there is none.
+  /// The entry of a row in a column; it exists.
   Index find(Index at, Index column) const {
     const auto first = row.begin() + start[column], last = row.begin() + start[column + 1];
-    const auto e = std::lower_bound(first, last, at);
-    return e != last && *e == at ? Index(e - row.begin()) : -1;
+    return Index(std::lower_bound(first, last, at) - row.begin());
   }
 };
 

@@ -120,11 +120,6 @@ inline Eigen::Matrix<T, 3, 1>& operator-=(Eigen::Matrix<T, 3, 1>& a, const Eigen
   x[0] -= y[0], x[1] -= y[1], x[2] -= y[2];
   return a;
 }
-template <class T>
-inline Eigen::Matrix<T, 3, 3>& operator-=(Eigen::Matrix<T, 3, 3>& a, const Eigen::Matrix<T, 3, 3>& b) {
-  for (int i = 0; i < 9; ++i) a.data()[i] -= b.data()[i];
-  return a;
-}
 
 template <class T, inner::ScalarOf<T> S>
 inline Eigen::Matrix<T, 3, 1>& operator*=(Eigen::Matrix<T, 3, 1>& a, S s) {
@@ -142,11 +137,6 @@ template <class T, inner::ScalarOf<T> S>
 inline Eigen::Matrix<T, 3, 1>& operator/=(Eigen::Matrix<T, 3, 1>& a, S s) {
   T* x = a.data();
   x[0] /= T(s), x[1] /= T(s), x[2] /= T(s);
-  return a;
-}
-template <class T, inner::ScalarOf<T> S>
-inline Eigen::Matrix<T, 3, 3>& operator/=(Eigen::Matrix<T, 3, 3>& a, S s) {
-  for (int i = 0; i < 9; ++i) a.data()[i] /= T(s);
   return a;
 }
 

@@ -15,7 +15,7 @@ using Lanes = Packet<double>;
 inline constexpr int lane_count = packet_size<double>;
 
 /// x in every lane.
-inline Lanes all_lanes(double x) { return fill_packet(x); }
+[[gnu::always_inline]] inline Lanes all_lanes(double x) { return x - Lanes{}; }
 inline Lanes load_lanes(const double* from) { return load_packet(from); }
 inline void store_lanes(double* to, const Lanes& x) { store_packet(to, x); }
 inline Lanes larger_lanes(const Lanes& x, const Lanes& y) { return x > y ? x : y; }

@@ -55,12 +55,6 @@ template <class T>
   *reinterpret_cast<typename inner::PacketTypes<T>::Unaligned*>(to) = x;
 }
 
-/// x in every place.
-template <class T>
-[[gnu::always_inline]] inline Packet<T> fill_packet(T x) {
-  return x - Packet<T>{};
-}
-
 /// Square roots, rounded as std::sqrt rounds them. No compiler has an operator for them.
 [[gnu::always_inline]] inline Packet<double> root_of(const Packet<double>& x) {
 #if defined(__AVX512F__)

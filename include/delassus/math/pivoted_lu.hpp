@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace delassus {
@@ -50,8 +51,7 @@ class PivotedLu {
   }
 
   /// X ← X A⁻ᵀ for a matrix X of any height: column(k), k < w, are its columns, to be written to.
-  template <class Column>
-  void solve_rows(const Column& column) const {
+  void solve_rows(const auto& column) const {
     for (int k = 0; k < w; ++k)
       if (swap_[k] != k) column(k).swap(column(swap_[k]));
     for (int k = 0; k < w; ++k)
@@ -74,5 +74,13 @@ class PivotedLu {
   std::array<T, w> over_;  ///< 1 / U_kk
   std::array<int, w> swap_;
 };
+
+/// Whether det A < 0 of an A with these block pivots.
+template <int w, class T>
+bool is_negative(std::span<const PivotedLu<w, T>> pivots) {
+  bool is = false;
+  for (const auto& pivot : pivots) is ^= pivot.is_negative();
+  return is;
+}
 
 }  // namespace delassus

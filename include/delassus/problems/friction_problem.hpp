@@ -17,30 +17,11 @@ namespace delassus {
 struct GivenContact : Coulomb {
   static constexpr bool is_contact = true;
 
+  /// Coulomb's functions take it for its parameters.
   struct Item {
     Parameters parameters{};
+    operator const Parameters&() const { return parameters; }
   };
-
-  template <class T>
-  void project(const Item& item, Local<3, T>& c, Memory<T>& memory) const {
-    Coulomb::project(item.parameters, c, memory);
-  }
-  template <class T>
-  Vec<3, T> solve_local(const Item& item, const Vec<3, T>& b, Memory<T>& memory) const {
-    return Coulomb::solve_local(item.parameters, b, memory);
-  }
-  template <class T>
-  Vec<3, T> natural_map(const Item& item, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
-    return Coulomb::natural_map(item.parameters, lambda, u, scale);
-  }
-  template <class T>
-  Vec<2, T> natural_squares(const Item& item, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
-    return Coulomb::natural_squares(item.parameters, lambda, u, scale);
-  }
-  template <class T>
-  void clamp(const Item& item, Vec<3, T>& lambda) const {
-    Coulomb::clamp(item.parameters, lambda);
-  }
 };
 
 namespace inner {

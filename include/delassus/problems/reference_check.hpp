@@ -76,11 +76,6 @@ Measure measure_of(Problem<Laws, Rows, Operator>& problem) {
   return solve(problem, GaussSeidel{.max_iterations = 0, .min_iterations = 0}).measure;
 }
 
-/// Newton's steps alone, so many that a wall of a hundred boxes is given up after seconds.
-inline PathNewton path_alone(double tolerance) {
-  return {.tolerance = tolerance, .max_iterations = 500, .max_sweeps = 0};
-}
-
 /// ½ uᵀ W⁻¹ u, W lifted by rounding's share where it is singular; a u that is no number counts most.
 template <int R, class T>
 double energy_of(const Mat<R, R, T>& W, const Vec<R, T>& u) {
@@ -144,8 +139,9 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
                                                          .patience = patience});
       if (has_slips) other = std::move(of_slips);
     }
-    if (!has_slips && !try_with(other, inner::ConvexNewton{.tolerance = tolerance}))
-      try_with(other, inner::path_alone(tolerance));
+    // Newton's steps alone on the path, so many that a wall of a hundred boxes is given up after seconds.
+    const PathNewton path{.tolerance = tolerance, .max_iterations = 500, .max_sweeps = 0};
+    if (!has_slips && !try_with(other, inner::ConvexNewton{.tolerance = tolerance})) try_with(other, path);
     // Islands that are none, since W has entries between them, would undo each other's solutions.
     const Measure end = inner::measure_of(other);
     check.reached = check.reference.status == Status::converged && end.residual <= tolerance + end.floor;

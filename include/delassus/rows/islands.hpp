@@ -9,11 +9,6 @@
 
 namespace delassus {
 
-/// No two blocks are coupled but by constraints.
-struct NoTies {
-  constexpr void operator()(auto&&) const {}
-};
-
 /// Union-find over the blocks of H. Blocks that do not move (A⁻¹ = 0) join nothing.
 ///
 /// Islands are numbered by their lowest block, items inside go by pool and insertion: a body far away changes
@@ -34,9 +29,7 @@ class Islands {
 
   /// `first_block[s]` is the number of the first block of set s; moves(s, b) tells whether A⁻¹ ≠ 0 there; ties(f) calls
   /// f(a, b) for numbers of blocks that A couples without a constraint.
-  template <class Rows, class Moves, class Ties = NoTies>
-  void find(const Rows& rows, std::span<const Index> first_block, Index blocks, const Moves& moves,
-            const Ties& ties = {}) {
+  void find(const auto& rows, std::span<const Index> first_block, Index blocks, const auto& moves, const auto& ties) {
     parent_.resize(blocks);
     for (Index b = 0; b < blocks; ++b) parent_[b] = b;
     ties([this](Index a, Index b) { unite(a, b); });
@@ -44,8 +37,8 @@ class Islands {
       lowest_[p].assign(pool.items(), -1);
       for (Index i = 0; i < pool.items(); ++i) join(pool, i, first_block, moves, lowest_[p][i]);
     });
-    number(rows);
-    for_each_index<Rows::pool_count>([&](auto p) { sort(p); });
+    number();
+    for_each_index<pools>([&](auto p) { sort(p); });
   }
 
   static void each_array(auto& self, auto&& f) {
@@ -61,20 +54,18 @@ class Islands {
   }
 
   /// One island of all items: a problem without bodies, or one whose errors shall be measured over the whole.
-  template <class Rows>
-  void take_all(const Rows& rows) {
+  void take_all(const auto& rows) {
     parent_.assign(1, 0);
     island_.assign(1, 0);
     count_ = 1;
-    for_each_index<Rows::pool_count>([&](auto p) {
+    for_each_index<pools>([&](auto p) {
       lowest_[p].assign(rows.template pool<p>().items(), 0);
       sort(p);
     });
   }
 
  private:
-  template <class Pool, class Moves>
-  void join(const Pool& pool, Index item, std::span<const Index> first_block, const Moves& moves, Index& seen) {
+  void join(const auto& pool, Index item, std::span<const Index> first_block, const auto& moves, Index& seen) {
     for_each_index<int(std::tuple_size_v<decltype(pool.sets)>)>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);
       for (Index e = set.offset[item]; e < set.offset[item + 1]; ++e) {
@@ -99,8 +90,7 @@ class Islands {
     if (b < a) parent_[a] = b;
   }
 
-  template <class Rows>
-  void number(const Rows&) {
+  void number() {
     const Index blocks = Index(parent_.size());
     island_.assign(blocks, -1);
     for (const auto& pool : lowest_)

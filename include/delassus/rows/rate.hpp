@@ -22,8 +22,7 @@ Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, co
 }
 
 /// H v_next.
-template <class Pool, class World>
-auto next_rate(const Pool& pool, Index i, const World& world) {
+auto next_rate(const auto& pool, Index i, const auto& world) {
   return rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
 }
 

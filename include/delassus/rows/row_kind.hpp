@@ -16,10 +16,9 @@ constexpr std::array<RowKind, Law::rows> row_kinds() {
   if constexpr (requires { Law::kinds; }) {
     return Law::kinds;
   } else {
+    constexpr bool is_bilateral = requires { requires Law::bilateral; };
     std::array<RowKind, Law::rows> kinds{};
-    RowKind kind = RowKind::lower;
-    if constexpr (requires { requires Law::bilateral; }) kind = RowKind::equality;
-    for (RowKind& k : kinds) k = kind;
+    kinds.fill(is_bilateral ? RowKind::equality : RowKind::lower);
     return kinds;
   }
 }

@@ -60,7 +60,7 @@ struct BasicAcceleratedGaussSeidel {
     [[no_unique_address]] typename Newton::template Space<Rows> newton;
     void reset(const Rows& rows) {
       for (auto* set : {&x, &best}) set->resize_like(rows);
-      history.reserve(std::size_t(rows.row_count()));
+      history.each([&](Array<double>& v) { v.reserve(std::size_t(rows.row_count())); });
       newton.resize_like(rows);
     }
   };
@@ -83,8 +83,7 @@ struct BasicAcceleratedGaussSeidel {
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell: of
   /// a rough start they tell nothing, and of six orders of OneObject-i100000-499's contacts mixing at once
   /// ended none, after forty sweeps all.
-  template <class ConvergenceMonitor, class Sweep>
-  static bool settle(ConvergenceMonitor& monitor, const Sweep& sweep) {
+  static bool settle(auto& monitor, const auto& sweep) {
     for (int k = 0; k < 40; ++k)
       if (!monitor.goes_on(sweep())) return false;
     return true;

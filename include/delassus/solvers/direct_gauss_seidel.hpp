@@ -77,7 +77,10 @@ struct BasicDirectGaussSeidel {
     report.ended_by = "factorization";
     bool is_contradiction = false;
     for (const double epsilon : {fine, coarse}) {
-      release(problem, joints);
+      joints.each([&](auto p, Index k) {
+        const Index item = joints.node(k).item;
+        problem.template assign<p>(item, 0 * problem.impulse(p, item));
+      });
       ++report.factorizations;
       if (!joints.factor(epsilon)) continue;
       if (settle(problem, joints)) break;
@@ -112,14 +115,6 @@ struct BasicDirectGaussSeidel {
  private:
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
 
-  /// A law whose rows are all equalities.
-  template <class Problem, int p>
-  static constexpr bool holds_exactly() {
-    for (const RowKind kind : Problem::BookType::template kinds<p>())
-      if (kind != RowKind::equality) return false;
-    return true;
-  }
-
   /// The bilateral constraints first; false where there are none, or the direct path cannot act.
   template <class Problem, class System>
   bool gather(const Problem& problem, System& joints) const {
@@ -128,29 +123,19 @@ struct BasicDirectGaussSeidel {
     int swept = 0;
     for (const bool is_bilateral : {true, false})
       problem.each([&](auto p, Index i) {
-        if (holds_exactly<Problem, p>() != is_bilateral) return;
+        if (inner::are_equalities(Problem::BookType::template kinds<p>()) != is_bilateral) return;
         can &= joints.template take<p>(problem.rows(), i, is_bilateral);
         if (!is_bilateral) swept += System::Rows::template rows_of<p>;
       });
     if (!can || joints.bilateral() == 0 || swept > max_swept_rows) return false;
-    joints.analyse(std::size_t(problem.island()));
+    joints.analyse(problem.island());
     return true;
-  }
-
-  /// λ_b ← 0.
-  template <class Problem, class System>
-  static void release(Problem& problem, System& joints) {
-    joints.each([&](auto p, Index k) {
-      const Index item = joints.node(k).item;
-      problem.template assign<p>(item, 0 * problem.rows().template pool<p>().lambda[item]);
-    });
   }
 
   /// λ_b ← λ_b − W_bb⁻¹ (d + W λ)_b, repeated while that halves the velocity of the joints' rows: what ε and
   /// rounding left goes. A repetition that makes it worse is taken back. False when rows contradict each
   /// other: a thousandth stays.
-  template <class Problem, class System>
-  static bool settle(Problem& problem, System& joints) {
+  static bool settle(auto& problem, auto& joints) {
     const double first = joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
     double size = first;
     for (int repetition = 0; repetition < 8 && size > 0; ++repetition) {

@@ -43,7 +43,9 @@ struct BasicGaussSeidel {
     if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
     bool is_over = max_iterations == 0;
     while (!is_over) {
-      if (report.sweeps >= min_iterations && inner::is_done<Criterion>(*this, report.measure, rows)) break;
+      const bool is_done = Criterion::needs_measure ? inner::is_done<Criterion>(*this, report.measure, rows)
+                                                    : inner::is_within<Criterion>(*this, report.measure, rows);
+      if (report.sweeps >= min_iterations && is_done) break;
       const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
       for (int k = 0; k < batch && !is_over && !(k > 0 && problem.is_measure_due()); ++k) {
         problem.template sweep<!Criterion::needs_measure>(relaxation);

@@ -44,11 +44,6 @@ class IslandProblem {
   IslandProblem<Book, Rows, OtherOperator, Observer, OtherGroups> with(OtherOperator& W, const OtherGroups& items) const {
     return {book_, rows_, W, items, island_, h_, observer_};
   }
-  /// The same items too.
-  template <class OtherOperator>
-  IslandProblem<Book, Rows, OtherOperator, Observer, Groups> with(OtherOperator& W) const {
-    return {book_, rows_, W, islands_, island_, h_, observer_};
-  }
   Operator& compliance() const { return W_; }
   const Groups& groups() const { return islands_; }
   /// Laws that keep something of their own block of W make it anew from `own_block`.
@@ -61,8 +56,7 @@ class IslandProblem {
   Index island() const { return island_; }
   const Rows& rows() const { return rows_; }
   /// λ_i to write to; W is not told.
-  template <class Pool>
-  auto& impulse(Pool p, Index i) {
+  auto& impulse(auto p, Index i) {
     return rows_.template pool<p>().lambda[i];
   }
   const Book& book() const { return book_; }
@@ -187,18 +181,15 @@ class IslandProblem {
   /// The way back, each λ_i brought into its law's cone.
   void scatter(const Array<double>& from) {
     std::size_t at = 0;
-    each([&](auto p, Index i) {
+    change([&](auto p, Index i, auto& next) {
       const double root = root_of_weight<p>(i);
-      Vec<Rows::template rows_of<p>, T> next;
       for (T& x : next) x = root > 0 ? T(from[at++] / root) : (++at, T(0));
       book_.template clamp<p>(i, next);
-      assign<p>(i, next);
     });
   }
 
   /// f(p, i) for every constraint, in order.
-  template <class F>
-  void each(F&& f) const {
+  void each(auto&& f) const {
     each_pool([&](auto p, auto items) {
       for (const Index i : items) f(p, i);
     });
@@ -207,6 +198,19 @@ class IslandProblem {
   template <int p>
   double root_of_weight(Index i) const {
     return std::sqrt(double(W_.template diagonal<p>(i).trace()) / Rows::template rows_of<p>);
+  }
+
+  /// λ_i ← what f(p, i, λ_i) makes of it, for every constraint, and W is told.
+  void change(auto&& f) {
+    each([&](auto p, Index i) {
+      auto next = rows_.template pool<p>().lambda[i];
+      f(p, i, next);
+      assign<p>(i, next);
+    });
+  }
+  /// λ ← 0.
+  void clear() {
+    change([](auto, Index, auto& next) { next.setZero(); });
   }
 
   /// λ_i ← next, and W is told.
@@ -232,8 +236,7 @@ class IslandProblem {
 
  private:
   /// f(p, items of the island) for every pool. One without items anywhere costs one look; the only pool has some.
-  template <class F>
-  void each_pool(F&& f) const {
+  void each_pool(auto&& f) const {
     for_each_index<pools>([&](auto p) {
       if (pools == 1 || rows_.template pool<p>().items() > 0) f(p, islands_.items(p, island_));
     });

@@ -20,6 +20,12 @@ class LawSet;
 template <class... Laws, class T>
 class LawSet<Constraints<Laws...>, T> {
   using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<Laws, T>>...>;
+  template <int p>
+  using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
+  template <int p>
+  using Pool = decltype(std::declval<const Constraints<Laws...>&>().template pool<p>());
+  template <int p>
+  using Memory = typename std::tuple_element_t<p, Memories>::value_type;
 
  public:
   LawSet() = default;  ///< of nothing, before it is attached
@@ -33,8 +39,7 @@ class LawSet<Constraints<Laws...>, T> {
     std::apply([&](auto&... memory) { (memory.reserve(items), ...); }, memory_);
   }
 
-  template <class Operator, class Rows>
-  void prepare(const Operator& W, const Rows& rows, double h) {
+  void prepare(const auto& W, const auto& rows, double h) {
     for_each_index<sizeof...(Laws)>([&](auto p) {
       auto& memory = std::get<p>(memory_);
       memory.resize(rows.template pool<p>().items());
@@ -59,10 +64,8 @@ class LawSet<Constraints<Laws...>, T> {
   /// Whether the law of pool p answers to the free velocity alone.
   template <int p>
   static constexpr bool meets() {
-    using Pool = std::remove_cvref_t<decltype(std::declval<const Constraints<Laws...>&>().template pool<p>())>;
-    using Memory = typename std::tuple_element_t<p, Memories>::value_type;
-    return requires(const Pool& pool, const Vec<Pool::rows, T>& b, Memory& memory) {
-      { pool.law.solve_local(pool.item(0), b, memory) } -> std::same_as<Vec<Pool::rows, T>>;
+    return requires(Pool<p> pool, const Vec<Law<p>::rows, T>& b, Memory<p>& memory) {
+      { pool.law.solve_local(pool.item(0), b, memory) } -> std::same_as<Vec<Law<p>::rows, T>>;
     };
   }
   template <int p, int R>
@@ -87,8 +90,8 @@ class LawSet<Constraints<Laws...>, T> {
   }
 
   /// |natural_map|² at `scale` and at 1, where the law knows both at once.
-  template <int p, int R, class Law = std::tuple_element_t<p, std::tuple<Laws...>>>
-  requires requires(const Law& law, const typename Law::Item& item, const Vec<R, T>& x, T scale) {
+  template <int p, int R>
+  requires requires(const Law<p>& law, const typename Law<p>::Item& item, const Vec<R, T>& x, T scale) {
     law.natural_squares(item, x, x, scale);
   }
   Vec<2, T> natural_squares(Index i, const Local<R, T>& c, T scale) const {
@@ -98,14 +101,13 @@ class LawSet<Constraints<Laws...>, T> {
 
   template <int p>
   static constexpr auto kinds() {
-    return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
+    return row_kinds<Law<p>>();
   }
   /// Whether the law of pool p is a round cone, and its μ.
   template <int p>
   static constexpr bool has_cone() {
-    using Pool = std::remove_cvref_t<decltype(std::declval<const Constraints<Laws...>&>().template pool<p>())>;
     constexpr auto law_kinds = kinds<p>();
-    if constexpr (law_kinds.size() != 3 || !requires(const Pool& pool) { pool.item(0).parameters.friction; })
+    if constexpr (law_kinds.size() != 3 || !requires(Pool<p> pool) { pool.item(0).parameters.friction; })
       return false;
     else
       return law_kinds[0] == RowKind::lower && law_kinds[1] == RowKind::friction && law_kinds[2] == RowKind::friction;
@@ -117,7 +119,7 @@ class LawSet<Constraints<Laws...>, T> {
 
   /// −∂λ/∂d of the impulse that meets the law where W is diagonal, and that impulse: see `constraints/law.hpp`.
   template <int p, int R, class N>
-    requires Differentiable<std::tuple_element_t<p, std::tuple<Laws...>>>
+    requires Differentiable<Law<p>>
   Mat<R, R, N> tangent(Index i, Local<R, N>& c) const {
     const auto& pool = constraints_->template pool<p>();
     if constexpr (requires { pool.law.tangent(pool.item(i), c); })
@@ -128,7 +130,7 @@ class LawSet<Constraints<Laws...>, T> {
 
   /// The same with the slip of friction rows given, where the law has a convex form.
   template <int p, int R, class N>
-    requires Differentiable<std::tuple_element_t<p, std::tuple<Laws...>>>
+    requires Differentiable<Law<p>>
   Mat<R, R, N> convex_tangent(Index i, Local<R, N>& c, N slip) const {
     const auto& pool = constraints_->template pool<p>();
     if constexpr (requires { pool.law.convex_tangent(pool.item(i), c, slip); })
@@ -140,13 +142,10 @@ class LawSet<Constraints<Laws...>, T> {
   /// Whether the law of pool p has a cone or a cap of its own.
   template <int p>
   static consteval bool clamps() {
-    using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
-    using Memory = typename std::tuple_element_t<p, Memories>::value_type;
-    return requires(const Law& law, const typename Law::Item& item, Vec<Law::rows, T>& x,
-                    const Memory& memory) {
-      law.clamp(item, x, memory);
-    }
-    || requires(const Law& law, const typename Law::Item& item, Vec<Law::rows, T>& x) { law.clamp(item, x); };
+    using Item = typename Law<p>::Item;
+    using X = Vec<Law<p>::rows, T>;
+    return requires(const Law<p>& law, const Item& item, X& x, const Memory<p>& m) { law.clamp(item, x, m); }
+    || requires(const Law<p>& law, const Item& item, X& x) { law.clamp(item, x); };
   }
   template <int p, int R>
   void clamp(Index i, Vec<R, T>& lambda) const {

@@ -6,6 +6,7 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/inner/anderson.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -34,8 +35,7 @@ template <template <class...> class Solver, class... More>
 double wanted_residual(const Solver<Residual, More...>& solver) {
   return solver.all_verified ? 0 : solver.tolerance;
 }
-template <class Solver>
-double wanted_residual(const Solver& solver) {
+double wanted_residual(const auto& solver) {
   if constexpr (requires { solver.solver; })
     return wanted_residual(solver.solver);
   else
@@ -143,8 +143,7 @@ struct MinimumNorm {
 
    private:
     /// f(p, i, the unknowns as impulses: a function of their number, how many) for each free constraint.
-    template <class F>
-    void each_free(F&& f) {
+    void each_free(auto&& f) {
       std::size_t k = 0;
       problem.each([&](auto p, Index i) {
         constexpr int R = Problem::RowsType::template rows_of<p>;
@@ -179,8 +178,7 @@ struct MinimumNorm {
     }
     /// y = Bᵀ W B x; the problem has λ = B x afterwards, and zero elsewhere.
     void multiply(const Array<double>& x, Array<double>& y) {
-      problem.each(
-          [&](auto p, Index i) { problem.template assign<p>(i, 0 * std::get<p>(work.target.pools)[i]); });
+      problem.clear();
       std::size_t k = 0;
       each_free([&](auto p, Index i, auto&& unit, int count) {
         problem.template assign<p>(i, impulse(std::get<p>(work.target.pools)[i], unit, count, &x[k]));
@@ -252,25 +250,20 @@ struct MinimumNorm {
       std::fill(s.x.begin(), s.x.end(), 0.0);
       s.r = s.b;
       s.p = s.r;
-      double square = product(s.r, s.r);
+      double square = inner::dot(s.r, s.r);
       const double goal = 1e-26 * square;
       for (int k = 0; square > goal; ++k) {
         if (k == products) return false;
         multiply(s.p, s.q);
-        const double curvature = product(s.p, s.q);
-        if (!(curvature > 0)) return square <= 1e-20 * product(s.b, s.b);
+        const double curvature = inner::dot(s.p, s.q);
+        if (!(curvature > 0)) return square <= 1e-20 * inner::dot(s.b, s.b);
         const double alpha = square / curvature;
         for (std::size_t n = 0; n < s.x.size(); ++n) s.x[n] += alpha * s.p[n], s.r[n] -= alpha * s.q[n];
-        const double next = product(s.r, s.r), beta = next / square;
+        const double next = inner::dot(s.r, s.r), beta = next / square;
         for (std::size_t n = 0; n < s.x.size(); ++n) s.p[n] = s.r[n] + beta * s.p[n];
         square = next;
       }
       return true;
-    }
-    static double product(const Array<double>& a, const Array<double>& b) {
-      double sum = 0;
-      for (std::size_t n = 0; n < a.size(); ++n) sum += a[n] * b[n];
-      return sum;
     }
   };
 };

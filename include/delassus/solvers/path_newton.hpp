@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 namespace delassus {
 
@@ -59,7 +58,7 @@ struct BasicPathNewton {
 
   template <class Problem, class Workspace>
   SolveReport solve(Problem& problem, Workspace& work) const {
-    Walk<Problem, Workspace> now{problem, work.laws, work.best, max_iterations};
+    Walk<Problem, Workspace> now{*this, problem, work.laws, work.best};
     now.report.measure = now.best = problem.measure();
     now.report.ended_by = "path";
     problem.notify(0, now.best);
@@ -67,9 +66,9 @@ struct BasicPathNewton {
     problem.save(work.best);
     if (!meets(now.best, problem) && work.laws.gather(problem)) {
       now.log_tau = 2 * std::log(work.laws.scale());
-      if (reach_path(now)) {
-        follow(now);
-        descend(now);
+      if (now.reach_path()) {
+        now.follow();
+        now.descend();
       }
       problem.load(work.best);
       now.report.measure = problem.measure();
@@ -84,12 +83,14 @@ struct BasicPathNewton {
   }
 
  private:
+  static constexpr double least_step = 1e-7;  ///< of the curve's length: below it goes to and fro in rounding
+
   template <class Problem, class Workspace>
   struct Walk {
+    const BasicPathNewton& solver;
     Problem& problem;
     decltype(Workspace::laws)& work;
     decltype(Workspace::best)& kept;
-    int limit;  ///< factorizations
     SolveReport report{};
     Measure best{};
     double log_tau = 0, next = 0;  ///< next: log τ of the last evaluation
@@ -104,132 +105,123 @@ struct BasicPathNewton {
       return size / (std::sqrt(double(work.rows())) * std::max(1e-5 * std::sqrt(tau), rounding));
     }
     bool factor() {
-      if (report.factorizations >= limit) return false;
+      if (report.factorizations >= solver.max_iterations) return false;
       ++report.factorizations;
       return work.template factor<Problem>(std::exp(next));
     }
+    /// Newton's step from where |r| is `size`, halved until that falls; |r| at the last try.
+    double take_step(double size) {
+      work.find_direction();
+      work.each_item([](auto& c) { c.direction = c.lambda; });
+      double least = size;
+      for (double t = 1; t > 1e-4 && !(least < size); t /= 2) least = evaluate(t, 0);
+      if (least < size) work.advance();
+      return least;
+    }
     /// Σ over the path's length of two directions, the second by its member.
-    template <class Which>
-    double along(const Which& which) {
+    double along(const auto& which) {
       return work.product(
           tau(), [](const auto& c) { return c.tangent; }, which);
     }
+
+    /// Newton's method at the first τ, from x = 0.
+    bool reach_path() {
+      next = log_tau;
+      double size = evaluate(0, 0);
+      for (int step = 0; step < 60 && size > 1; ++step) {
+        if (!factor()) return false;
+        const double least = take_step(size);
+        if (!(least < size)) return false;
+        size = least;
+      }
+      return size <= 1;
+    }
+
+    void follow() {
+      if (!turn()) return;
+      double step = 0.5;
+      while (!is_done()) {
+        int corrections = -1;
+        while (corrections < 0) {
+          if (report.factorizations >= solver.max_iterations || step < least_step || problem.is_out_of_time())
+            return;
+          corrections = go_along(step);
+          if (corrections < 0) step *= 0.4;
+        }
+        if (!turn()) return;
+        if (corrections <= 2)
+          step = std::min(2 * step, 3.0);
+        else if (corrections == 3)
+          step = std::min(1.3 * step, 3.0);
+        else if (corrections > 5)
+          step *= 0.7;
+      }
+    }
+
+    /// Where steps along the curve have drowned in rounding: τ falls by twenty times as often as a Newton step
+    /// halves r.
+    void descend() {
+      next = log_tau;
+      for (int step = 0; step < 80 && report.factorizations < solver.max_iterations; ++step) {
+        if (problem.is_out_of_time()) return;
+        const double size = evaluate(0, 0);
+        if (is_done() || !factor()) return;
+        const double least = take_step(size);
+        if (!(least > 0.5 * size) || least <= 1 || !(least < size)) next -= 3;
+      }
+    }
+
+    /// A step along the tangent, then across it back to the curve; how many corrections that took, −1: too
+    /// many.
+    int go_along(double step) {
+      next = log_tau + step * rise;
+      work.each_item([](auto& c) { c.direction.setZero(); });
+      double last = 0;
+      for (int k = 0; k < 7; ++k) {
+        const double size = evaluate(1, step);
+        if (size <= 1) return k;
+        if (!std::isfinite(size) || (k > 0 && size > 0.5 * last) || !factor()) return -1;
+        last = size;
+        work.find_direction();
+        work.each_item([](auto& c) { c.best = c.lambda; });
+        work.template find_rate<Problem>(std::exp(next));
+        // −J δ + ∂r/∂log τ δσ = −r across the tangent: δ = J⁻¹ r + rate δσ.
+        const double change = -along([](const auto& c) { return c.best; }) /
+                              (along([](const auto& c) { return c.rate; }) + rise);
+        work.each_item([&](auto& c) { c.direction += c.best + change * c.rate; });
+        next += change;
+      }
+      return -1;
+    }
+
+    /// x ← where the last evaluation was, and the tangent there. Along the curve det(−∂r/∂x) and d log τ/ds
+    /// change their signs together: that tells ahead from behind where it folds, or nearly meets another,
+    /// within a step.
+    bool turn() {
+      if (!factor()) return false;
+      work.template find_rate<Problem>(std::exp(next));
+      work.advance();
+      log_tau = next;
+      const auto rate = [](const auto& c) { return c.rate; };
+      const double length = std::sqrt(work.product(tau(), rate, rate) + 1);
+      rise = (work.is_negative() ? 1 : -1) / length;
+      work.each_item([&](auto& c) { c.tangent = rise * c.rate; });
+      return std::isfinite(length);
+    }
+
+    /// Measures λ by W itself and keeps the best.
+    bool is_done() {
+      const Measure m = problem.measure();
+      problem.notify(report.factorizations, m);
+      if (Criterion::sum(m) < Criterion::sum(best)) {
+        best = m;
+        problem.save(kept);
+      }
+      return solver.meets(best, problem) || !std::isfinite(m.residual);
+    }
   };
 
-  static constexpr double least_step = 1e-7;  ///< of the curve's length: below it goes to and fro in rounding
-
-  /// Newton's method at the first τ, from x = 0.
-  template <class W>
-  bool reach_path(W& now) const {
-    now.next = now.log_tau;
-    double size = now.evaluate(0, 0);
-    for (int step = 0; step < 60 && size > 1; ++step) {
-      if (!now.factor()) return false;
-      now.work.find_direction();
-      now.work.each_item([](auto& c) { c.direction = c.lambda; });
-      double least = size;
-      for (double t = 1; t > 1e-4 && !(least < size); t /= 2) least = now.evaluate(t, 0);
-      if (!(least < size)) return false;
-      size = least;
-      now.work.advance();
-    }
-    return size <= 1;
-  }
-
-  template <class W>
-  void follow(W& now) const {
-    if (!turn(now)) return;
-    double step = 0.5;
-    while (!is_done(now)) {
-      int corrections = -1;
-      while (corrections < 0) {
-        if (now.report.factorizations >= max_iterations || step < least_step || now.problem.is_out_of_time())
-          return;
-        corrections = go_along(now, step);
-        if (corrections < 0) step *= 0.4;
-      }
-      if (!turn(now)) return;
-      if (corrections <= 2)
-        step = std::min(2 * step, 3.0);
-      else if (corrections == 3)
-        step = std::min(1.3 * step, 3.0);
-      else if (corrections > 5)
-        step *= 0.7;
-    }
-  }
-
-  /// Where steps along the curve have drowned in rounding: τ falls by twenty times as often as a Newton step
-  /// halves r.
-  template <class W>
-  void descend(W& now) const {
-    now.next = now.log_tau;
-    for (int step = 0; step < 80 && now.report.factorizations < max_iterations; ++step) {
-      if (now.problem.is_out_of_time()) return;
-      double size = now.evaluate(0, 0);
-      if (is_done(now) || !now.factor()) return;
-      now.work.find_direction();
-      now.work.each_item([](auto& c) { c.direction = c.lambda; });
-      double t = 1, least = size;
-      for (; t > 1e-4 && !(least < size); t /= 2) least = now.evaluate(t, 0);
-      if (least < size) now.work.advance();
-      if (!(least > 0.5 * size) || least <= 1 || !(least < size)) now.next -= 3;
-    }
-  }
-
-  /// A step along the tangent, then across it back to the curve; how many corrections that took, −1: too
-  /// many.
-  template <class W>
-  static int go_along(W& now, double step) {
-    now.next = now.log_tau + step * now.rise;
-    now.work.each_item([](auto& c) { c.direction.setZero(); });
-    double last = 0;
-    for (int k = 0; k < 7; ++k) {
-      const double size = now.evaluate(1, step);
-      if (size <= 1) return k;
-      if (!std::isfinite(size) || (k > 0 && size > 0.5 * last) || !now.factor()) return -1;
-      last = size;
-      const double tau = std::exp(now.next);
-      now.work.find_direction();
-      now.work.each_item([](auto& c) { c.best = c.lambda; });
-      now.work.template find_rate<typename std::remove_cvref_t<decltype(now.problem)>>(tau);
-      // −J δ + ∂r/∂log τ δσ = −r across the tangent: δ = J⁻¹ r + rate δσ.
-      const double change = -now.along([](const auto& c) { return c.best; }) /
-                            (now.along([](const auto& c) { return c.rate; }) + now.rise);
-      now.work.each_item([&](auto& c) { c.direction += c.best + change * c.rate; });
-      now.next += change;
-    }
-    return -1;
-  }
-
-  /// x ← where the last evaluation was, and the tangent there. Along the curve det(−∂r/∂x) and d log τ/ds
-  /// change their signs together: that tells ahead from behind where it folds, or nearly meets another,
-  /// within a step.
-  template <class W>
-  static bool turn(W& now) {
-    if (!now.factor()) return false;
-    now.work.template find_rate<typename std::remove_cvref_t<decltype(now.problem)>>(std::exp(now.next));
-    now.work.advance();
-    now.log_tau = now.next;
-    const auto rate = [](const auto& c) { return c.rate; };
-    const double length = std::sqrt(now.work.product(now.tau(), rate, rate) + 1);
-    now.rise = (now.work.is_negative() ? 1 : -1) / length;
-    now.work.each_item([&](auto& c) { c.tangent = now.rise * c.rate; });
-    return std::isfinite(length);
-  }
-
-  /// Measures λ by W itself and keeps the best.
-  template <class W>
-  bool is_done(W& now) const {
-    const Measure m = now.problem.measure();
-    now.problem.notify(now.report.factorizations, m);
-    if (Criterion::sum(m) < Criterion::sum(now.best)) {
-      now.best = m;
-      now.problem.save(now.kept);
-    }
-    return meets(now.best, now.problem) || !std::isfinite(m.residual);
-  }
-  template <class Problem>
-  bool meets(const Measure& m, const Problem& problem) const {
+  bool meets(const Measure& m, const auto& problem) const {
     return inner::is_done<Criterion>(*this, m, problem.row_count());
   }
 };

@@ -82,8 +82,7 @@ struct BasicProximalNewton {
   using Point = inner::ProximalPoint<Criterion, BasicProximalNewton, Problem, decltype(Workspace::body)>;
 
   /// The tolerance was not met: what is left of the sweeps leads on from the best λ.
-  template <class P, class Workspace>
-  SolveReport give_up(P& now, Workspace& work) const {
+  SolveReport give_up(auto& now, auto& work) const {
     auto& problem = now.problem();
     now.restore_best();
     const int left = max_sweeps - now.sweeps;
@@ -99,13 +98,11 @@ struct BasicProximalNewton {
     return finish(now);
   }
 
-  template <class Problem, class Workspace>
-  SolveReport sweep(Problem& problem, Workspace& work, int most, int least) const {
+  SolveReport sweep(auto& problem, auto& work, int most, int least) const {
     return inner::sweeps_of<Criterion>(*this, most, least).solve(problem, work.sweeps);
   }
 
-  template <class P>
-  SolveReport finish(const P& now) const {
+  SolveReport finish(const auto& now) const {
     return {inner::verdict<Criterion>(*this, now.measure, now.rows()), now.sweeps, now.measure,
             now.factorizations};
   }

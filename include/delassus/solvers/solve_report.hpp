@@ -19,6 +19,13 @@ struct SolveReport {
 
 namespace inner {
 
+/// How far a part of a solver may go.
+struct SolveLimits {
+  double tolerance = 1e-6;
+  int max_iterations = 0, min_iterations = 0;
+  bool scale_tolerance = false, all_verified = false;
+};
+
 /// tolerance, times the number of rows when `scale_tolerance` asks; or every constraint's share when `all_verified`.
 template <class Criterion, class Solver>
 bool is_within(const Solver& solver, const Measure& m, int rows) {
@@ -26,10 +33,10 @@ bool is_within(const Solver& solver, const Measure& m, int rows) {
   return Criterion::sum(m) <= solver.tolerance * (solver.scale_tolerance ? rows : 1);
 }
 
-/// Within it, or at the floor of rounding.
+/// Within it, or at the floor of rounding by what was measured.
 template <class Criterion, class Solver>
 bool is_done(const Solver& solver, const Measure& m, int rows) {
-  return is_within<Criterion>(solver, m, rows) || (Criterion::needs_measure && m.residual <= m.floor);
+  return is_within<Criterion>(solver, m, rows) || m.residual <= m.floor;
 }
 
 /// Sweeps between two measurements. With a measurement at the price of c sweeps, one every m sweeps costs n c/m on the way to

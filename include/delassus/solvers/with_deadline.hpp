@@ -58,8 +58,7 @@ struct WithDeadline {
                     "WithDeadline: the deadline must be a number of seconds on its clock");
   }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
+  SolveReport solve(auto& problem, auto& work) const {
     if (std::isnan(work.until))
       work.until = std::isinf(budget) ? deadline : std::min(deadline, clock.now() + budget);
     const auto island = std::size_t(problem.island());

@@ -3,6 +3,7 @@
 
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/math/two_lanes.hpp>
 
 #include <cstring>
 
@@ -33,16 +34,6 @@ inline double first_of_row(Index count, const Mat<3, Rb, S>* W, const Index* col
   double all = 0;
   for (int k = 0; k < Rb; ++k) all += even[k] + odd[k];
   return all;
-}
-
-/// Two numbers that one instruction adds or multiplies. Of arrays and loops compilers made nine scalar
-/// products of a 3 × 3 block.
-typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
-
-inline Pair pair_at(const double* x) {
-  Pair p;
-  std::memcpy(&p, x, sizeof p);
-  return p;
 }
 
 #ifdef __AVX__
@@ -82,17 +73,18 @@ inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* col
 ///
 ///   (w₀₀ w₁₀) x₀,  (w₂₀ w₀₁) (x₀ x₁),  (w₁₁ w₂₁) x₁,  (w₀₂ w₁₂) x₂,  w₂₂ x₂,
 ///
-/// each into a sum of its own, so that no addition waits for the one before it.
+/// each into a sum of its own, so that no addition waits for the one before it. Of arrays and loops compilers made
+/// nine scalar products of a 3 × 3 block.
 inline void add_row(Vec<3>& r, Index count, const Mat<3, 3>* W, const Index* column, const Vec<3>* x) {
-  Pair first{}, across{}, second{}, third{};
+  TwoLanes first{}, across{}, second{}, third{};
   double last = 0;
   for (Index e = 0; e < count; ++e) {
     const double* w = W[e].data();
     const double* y = x[column[e]].data();
-    first += pair_at(w) * y[0];
-    across += pair_at(w + 2) * pair_at(y);
-    second += pair_at(w + 4) * y[1];
-    third += pair_at(w + 6) * y[2];
+    first += two_lanes_at(w) * y[0];
+    across += two_lanes_at(w + 2) * two_lanes_at(y);
+    second += two_lanes_at(w + 4) * y[1];
+    third += two_lanes_at(w + 6) * y[2];
     last += w[8] * y[2];
   }
   r[0] += (first[0] + across[1]) + third[0];

@@ -21,8 +21,7 @@ inline std::uint64_t key_of(std::uint64_t key, const void* from, std::size_t cou
   for (std::size_t i = 0; i < count; ++i) key = (key ^ p[i]) * 1099511628211ull;
   return key;
 }
-template <class List>
-std::uint64_t key_of(const List& list, std::uint64_t key = 14695981039346656037ull) {
+std::uint64_t key_of(const auto& list, std::uint64_t key = 14695981039346656037ull) {
   return key_of(key, list.data(), list.size() * sizeof(list.data()[0]));
 }
 

@@ -91,11 +91,19 @@ class CoupledColumns<RowSystem<T, Widths<w...>, R...>> {
     });
   }
 
-  /// f(item, column): column[block] is the block's part of A⁻¹ H_itemᵀ.
-  template <int s, int p, class F>
-  void each(F&& f) const {
-    const auto& out = std::get<p>(std::get<s>(columns_));
-    for (std::size_t n = 0; n < out.items.size(); ++n) f(out.items[n], out.columns[n]);
+  /// f(b, j, H_e A⁻¹ H_jᵀ) for all items j of all pools b, e the entries of item i of pool a in set s; not where the two act
+  /// on bodies that A does not couple.
+  template <int s, int a, class F>
+  void each(const Rows& rows, Index i, F&& f) const {
+    const auto& mine = std::get<s>(rows.template pool<a>().sets);
+    if (mine.offset[i] == mine.offset[i + 1]) return;
+    for_each_index<Rows::pool_count>([&](auto b) {
+      const auto& theirs = std::get<b>(std::get<s>(columns_));
+      for (std::size_t n = 0; n < theirs.items.size(); ++n)
+        for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
+          if (const auto& response = theirs.columns[n][mine.block[e]]; !is_zero(response))
+            f(b, theirs.items[n], mine.H[e] * response);
+    });
   }
 
  private:

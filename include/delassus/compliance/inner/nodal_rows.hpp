@@ -117,15 +117,13 @@ class NodalRows<RowSystem<T, Widths<w...>, R...>> {
   };
 
   /// An entry before e of the same item is on the same body.
-  template <class Blocks>
-  static bool is_repeated(const Blocks& blocks, const Touched& t, Index i, Index e) {
+  static bool is_repeated(const auto& blocks, const Touched& t, Index i, Index e) {
     for (Index g = blocks.offset[i]; g < e; ++g)
       if (t.owner[t.slot[blocks.block[g]]] == t.owner[t.slot[blocks.block[e]]]) return true;
     return false;
   }
 
-  template <class Blocks>
-  static void find_items(const Blocks& blocks, const Touched& t,
+  static void find_items(const auto& blocks, const Touched& t,
                          Array<std::pair<Index, Index>>& items) {
     items.clear();
     for (Index i = 0; i + 1 < Index(blocks.offset.size()); ++i)

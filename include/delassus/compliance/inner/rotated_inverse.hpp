@@ -40,7 +40,7 @@ class RotatedInverse {
   void analyse(const auto& body) {
     factor_.analyse(Index(body.blocks().size()), body.pairs(), body.mesh().points);
     const std::size_t n = body.blocks().size();
-    for (NodeVectors* list : {&x_, &r_, &z_, &p_, &q_, &then_}) list->assign(n, Velocity::Zero());
+    for (NodeVectors* list : {&r_, &z_, &p_, &q_, &then_}) list->assign(n, Velocity::Zero());
     for (auto& guess : guess_) guess.assign(n, Velocity::Zero());
     turned_.assign(n, Vec<3, S>::Zero());
     slot_.assign(n, -1);
@@ -69,9 +69,7 @@ class RotatedInverse {
     spread_.assign(x.size(), Mat<3, 3, T>::Zero());
     for (const auto& [i, j] : body.pairs()) {
       const Velocity now = x[j] - x[i], before = then_[j] - then_[i];
-      Mat<3, 3, T> edge;
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) edge(r, c) = now[r] * before[c];
+      const Mat<3, 3, T> edge = columns<T>(now * before[0], now * before[1], now * before[2]);
       spread_[i] += edge, spread_[j] += edge;
     }
     for (std::size_t k = 0; k < x.size(); ++k) turn_next_to(spread_[k], rotation_[k], turn_[k]);
@@ -192,7 +190,7 @@ class RotatedInverse {
   SystemScale scale_;
   Array<Index> known_, slot_;
   Array<S> kept_;
-  NodeVectors x_, r_, z_, p_, q_, guess_[2];
+  NodeVectors r_, z_, p_, q_, guess_[2];
   Array<Vec<3, S>> turned_;
 };
 

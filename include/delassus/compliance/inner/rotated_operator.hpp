@@ -100,7 +100,9 @@ class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   template <class World>
   void build(const World& world, Rows& rows) {
     Base::build(ThroughAll<World>{world, *this}, rows);
-    each_missed(rows, [](auto& list, std::size_t items) { list.assign(items, list_zero(list)); });
+    each_pool(rows, [&](auto p, const auto& pool) {
+      missed<p>().assign(pool.items(), Vec<Rows::template rows_of<p>, T>::Zero());
+    });
   }
 
   /// What went into d of pool p so far.
@@ -179,8 +181,7 @@ class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   struct ThroughAll {
     const World& world;
     RotatedOperator& own;
-    template <class F>
-    void each(F&& f) const {
+    void each(auto&& f) const {
       world.each([&](const auto& set, auto s) {
         using Set = std::remove_cvref_t<decltype(set)>;
         if constexpr (AssembledSet<Set>)
@@ -235,15 +236,6 @@ class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
     nodes_.clear();
     for (const Index b : blocks) nodes_.push_back(set.node_of(b));
     std::get<s>(bodies_)[set.body_of(blocks.front())].inverse.compliance(nodes_, C, Origin::is_at_rest);
-  }
-
-  template <class List>
-  static auto list_zero(const List&) {
-    return List::value_type::Zero().eval();
-  }
-  void each_missed(const Rows& rows, auto&& f) {
-    for_each_index<int(sizeof...(R))>(
-        [&](auto p) { f(std::get<p>(missed_), std::size_t(rows.template pool<p>().items())); });
   }
 
   static constexpr int most_iterations = 60;

@@ -18,24 +18,22 @@ struct FrontRun {
 /// Where a front's columns of L are, where its part for the parent is, and where that goes.
 struct FrontPlace {
   std::size_t factor = 0, update = 0;
-  bool is_kept = false;  ///< the part for the parent is kept: it has a place of its own, not one on the stack
   Array<FrontRun> runs;
 };
 
 /// Columns of L lie one after the other. Parts for parents are on two stacks, as children stand before their
 /// parents: those of even depth on one, those of odd depth on the other, so that a front takes its children's
-/// from the top of one and leaves its own on top of the other. What goes to a parent among the last nodes is
-/// kept from one factorization to the next. Sizes are in numbers.
+/// from the top of one and leaves its own on top of the other. Sizes are in numbers.
 template <class Index>
 struct BasicFrontLayout {
   std::vector<FrontPlace> fronts;
-  std::size_t factor_size = 0, stack_size = 0, kept_size = 0;
+  std::size_t factor_size = 0, stack_size = 0;
 
   /// `w`: numbers a node.
   void analyse(const SupernodalPattern& pattern, int w) {
     const auto& supernodes = pattern.supernodes();
     fronts.assign(supernodes.size(), {});
-    factor_size = kept_size = 0;
+    factor_size = 0;
     Array<char> depth(fronts.size(), 0);  // modulo 2
     for (Index s = Index(fronts.size()); s-- > 0;)
       if (supernodes[s].parent >= 0) depth[s] = !depth[supernodes[s].parent];
@@ -46,10 +44,8 @@ struct BasicFrontLayout {
       const std::size_t below = std::size_t(w) * x.below();
       front.factor = factor_size;
       factor_size += std::size_t(w) * x.rows.size() * w * x.width;
-      front.is_kept = x.parent >= 0 && pattern.is_last(supernodes[x.parent].first);
-      if (!x.children.empty() && !fronts[x.children[0]].is_kept)
-        top[!depth[s]] = fronts[x.children[0]].update;
-      std::size_t& end = front.is_kept ? kept_size : top[int(depth[s])];
+      if (!x.children.empty()) top[!depth[s]] = fronts[x.children[0]].update;
+      std::size_t& end = top[int(depth[s])];
       front.update = end;
       end += below * below;
       for (const int k : {0, 1}) highest[k] = std::max(highest[k], top[k]);
@@ -57,7 +53,7 @@ struct BasicFrontLayout {
     }
     stack_size = highest[0] + highest[1];
     for (std::size_t s = 0; s < fronts.size(); ++s)
-      if (depth[s] && !fronts[s].is_kept) fronts[s].update += highest[0];
+      if (depth[s]) fronts[s].update += highest[0];
   }
 
  private:

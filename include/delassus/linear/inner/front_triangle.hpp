@@ -24,13 +24,13 @@ struct BasicFrontPlan {
   /// All diagonal blocks, w numbers each way, and the pairs (i, j), i ≠ j, in any order, repeats allowed. See
   /// `NestedDissection::order`.
   void analyse(int w, Index blocks, std::span<const std::pair<Index, Index>> pairs,
-               std::span<const Vec3> positions = {}, std::span<const Index> region = {}) {
+               std::span<const Vec3> positions = {}) {
     Array<std::pair<Index, Index>> unique;
     for (auto [i, j] : pairs) unique.emplace_back(std::minmax(i, j));
     std::sort(unique.begin(), unique.end());
     unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
     const NodeGraph graph(blocks, unique);
-    pattern.analyse(graph, NestedDissection{}.order(graph, positions, region), Index(region.size()));
+    pattern.analyse(graph, NestedDissection{}.order(graph, positions));
     entries.analyse(graph, pattern);
     layout.analyse(pattern, w);
   }
@@ -52,7 +52,6 @@ class FrontTriangle {
   void resize(const FrontPlan& plan) {
     factor_.resize(plan.layout.factor_size);
     stack_.resize(plan.layout.stack_size);
-    kept_.resize(plan.layout.kept_size);
   }
 
   Columns<T> columns(const FrontPlan& plan, Index s) {
@@ -63,15 +62,12 @@ class FrontTriangle {
   }
   /// What a front leaves its parent, (w below) × (w below).
   Columns<T> part(const FrontPlan& plan, Index s) {
-    const FrontPlace& front = plan.layout.fronts[s];
-    return {(front.is_kept ? kept_ : stack_).data() + front.update,
-            std::size_t(w) * plan.supernode(s).below()};
+    return {stack_.data() + plan.layout.fronts[s].update, std::size_t(w) * plan.supernode(s).below()};
   }
 
   /// The columns of front s ← the matrix's own entries, diagonal(place) and below(entry) by blocks, and what
   /// its children left there.
-  template <class Diagonal, class Below>
-  void open(const FrontPlan& plan, Index s, const Diagonal& diagonal, const Below& below) {
+  void open(const FrontPlan& plan, Index s, const auto& diagonal, const auto& below) {
     const Supernode& x = plan.supernode(s);
     const Columns<T> L = columns(plan, s);
     std::fill_n(L.data, L.stride * w * x.width, T(0));
@@ -93,8 +89,7 @@ class FrontTriangle {
   }
 
  private:
-  template <class Block>
-  static void put(Columns<T> to, const Block& block) {
+  static void put(Columns<T> to, const auto& block) {
     for (int c = 0; c < w; ++c) std::copy_n(block.data() + w * c, w, to.at(0, c));
   }
 
@@ -115,7 +110,7 @@ class FrontTriangle {
       }
   }
 
-  Array<T> factor_, stack_, kept_;
+  Array<T> factor_, stack_;
 };
 
 }  // namespace delassus::inner

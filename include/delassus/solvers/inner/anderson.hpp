@@ -15,16 +15,9 @@ struct History {
   static constexpr int depth = 5;
   Array<double> x, z, f, last_f, last_z, good, change_f[depth], change_z[depth];
 
-  template <class F>
-  void each(F&& apply) {
+  void each(auto&& apply) {
     for (auto* v : {&x, &z, &f, &last_f, &last_z, &good}) apply(*v);
     for (int k = 0; k < depth; ++k) apply(change_f[k]), apply(change_z[k]);
-  }
-  void reserve(std::size_t rows) {
-    each([&](Array<double>& v) { v.reserve(rows); });
-  }
-  void resize(std::size_t rows) {
-    each([&](Array<double>& v) { v.resize(rows); });
   }
 };
 
@@ -59,10 +52,9 @@ void solve_gram(const double (&gram)[n][n], double (&g)[n], int count) {
 /// grew to twice its least the history is dropped and the last good z taken. A mixture ten times larger than the first z is
 /// not taken: where the laws contradict each other λ has no limit, and mixing would run there at once.
 /// Source: [WalkerNi2011].
-template <class Problem, class ConvergenceMonitor, class Sweep>
-void anderson(Problem& problem, ConvergenceMonitor& monitor, History& h, Sweep&& sweep) {
+void anderson(auto& problem, auto& monitor, History& h, auto&& sweep) {
   constexpr int depth = History::depth;
-  h.resize(std::size_t(problem.row_count()));
+  h.each([rows = std::size_t(problem.row_count())](Array<double>& v) { v.resize(rows); });
   double gram[depth][depth] = {};
   int count = 0, place = 0;
   bool has_last = false;

@@ -1,7 +1,6 @@
 /// One island as a system of equations for the velocities of its bodies.
 #pragma once
 
-#include <delassus/constraints/law.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -11,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -20,41 +18,27 @@ namespace delassus::inner {
 ///   F(y) = y − G (λ(u) − λ̂),   u = d + W λ̂ + H y,   J = 1 + G S H,
 ///
 /// λ(u) the impulses that meet the laws with W = diag(R + ε w) at velocity u around λ̂: the proximal point.
-template <class Rows>
-class BodySpace {
+template <class Rows, class System = NewtonSystem<NewtonItem, Rows>>
+class BodySpace : public System {
  public:
-  using System = NewtonSystem<NewtonItem, Rows>;
   using T = typename Rows::Scalar;
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
-  template <class Problem>
-  bool gather(Problem& problem) {
-    if (!system_.gather(problem)) return false;
-    for (auto* array : {&y_, &change_, &residual_}) array->assign(system_.blocks(), Velocity::Zero());
+  bool gather(auto& problem) {
+    if (!System::gather(problem)) return false;
+    for (auto* array : {&y_, &change_, &residual_}) array->assign(this->blocks(), Velocity::Zero());
     return true;
-  }
-
-  /// Of a factorization and what goes with it, in sweeps.
-  double cost_in_sweeps() { return system_.cost_in_sweeps(); }
-
-  /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
-  /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
-  /// answers.
-  template <class Problem>
-  double energy_of_stopping(Problem& problem) {
-    return system_.energy_of_stopping(problem);
   }
 
   /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
   /// see, in units of energy.
-  template <class Problem>
-  double evaluate(Problem& problem, double epsilon, double fraction) {
+  double evaluate(auto& problem, double epsilon, double fraction) {
     for (std::size_t b = 0; b < residual_.size(); ++b)
       for (int k = 0; k < System::width; ++k) residual_[b][k] = y_[b][k] + fraction * change_[b][k];
     each(problem, [&](auto p, auto& c, auto& sides) {
       for (int k = 0; k < int(c.trial.size()); ++k) c.trial[k] = c.velocity[k] + fraction * c.move[k];
       auto local = proximal(c, epsilon);
-      c.slope = tangent<p>(problem, c.item, local);
+      c.slope = c.template slope_at<p>(problem, local);
       c.lambda = local.lambda;
       const auto change = (c.lambda - c.centre).eval();
       for (Index s = c.first; s < c.last; ++s)
@@ -80,18 +64,17 @@ class BodySpace {
       for (std::size_t k = 0; k < kinds.size(); ++k)
         if (kinds[k] == RowKind::lower || kinds[k] == RowKind::upper)
           local.d[k] += (kinds[k] == RowKind::lower ? -1e-3 : 1e-3) * error;
-      c.slope = tangent<p>(problem, c.item, local);
+      c.slope = c.template slope_at<p>(problem, local);
     });
   }
 
   /// J δ = −F; false when J is singular to working precision.
-  template <class Problem>
-  bool find_direction(Problem& problem) {
+  bool find_direction(auto& problem) {
     const auto ends = [&](int work) { return problem.is_cut_off(work); };
-    if (!system_.factor(ends)) return false;
+    if (!this->factor(ends)) return false;
     for (std::size_t b = 0; b < change_.size(); ++b)
       for (int k = 0; k < System::width; ++k) change_[b][k] = -residual_[b][k];
-    system_.solve(change_, ends);
+    this->solve(change_, ends);
     each(problem, [&](auto, auto& c, auto& sides) {
       c.move.setZero();
       for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, change_[sides[s].block], c.move);
@@ -100,8 +83,7 @@ class BodySpace {
   }
 
   /// Goes where the last evaluation was.
-  template <class Problem>
-  void advance(Problem& problem, double fraction) {
+  void advance(auto& problem, double fraction) {
     for (std::size_t b = 0; b < y_.size(); ++b)
       for (int k = 0; k < System::width; ++k) y_[b][k] += fraction * change_[b][k], change_[b][k] = 0;
     each(problem, [](auto, auto& c, auto&) {
@@ -115,8 +97,7 @@ class BodySpace {
   double error() const { return error_; }
 
   /// The measure of λ(u), whose own velocity is d + W λ = u − H F + R (λ − λ̂).
-  template <class Problem>
-  Measure measure(Problem& problem) {
+  Measure measure(auto& problem) {
     MeasureSums sums;
     each(problem, [&](auto p, auto& c, auto&) {
       constexpr int r = Rows::template rows_of<p>;
@@ -130,8 +111,7 @@ class BodySpace {
   }
 
   /// λ̂ ← λ(u).
-  template <class Problem>
-  void recentre(Problem& problem) {
+  void recentre(auto& problem) {
     each(problem, [&](auto, auto& c, auto&) {
       c.velocity = own_velocity(c);
       c.centre = c.lambda;
@@ -140,8 +120,7 @@ class BodySpace {
   }
 
   /// λ̂ ← what the rows have now, its velocity by W; `best` stays. False when that is not finite.
-  template <class Problem>
-  bool restart(Problem& problem) {
+  bool restart(auto& problem) {
     bool is_finite = true;
     each(problem, [&](auto p, auto& c, auto&) {
       const auto local = problem.template local<p>(c.item);
@@ -156,24 +135,22 @@ class BodySpace {
   }
 
   /// best ← λ(u).
-  template <class Problem>
-  void keep(Problem& problem) {
+  void keep(auto& problem) {
     each(problem, [](auto, auto& c, auto&) { c.best = c.lambda; });
   }
 
   /// The rows take one of the impulses kept here: `&NewtonItem<R>::best`, by a generic lambda.
-  template <class Problem, class Which>
-  void hand_over(Problem& problem, const Which& which) {
+  void hand_over(auto& problem, const auto& which) {
     each(problem, [&](auto p, auto& c, auto&) { problem.template assign<p>(c.item, which(c).template cast<T>()); });
+  }
+
+ protected:
+  void each(auto& problem, auto&& f) {
+    this->each_until([&](int work) { return problem.is_cut_off(work); }, f);
   }
 
  private:
   using Velocity = typename System::Velocities::value_type;
-
-  template <class Problem, class F>
-  void each(Problem& problem, F&& f) {
-    system_.each_until([&](int work) { return problem.is_cut_off(work); }, f);
-  }
 
   /// The problem of one law: diag(R + ε w), u and λ̂.
   template <int r>
@@ -190,16 +167,6 @@ class BodySpace {
     return velocity;
   }
 
-  /// A pool without a tangent is never in an island that is gathered.
-  template <int p, int r, class Problem>
-  static Mat<r, r> tangent(const Problem& problem, Index item, Local<r>& local) {
-    if constexpr (has_tangent<typename Problem::BookType, p, r>)
-      return problem.book().template tangent<p>(item, local);
-    else
-      return Mat<r, r>::Zero();
-  }
-
-  System system_;
   double error_ = 0;
   typename System::Velocities y_, change_, residual_;
 };

@@ -9,21 +9,14 @@
 
 namespace delassus::inner {
 
-/// How far `compromise` goes, for `ConvergenceMonitor`.
-struct CompromiseLimits {
-  double tolerance = 1e-6;
-  int max_iterations = 1000, min_iterations = 1;
-  bool scale_tolerance = false, all_verified = false;
-};
-
 /// λ of the rows as `Softened` lets them yield, from zero, and the errors of the rows as they are. The report
 /// is that of what found the contradiction.
 template <class Problem, class Impulses>
 SolveReport compromise(Problem& problem, SolveReport report, Impulses& best, Impulses& last) {
   problem.must_complete();
   Softened<Problem> soft(problem);
-  const CompromiseLimits limits;
-  ConvergenceMonitor<Residual, CompromiseLimits, Softened<Problem>, Impulses> monitor(limits, soft, best);
+  const SolveLimits limits{.max_iterations = 1000, .min_iterations = 1};
+  ConvergenceMonitor<Residual, SolveLimits, Softened<Problem>, Impulses> monitor(limits, soft, best);
   if (monitor.begin()) {
     monitor.open("compromise", limits.max_iterations);
     momentum(soft, monitor, last, [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });

@@ -67,24 +67,19 @@ class ContactSpace {
   }
 
   /// λ̂ ← λ ← what the problem has.
-  template <class Problem>
-  void take(const Problem& problem) {
+  void take(const auto& problem) {
     std::size_t at = 0;
     problem.each([&](auto p, Index i) {
       for (const auto x : problem.rows().template pool<p>().lambda[i]) lambda[at++] = double(x);
     });
-    recentre();
+    centre_ = lambda;
   }
-  void recentre() { centre_ = lambda; }
   /// The problem takes λ, each brought into its law's cone.
-  template <class Problem>
-  void give(Problem& problem) const {
+  void give(auto& problem) const {
     std::size_t at = 0;
-    problem.each([&](auto p, Index i) {
-      Vec<Rows::template rows_of<p>, typename Rows::Scalar> next;
+    problem.change([&](auto p, Index i, auto& next) {
       for (auto& x : next) x = typename Rows::Scalar(lambda[at++]);
       problem.book().template clamp<p>(i, next);
-      problem.template assign<p>(i, next);
     });
   }
 
@@ -131,15 +126,12 @@ class ContactSpace {
 
  private:
   /// W column by column, from the answer to an impulse on each row; d with it.
-  template <class Problem>
-  void read_W(Problem& problem) {
+  void read_W(auto& problem) {
     using T = typename Rows::Scalar;
     const std::size_t n = lambda.size();
-    Impulses<Rows>& was = was_;
-    was.resize_like(problem.rows());
-    problem.save(was);
-    problem.each(
-        [&](auto p, Index i) { problem.template assign<p>(i, Vec<Rows::template rows_of<p>, T>::Zero()); });
+    was_.resize_like(problem.rows());
+    problem.save(was_);
+    problem.clear();
     const auto read = [&](double* to) {
       std::size_t at = 0;
       problem.each([&](auto p, Index i) {
@@ -164,7 +156,7 @@ class ContactSpace {
       }
       problem.template assign<p>(i, Vec<R, T>::Zero());
     });
-    problem.load(was);
+    problem.load(was_);
   }
 
   /// u ← d + W x.

@@ -38,24 +38,19 @@ class Contradiction {
   explicit Contradiction(Problem& problem) : problem_(problem) {}
 
   /// From the direction in which λ has gone since `before` was saved; λ is something else afterwards.
-  template <class Impulses>
-  bool is_proved(const Impulses& before) {
+  bool is_proved(const auto& before) {
     if constexpr (sizeof(T) < sizeof(double)) return false;
-    problem_.each([&](auto p, Index i) {
-      auto z = problem_.rows().template pool<p>().lambda[i];
+    problem_.change([&](auto p, Index i, auto& z) {
       z -= std::get<p>(before.pools)[i];
       clear_bounded<p>(i, z);
-      problem_.template assign<p>(i, z);
     });
     if (moves_nothing()) return true;
     bool has_less = false;
     has_two_sided_alone_ = true;
-    problem_.each([&](auto p, Index i) {
-      const auto whole = problem_.rows().template pool<p>().lambda[i];
-      auto z = whole;
+    problem_.change([&](auto p, Index i, auto& z) {
+      const auto whole = z;
       clear_bounded<p>(i, z);
       has_less = has_less || z != whole;
-      problem_.template assign<p>(i, z);
     });
     return has_less && moves_nothing();
   }
@@ -122,11 +117,7 @@ class Contradiction {
     const Sums s = measure();
     const double factor = std::sqrt(s.free / s.size);
     if (!(factor > 0) || !std::isfinite(factor)) return false;
-    problem_.each([&](auto p, Index i) {
-      auto z = problem_.rows().template pool<p>().lambda[i];
-      z *= T(factor);
-      problem_.template assign<p>(i, z);
-    });
+    problem_.change([&](auto, Index, auto& z) { z *= T(factor); });
     return true;
   }
 

@@ -117,9 +117,7 @@ class ConvergenceMonitor {
     if (report_.sweeps > 0) back_to_best();
     return true;
   }
-  bool is_done(const Measure& m) const {
-    return inner::is_within<Criterion>(solver_, m, rows_) || m.residual <= m.floor;
-  }
+  bool is_done(const Measure& m) const { return inner::is_done<Criterion>(solver_, m, rows_); }
   void note_pace() {
     if (lately_.sweeps == 0) first_error_ = Criterion::sum(report_.measure);
     if (measured_ < 2 * lately_.sweeps) return;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 namespace delassus::inner {
 
@@ -47,7 +46,7 @@ struct ConvexNewton {
       if (drifts)
         work.extrapolate(problem, far);
       else
-        work.template recentre<Problem>();
+        work.recentre(problem);
       far = drifts ? 2 * far : std::max(0.25 * far, 1.0);
       last = residual;
       epsilon = std::clamp(residual, least, coarse);
@@ -56,8 +55,7 @@ struct ConvexNewton {
       polished = residual;
       if (polish(now)) return now.report;
     }
-    work.hand_over(
-        problem, [](const auto& c) -> const auto& { return c.best; });
+    work.hand_over(problem, [](const auto& c) { return c.best; });
     now.report.measure = problem.measure();
     return now.report;
   }
@@ -81,8 +79,7 @@ struct ConvexNewton {
   /// what is missing: from the solution, after a while from less than what the law is missed by, the slips
   /// follow for some turns. Where impulses are redundant and gaps do not fit, proximal points go a long way by
   /// small steps: `polish` may jump to its end.
-  template <class S>
-  bool solve_of_slips(S& now) const {
+  bool solve_of_slips(auto& now) const {
     constexpr int turns = 20, between_turns = 10, between_polishes = 20, between_marks = 50;
     now.work.forget(now.problem);
     now.work.keep(now.problem);
@@ -91,11 +88,11 @@ struct ConvexNewton {
     for (int k = 1, turned = 0; k <= max_iterations && turned <= turns; ++k) {
       now.report.factorizations += now.work.descend(now.problem, epsilon);
       if (is_done(now)) return true;
-      const double left = now.work.distance(epsilon), residual = now.report.measure.residual;
+      const double left = now.work.distance(now.problem, epsilon), residual = now.report.measure.residual;
       const bool is_near = left < std::min(10 * tolerance, 0.5 * residual);
       const bool is_solved =
           left < 0.1 * tolerance || (is_near && k > patience && k % between_turns == 0);
-      now.work.template recentre<std::remove_cvref_t<decltype(now.problem)>>(!is_solved);
+      now.work.recentre(now.problem, !is_solved);
       turned += is_solved;
       if (k % between_marks == 0) {
         if (turned == 0 && left > std::max(0.8 * marked, tolerance)) break;
@@ -105,18 +102,15 @@ struct ConvexNewton {
       epsilon = std::clamp(std::min(left, residual), least, coarse);
     }
     if (!(now.best.residual <= tolerance)) return false;
-    now.work.hand_over(
-        now.problem, [](const auto& c) -> const auto& { return c.best; });
+    now.work.hand_over(now.problem, [](const auto& c) { return c.best; });
     return is_done(now, now.problem.measure());
   }
 
   /// Hands λ over, measures it by W itself, and keeps the best; true when that is within the tolerance.
-  template <class S>
-  bool is_done(S& now) const {
+  bool is_done(auto& now) const {
     return is_done(now, now.work.measure(now.problem));
   }
-  template <class S>
-  bool is_done(S& now, const Measure& measure) const {
+  bool is_done(auto& now, const Measure& measure) const {
     now.report.measure = measure;
     if (now.report.measure.residual < now.best.residual) {
       now.best = now.report.measure;
@@ -129,8 +123,7 @@ struct ConvexNewton {
 
   /// Proximal points of the laws as they are, while each halves the residual; where that does not end it, or with
   /// other slips than those that stay, which is another motion, λ is what it was.
-  template <class S>
-  bool polish(S& now, bool keeps_slips = false) const {
+  bool polish(auto& now, bool keeps_slips = false) const {
     now.work.mark(now.problem);
     double before = now.report.measure.residual, epsilon = 1e-3;
     for (int k = 0; k < 12; ++k) {
@@ -146,8 +139,7 @@ struct ConvexNewton {
       now.work.mark(now.problem);
       epsilon = std::max(0.03 * epsilon, 1e-7);
     }
-    now.work.hand_over(
-        now.problem, [](const auto& c) -> const auto& { return c.before; });
+    now.work.hand_over(now.problem, [](const auto& c) { return c.before; });
     now.work.restart(now.problem, keeps_slips);
     return false;
   }

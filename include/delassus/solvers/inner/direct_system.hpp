@@ -4,12 +4,12 @@
 #include <delassus/core/array.hpp>
 #include <delassus/linear/sparse_lu.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/island_matrices.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -104,23 +104,17 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
   /// Lists sides by block and brings the analysis of graph `which` up to date.
-  void analyse(std::size_t which) {
+  void analyse(Index which) {
     list_sides();
     number_hubs();
     list_pairs();
-    if (graphs_.size() <= which) graphs_.resize(which + 1);
-    graph_ = &graphs_[which];
-    if (graph_->size != size_ || graph_->pairs != pairs_) {
-      graph_->size = size_;
-      graph_->pairs.assign(pairs_.begin(), pairs_.end());
-      graph_->matrix.analyse(size_, pairs_);
-    }
+    matrix_ = &matrices_.of(which, size_, pairs_);
     x_.resize(size_);
   }
 
   /// False when a pivot block is singular to working precision.
   bool factor(double epsilon) {
-    auto& A = graph_->matrix;
+    auto& A = *matrix_;
     A.set_identity();
     for (Index k = 0; k < bilateral_; ++k) {
       auto& own = A.at(k, k);
@@ -139,8 +133,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
   /// The right side ← −velocity(p, item), where something answers. Returns √Σ u²/W_kk, the size of it.
-  template <class Velocity>
-  double load(const Velocity& velocity) {
+  double load(const auto& velocity) {
     clear();
     double square = 0;
     each([&](auto p, Index k) {
@@ -157,7 +150,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     for (Row& x : x_) x.setZero();
   }
   void set_right_side(Index k, const Row& r) { x_[k] = r; }
-  void solve() { graph_->matrix.solve(x_); }
+  void solve() { matrix_->solve(x_); }
   /// δ of bilateral constraint k after `solve`.
   const Row& answer(Index k) const { return x_[k]; }
   /// Sets the answers aside, so that the right side can be loaded anew.
@@ -181,8 +174,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   bool is_held(Index block) const { return held_[block] > 0; }
 
   /// f(p, k) for the bilateral constraints, p their pool as a constant.
-  template <class F>
-  void each(F&& f) const {
+  void each(auto&& f) const {
     for_each_index<pools>([&](auto p) {
       for (Index k = 0; k < bilateral_; ++k)
         if (nodes_[k].pool == p) f(p, k);
@@ -190,12 +182,6 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
  private:
-  struct Graph {
-    Index size = -1;
-    Array<std::pair<Index, Index>> pairs;
-    SparseLu<w, double> matrix;
-  };
-
   Index number(int s, Index b) {
     auto& number = number_[s];
     if (Index(number.size()) <= b) number.resize(b + 1, -1);
@@ -225,8 +211,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     next_.assign(start_.begin(), start_.end());
     for (Index e = 0; e < end; ++e) order_[next_[sides_[e].block]++] = e;
   }
-  template <class F>
-  void each_bilateral(Index b, F&& f) const {
+  void each_bilateral(Index b, auto&& f) const {
     for (Index k = start_[b]; k < start_[b + 1]; ++k) f(sides_[order_[k]]);
   }
 
@@ -247,8 +232,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
           });
       });
   }
-  template <class Matrix>
-  static void join_hub(Matrix& A, const Side& e, Index hub) {
+  static void join_hub(auto& A, const Side& e, Index hub) {
     for (int k = 0; k < width; ++k) {
       A.at(e.node, hub + k / w).col(k % w) += e.H.col(k);
       A.at(hub + k / w, e.node).row(k % w) -= e.G.row(k);
@@ -262,8 +246,8 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   Array<Side> sides_;
   Array<Index> start_, order_, next_, held_, hub_;
   Array<std::pair<Index, Index>> pairs_;
-  std::vector<Graph> graphs_;  ///< the analysis of each island is kept while its graph stands
-  Graph* graph_ = nullptr;
+  IslandMatrices<SparseLu<w, double>> matrices_;
+  SparseLu<w, double>* matrix_ = nullptr;
   Array<Row> x_, step_;
 };
 

@@ -20,8 +20,7 @@ struct SlowDirection {
 };
 
 /// Plain sweeps, `before` being λ before them, z = λ − `before`.
-template <class Problem, class Impulses>
-[[gnu::noinline]] SlowDirection find_slow_direction(Problem& problem, Impulses& before) {
+[[gnu::noinline]] SlowDirection find_slow_direction(auto& problem, auto& before) {
   problem.save(before);
   double moved = 0, square = 0, size = 0;
   for (int k = 0; k < drift_sweeps; ++k) moved = problem.sweep();
@@ -82,8 +81,7 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
 /// where sweeps have stalled, after `find_slow_direction`, which gives `way`. True where λ has gone so, and settled: from
 /// there momentum goes on. What that would reach by itself within `patience` sweeps, which is patience²/4
 /// plain ones, is left to it.
-template <class Problem, class ConvergenceMonitor, class Impulses>
-[[gnu::noinline]] bool extrapolate_to_cone_boundary(Problem& problem, ConvergenceMonitor& monitor, Impulses& before, SlowDirection way, int patience) {
+[[gnu::noinline]] bool extrapolate_to_cone_boundary(auto& problem, auto& monitor, auto& before, SlowDirection way, int patience) {
   constexpr int settling = 40, in_a_row = 8;
   double far = 0.25 * patience * patience / drift_sweeps;
   bool has_leapt = false;

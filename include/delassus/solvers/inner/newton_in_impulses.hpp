@@ -6,11 +6,11 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
+#include <delassus/solvers/inner/halve_step.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace delassus::inner {
 
@@ -41,8 +41,7 @@ struct NewtonInImpulses {
   /// each: n³/3, some three products for the matrix, and those of the halved steps.
   static double cost_in_sweeps(int rows) { return rows / 3.0 + 10; }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
+  SolveReport solve(auto& problem, auto& work) const {
     SolveReport report = sweeps.solve(problem, work.sweeps);
     if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
     if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem)) {
@@ -58,8 +57,7 @@ struct NewtonInImpulses {
   }
 
  private:
-  template <class Problem, class Workspace>
-  void descend(Problem& problem, Workspace& work, SolveReport& report) const {
+  void descend(auto& problem, auto& work, SolveReport& report) const {
     auto& space = work.space;
     const int rows = problem.row_count();
     double epsilon = 1e-4, last = Criterion::sum(report.measure);
@@ -84,8 +82,7 @@ struct NewtonInImpulses {
   }
 
   /// Newton's method around one λ̂, until |F| has fallen by a hundred or does not fall; how far it fell.
-  template <class Problem, class Space>
-  double approach(Problem& problem, Space& space, double epsilon, SolveReport& report) const {
+  double approach(auto& problem, auto& space, double epsilon, SolveReport& report) const {
     const double work = cost_in_sweeps(problem.row_count()), first = space.evaluate(epsilon);
     double size = first;
     for (int step = 0; step < 12 && size > 1e-2 * first && report.factorizations < max_factorizations;
@@ -93,15 +90,9 @@ struct NewtonInImpulses {
       if (step > 0 && !problem.has_time_for(work)) break;
       if (!space.find_direction(epsilon)) return 1;
       ++report.factorizations;
-      double best = 0, least = std::numeric_limits<double>::infinity();
-      for (double t = 1; t > 2e-4; t *= 0.5) {
-        const double trial = space.evaluate(epsilon, t);
-        if (trial < least) least = trial, best = t;
-        if (trial <= (1 - 1e-3 * t) * size) break;
-      }
-      if (!(least < 0.999 * size)) return size / first;
-      space.advance(best);
-      size = space.evaluate(epsilon);
+      const double before = size, t = halve_step(size, 13, [&](double t) { return space.evaluate(epsilon, t); });
+      if (!(size < 0.999 * before)) return before / first;
+      space.advance(t);
     }
     return first > 0 ? size / first : 0;
   }

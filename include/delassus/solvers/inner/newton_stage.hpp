@@ -15,9 +15,7 @@ namespace delassus::inner {
 
 /// Rows that act on bodies; those of a friction problem from a file have W alone.
 template <class Rows>
-inline constexpr bool knows_bodies = false;
-template <class T, int... w, int... R>
-inline constexpr bool knows_bodies<RowSystem<T, Widths<w...>, R...>> = sizeof...(w) > 0;
+inline constexpr bool knows_bodies = Rows::set_count > 0;
 
 /// What the stage keeps: the island, and λ from before the sweeps.
 template <class Rows>
@@ -25,13 +23,6 @@ struct NewtonSpace {
   BodySpace<Rows> body;
   Impulses<Rows> start;
   void resize_like(const Rows& rows) { start.resize_like(rows); }
-};
-
-/// What the proximal point iteration may do in one opening of the stage.
-struct NewtonLimits {
-  double tolerance;
-  int max_iterations = 0, min_iterations = 0;  ///< factorizations
-  bool scale_tolerance, all_verified;
 };
 
 /// Opens when the sweeps so far have cost what it is likely to, and at their pace will cost as much again:
@@ -48,8 +39,7 @@ class NewtonStage {
   using Space = NewtonSpace<typename Problem::RowsType>;
   using Body = BodySpace<typename Problem::RowsType>;
 
-  template <class Chain>
-  NewtonStage(const Chain& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space)
+  NewtonStage(const auto& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space)
       : limits_{.tolerance = chain.tolerance,
                 .scale_tolerance = chain.scale_tolerance,
                 .all_verified = chain.all_verified},
@@ -68,7 +58,7 @@ class NewtonStage {
     monitor_.back_to_best();
     monitor_.name("newton");
     const double before = Criterion::sum(monitor_.best());
-    ProximalPoint<Criterion, NewtonLimits, Problem, Body> point(limits_, problem_, space_.body);
+    ProximalPoint<Criterion, SolveLimits, Problem, Body> point(limits_, problem_, space_.body);
     point.sweeps = monitor_.sweeps();
     point.work = around * cost_;
     const double allowed = 100 * std::max(energy(), space_.body.energy_of_stopping(problem_));
@@ -141,7 +131,7 @@ class NewtonStage {
   }
   void open_after(double sweeps) { opening_ = sweeps < never ? std::max(least, int(sweeps)) : never; }
 
-  NewtonLimits limits_;
+  SolveLimits limits_;  ///< of the proximal point iteration in one opening: factorizations
   Problem& problem_;
   ConvergenceMonitor& monitor_;
   Space& space_;

@@ -6,23 +6,16 @@
 #include <delassus/math/small_products.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/solvers/inner/island_matrices.hpp>
 #include <delassus/solvers/inner/newton_item.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
-
-/// A book that answers with the tangent of pool p.
-template <class Book, int p, int R>
-inline constexpr bool has_tangent = requires(const Book& book, Local<R>& c) {
-  { book.template tangent<p>(Index(0), c) } -> std::same_as<Mat<R, R>>;
-};
 
 template <template <int> class Item, class Rows>
 class NewtonSystem;
@@ -44,8 +37,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
   /// law without a tangent, a set whose A couples blocks, or rows that nothing answers to.
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(auto& problem) {
     static_assert(sizeof...(w) > 0,
                   "delassus: Newton's method needs the bodies of a problem, and this one, as a "
                   "FrictionProblem, has W alone; "
@@ -61,16 +53,14 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   std::size_t blocks() const { return unit_.size(); }
 
   /// f(p, item, sides of pool p) for every constraint.
-  template <class F>
-  void each(F&& f) {
+  void each(auto&& f) {
     for_each_index<pools>([&](auto p) {
       for (auto& c : std::get<p>(items_)) f(p, c, std::get<p>(sides_));
     });
   }
 
   /// The same until `ends(n)`, asked after the work of n products of blocks of bodies, says so.
-  template <class Ends, class F>
-  void each_until(Ends&& ends, F&& f) {
+  void each_until(auto&& ends, auto&& f) {
     for_each_index<pools>([&](auto p) {
       for (auto& c : std::get<p>(items_)) {
         if (ends(1)) return;
@@ -111,9 +101,10 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     const double of_block = width * width * width / 6.0;
     return (of_block * matrix_->products() + 200 * constraints) / (entries + 5 * constraints);
   }
-  /// Σ w_i P², see `BodySpace`; a body's mass at a contact is rows/tr(H G).
-  template <class Problem>
-  double energy_of_stopping(Problem& problem) {
+  /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
+  /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
+  /// answers; at a contact that is rows/tr(H G).
+  double energy_of_stopping(auto& problem) {
     double weights = 0, fastest = 0, mass = 0;
     mass_.assign(blocks(), 0.0);
     const auto ends = [&](int work) { return problem.is_cut_off(work); };
@@ -155,7 +146,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
   bool finish(Index island) {
     balance();
-    analyse(island);
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    matrix_ = &matrices_.of(island, Index(blocks()), pairs_);
     return true;
   }
 
@@ -194,16 +187,8 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   Array<std::pair<Index, Index>> pairs_;  ///< of blocks that a constraint joins
 
  private:
-  /// The graph of an island and the matrix analysed for it.
-  struct Graph {
-    std::size_t blocks = 0;
-    Array<std::pair<Index, Index>> pairs;
-    BlockLu<width, double> matrix;
-  };
-
   /// Whether each block answers to its impulses alone, by G.
-  template <class Problem>
-  static bool knows_answers(const Problem& problem) {
+  static bool knows_answers(const auto& problem) {
     bool knows = true;
     problem.each([&](auto p, Index i) {
       const auto& pool = problem.rows().template pool<p>();
@@ -216,8 +201,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   }
 
   /// f(s, e) for every entry of item i on a block that moves: where A⁻¹ = 0, G is zero.
-  template <class Pool, class F>
-  static void each_side(const Pool& pool, Index i, F&& f) {
+  static void each_side(const auto& pool, Index i, auto&& f) {
     for_each_index<Rows::set_count>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
@@ -225,8 +209,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
   }
 
-  template <class Problem>
-  void number_blocks(const Problem& problem) {
+  void number_blocks(const auto& problem) {
     for (const auto& [s, b] : blocks_) number_[s][b] = -1;
     blocks_.clear();
     problem.each([&](auto p, Index i) {
@@ -290,23 +273,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     });
   }
 
-  /// The matrix of the island keeps its analysis while the graph of its bodies stands.
-  void analyse(Index island) {
-    std::sort(pairs_.begin(), pairs_.end());
-    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-    if (Index(graphs_.size()) <= island) graphs_.resize(island + 1);
-    Graph& graph = graphs_[island];
-    if (graph.blocks != blocks() || graph.pairs != pairs_) {
-      graph.blocks = blocks();
-      graph.pairs.assign(pairs_.begin(), pairs_.end());
-      graph.matrix.analyse(Index(blocks()), pairs_);
-    }
-    matrix_ = &graph.matrix;
-  }
-
   std::array<Array<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
   Array<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
-  std::vector<Graph> graphs_;
+  IslandMatrices<BlockLu<width, double>> matrices_;
   BlockLu<width, double>* matrix_ = nullptr;
   Array<Index> count_;  ///< of sides on each block
   Array<double> mass_;

@@ -122,15 +122,13 @@ class PathLaws {
   }
 
   /// Σ of the two at every constraint, f(c) and g(c), in the lengths of the path: each beside |x_i|² + 4 τ.
-  template <class F, class G>
-  double product(double tau, const F& f, const G& g) {
+  double product(double tau, const auto& f, const auto& g) {
     double sum = 0;
     each([&](auto, auto& c) { sum += f(c).dot(g(c)) / (c.x.squaredNorm() + 4 * tau); });
     return sum / rows_;
   }
   /// f(constraint) for all.
-  template <class F>
-  void each_item(F&& f) {
+  void each_item(auto&& f) {
     each([&](auto, auto& c) { f(c); });
   }
 
@@ -138,20 +136,17 @@ class PathLaws {
   template <class Problem, int p>
   static constexpr bool is_cone = Problem::BookType::template has_cone<p>();
 
-  template <class F>
-  void each(F&& f) {
+  void each(auto&& f) {
     system_.each(f);
   }
 
   /// √(|z_t|² + τ).
-  template <class Item>
-  static double slip(const Item& c, double tau) {
+  static double slip(const auto& c, double tau) {
     return std::hypot(c.z[1], c.z[2], std::sqrt(tau));
   }
 
   /// √(|z_t|² + τ) − √τ, without their difference.
-  template <class Item>
-  static double lag(const Item& c, double tau) {
+  static double lag(const auto& c, double tau) {
     return (c.z[1] * c.z[1] + c.z[2] * c.z[2]) / (slip(c, tau) + std::sqrt(tau));
   }
 

@@ -26,12 +26,10 @@ class PathBodies {
  public:
   static constexpr double largest_ratio = 1e10;  ///< of E, whose rounding the passes of `solve` take back
 
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(auto& problem) {
     return system_.gather(problem);
   }
-  template <class F>
-  void each(F&& f) {
+  void each(auto&& f) {
     system_.each([&](auto p, auto& c, auto&) { f(p, c); });
   }
 
@@ -91,13 +89,11 @@ class PathBodies {
  private:
   static constexpr int passes = 3;
 
-  template <class Side>
-  auto& at(const Side& side) {
+  auto& at(const auto& side) {
     return y_[std::size_t(side.block)];
   }
   /// y ← Σ G f(c).
-  template <class F>
-  void push(const F& f) {
+  void push(const auto& f) {
     y_.assign(system_.blocks(), Velocity::Zero());
     system_.each([&](auto, auto& c, auto& sides) {
       const auto impulse = f(c);
@@ -124,8 +120,7 @@ class PathImpulses {
  public:
   static constexpr double largest_ratio = 1e12;  ///< of E: its inverse stands beside W
 
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(auto& problem) {
     items_.resize(std::size_t(problem.row_count() / R));
     own_.clear();
     entries_.clear();
@@ -145,8 +140,7 @@ class PathImpulses {
     if (is_sound && items_.size() + 1 == W.start.size()) matrix_.analyse(Index(items_.size()), pairs_);
     return is_sound && items_.size() + 1 == W.start.size();
   }
-  template <class F>
-  void each(F&& f) {
+  void each(auto&& f) {
     for (auto& c : items_) f(std::integral_constant<int, 0>{}, c);
   }
 

@@ -2,11 +2,11 @@
 /// bodies.
 #pragma once
 
+#include <delassus/solvers/inner/halve_step.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace delassus::inner {
 
@@ -95,7 +95,7 @@ class ProximalPoint {
       if (!body_.find_direction(problem_)) return false;
       ++factorizations;
       const double before = size;
-      body_.advance(problem_, search_line(size));
+      body_.advance(problem_, halve_step(size, 14, [&](double t) { return body_.evaluate(problem_, epsilon, t); }));
       measure = body_.measure(problem_);
       if (problem_.tells_forces())
         body_.hand_over(problem_, [](const auto& c) { return c.lambda; });
@@ -123,22 +123,6 @@ class ProximalPoint {
     least_ = body_.error();
     best_ = measure;
     body_.keep(problem_);
-  }
-
-  /// Halves the step until the size of F has fallen by a thousandth of it, else takes the best; leaves F
-  /// evaluated there.
-  double search_line(double& size) {
-    double best = 0, least = std::numeric_limits<double>::infinity(), fraction = 1;
-    for (int halving = 0; halving < 14; ++halving, fraction *= 0.5) {
-      const double trial = body_.evaluate(problem_, epsilon, fraction);
-      if (trial <= (1 - 1e-3 * fraction) * size) {
-        size = trial;
-        return fraction;
-      }
-      if (trial < least) least = trial, best = fraction;
-    }
-    size = body_.evaluate(problem_, epsilon, best);
-    return best;
   }
 
   const Solver& solver_;

@@ -24,20 +24,20 @@ class SchurComplement {
 
   /// Takes the constraints of `system` behind its bilateral ones, with the velocities that `problem` has for
   /// them.
-  template <class Problem>
-  void build(System& system, const Problem& problem) {
+  void build(System& system, const auto& problem) {
     for (auto& items : items_) items.clear();
     const Index first = system.bilateral();
     size_ = w * (system.count() - first);
     S_.assign(std::size_t(size_) * size_, 0);
     u_.assign(size_, 0);
     add_own(system, first);
-    for (Index j = first; j < system.count(); ++j) take_from(system, first, j);
-    for (Index j = first; j < system.count(); ++j)
+    for (Index j = first; j < system.count(); ++j) {
+      take_from(system, first, j);
       for (int k = 0; k < system.node(j).rows; ++k) {
         double& own = column(w * (j - first) + k)[w * (j - first) + k];
         own = std::max(own, least * system.node(j).scale[k]);
       }
+    }
     for_each_index<System::pools>([&](auto p) {
       constexpr int r = Rows::template rows_of<p>;
       auto& place = place_[p];
@@ -94,9 +94,8 @@ class SchurComplement {
       const auto& node = system.node(j);
       for (int k = 0; k < node.rows; ++k)
         column(w * (j - first) + k)[w * (j - first) + k] += node.compliance[k];
+      for (Index e = node.first; e < node.last; ++e) add_velocity(system, first, j, e);
     }
-    for (Index j = first; j < system.count(); ++j)
-      for (Index e = system.node(j).first; e < system.node(j).last; ++e) add_velocity(system, first, j, e);
   }
   /// What side e of constraint j does to all sides on its block.
   void add_velocity(const System& system, Index first, Index j, Index e) {

@@ -53,21 +53,18 @@ struct SoftenedRoom {
 };
 template <class Problem>
 using SoftenedIsland = decltype(std::declval<const Problem&>().with(
-    std::declval<SoftenedOperator<typename Problem::OperatorType, typename Problem::RowsType>&>()));
+    std::declval<decltype(SoftenedRoom<Problem>::softened)&>(), std::declval<const typename Problem::GroupsType&>()));
 
 /// The island on that operator, begun from λ = 0, with the time of the whole; nobody hears of its sweeps.
 template <class Problem>
 class Softened : private SoftenedRoom<Problem>, public SoftenedIsland<Problem> {
  public:
   explicit Softened(Problem& whole)
-      : SoftenedRoom<Problem>{SoftenedOperator<typename Problem::OperatorType, typename Problem::RowsType>(
-            whole.compliance())},
-        SoftenedIsland<Problem>(whole.with(this->softened)),
+      : SoftenedRoom<Problem>{decltype(SoftenedRoom<Problem>::softened)(whole.compliance())},
+        SoftenedIsland<Problem>(whole.with(this->softened, whole.groups())),
         whole_(whole) {
-    this->each([&](auto p, Index i) {
-      this->template prepare<p>(i, this->softened.template diagonal<p>(i));
-      this->template assign<p>(i, 0 * this->rows().template pool<p>().lambda[i]);
-    });
+    this->each([&](auto p, Index i) { this->template prepare<p>(i, this->softened.template diagonal<p>(i)); });
+    this->clear();
   }
   Softened(const Softened&) = delete;
   Softened& operator=(const Softened&) = delete;

@@ -40,17 +40,14 @@ struct SweepsThenNewton {
   }
 
  private:
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work, int factorizations) const {
+  SolveReport solve(auto& problem, auto& work, int factorizations) const {
     work.newton.best.resize_like(problem.rows());
     work.best.resize_like(problem.rows());
     SolveReport report = newton(first, factorizations).solve(problem, work.newton);
     const auto goes_on = [&] { return report.status == Status::max_iterations && !problem.is_out_of_time(); };
     if (report.factorizations > 0 && goes_on()) {
       problem.save(work.best);
-      problem.each([&](auto p, Index i) {
-        problem.template assign<p>(i, 0 * problem.rows().template pool<p>().lambda[i]);
-      });
+      problem.clear();
       if (!add(newton(1, factorizations).solve(problem, work.newton), report)) problem.load(work.best);
     }
     if (goes_on()) {

@@ -29,14 +29,12 @@ class WholeSystem : public NewtonSystem<Item, Rows> {
 
   /// False where Newton's method cannot act, or where blocks are coupled and there are more constraints than `most`
   /// or one with more rows than a block.
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(auto& problem) {
     return Base::gather(problem) || gather_rows(problem);
   }
 
  private:
-  template <class Problem>
-  bool gather_rows(Problem& problem) {
+  bool gather_rows(auto& problem) {
     Index count = 0;
     bool fits = Base::has_tangents(problem);
     problem.each([&](auto p, Index) {
@@ -54,8 +52,7 @@ class WholeSystem : public NewtonSystem<Item, Rows> {
   }
 
   /// f(j, k, u_k) for row k of the j-th constraint of the island.
-  template <class Problem, class F>
-  static void each_velocity(const Problem& problem, F&& f) {
+  static void each_velocity(const auto& problem, auto&& f) {
     Index j = 0;
     problem.each([&](auto p, Index i) {
       const auto u = problem.template local<p>(i).d;

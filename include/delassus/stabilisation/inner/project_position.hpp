@@ -43,10 +43,6 @@ class PositionLawSet<Constraints<Laws...>, T> {
     return false;
   }
   template <int p>
-  static constexpr T friction(Index) {
-    return 0;
-  }
-  template <int p>
   static constexpr bool clamps() {
     return true;
   }
@@ -158,18 +154,20 @@ void bound_displacements(Step& step, const typename Step::Rows& at_end) {
 /// from closing the gaps (they are what is left of the last step's, and small). λ and d of the step are put back.
 template <class Step>
 void find_displacements(Step& step, const typename Step::Rows* at_end) {
-  using Laws = typename Step::Laws;
   auto& own = step.template state<role::Stabilisation>();
   auto& rows = step.rows;
+  const auto exchange = [&] {
+    each_pool(rows, [&](auto p, auto& pool) {
+      pool.lambda.swap(std::get<p>(own.lambda.pools));
+      pool.d.swap(std::get<p>(own.d.pools));
+    });
+  };
   own.lambda.resize_like(rows);
   own.d.resize_like(rows);
-  for_each_index<Laws::pool_count>([&](auto p) {
-    std::get<p>(own.lambda.pools) = rows.template pool<p>().lambda;
-    std::get<p>(own.d.pools) = rows.template pool<p>().d;
-  });
+  exchange();
   make_position_bias(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
   step.W.reset(rows);
-  PositionLawSet<Laws, typename Step::Scalar> book;
+  PositionLawSet<typename Step::Laws, typename Step::Scalar> book;
   NoObserver nobody;
   Status worst = Status::converged;
   constexpr double far = 0.05;  // of the largest velocity that closes a gap
@@ -186,10 +184,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
     add_impulses<s>(inner::inverse_of<s>(step.W, set, 1), rows, to, std::get<s>(step.scratch));
   });
   if (at_end) bound_displacements(step, *at_end);
-  for_each_index<Laws::pool_count>([&](auto p) {
-    std::swap(std::get<p>(own.lambda.pools), rows.template pool<p>().lambda);
-    std::swap(std::get<p>(own.d.pools), rows.template pool<p>().d);
-  });
+  exchange();
   step.summary.status = worse(step.summary.status, worst);
 }
 
