@@ -1,4 +1,4 @@
-// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, without W
+// expect: delassus: an integrator with move(step), such as NewtonMidpoint, makes its step at once, without W
 #include <delassus/delassus.hpp>
 #include <delassus/steppers/newton_midpoint.hpp>
 

@@ -1,4 +1,4 @@
-// expect: delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson
+// expect: delassus: an integrator with move(step), such as NewtonMidpoint, takes no contacts, limits, motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson
 #include <delassus/delassus.hpp>
 #include <delassus/steppers/rattle.hpp>
 

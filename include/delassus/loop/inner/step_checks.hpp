@@ -17,6 +17,7 @@
 #include <delassus/step/plain_step.hpp>
 #include <delassus/step/theta.hpp>
 
+#include <concepts>
 #include <type_traits>
 
 namespace delassus::inner {
@@ -33,6 +34,12 @@ consteval bool holds_exactly() {
 template <class Scheme>
 inline constexpr bool takes_whole_steps = requires { requires Scheme::takes_whole_steps; };
 
+/// What an integrator that makes its step at once says of a set of bodies.
+template <class I, class Set>
+concept SaysWhatItMoves = requires { { I::template can_move<Set> } -> std::convertible_to<bool>; };
+template <class I, class Set>
+concept MovesSet = SaysWhatItMoves<I, Set> && I::template can_move<Set>;
+
 /// An integrator that solves for joints and bodies together leaves no room for parts between FreeMotion and Correct.
 template <class Policies, class... Args>
 consteval bool whole_step_fits() {
@@ -42,20 +49,24 @@ consteval bool whole_step_fits() {
   } else {
     constexpr bool are_equal =
         all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return holds_exactly<L>(); });
+    constexpr bool says =
+        all_parts(std::type_identity<typename Policies::World>{}, []<class S>() { return SaysWhatItMoves<I, S>; });
+    static_assert(says, "delassus: an integrator with move(step) says which sets of bodies it moves; add `template <class Set> "
+                        "static constexpr bool can_move = ...;`");
     constexpr bool can_move =
-        all_parts(std::type_identity<typename Policies::World>{}, []<class S>() { return I::template can_move<S>; });
+        all_parts(std::type_identity<typename Policies::World>{}, []<class S>() { return MovesSet<I, S>; });
     constexpr bool is_plain = takes_whole_steps<typename Policies::Scheme> &&
                               std::is_same_v<typename Policies::Activity, AllActive> && !(Publisher<Args> || ...);
     static_assert(are_equal,
-                  "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton take no contacts, limits, "
+                  "delassus: an integrator with move(step), such as NewtonMidpoint, takes no contacts, limits, "
                   "motors and drives; take their laws out, or use SymplecticEuler, ImplicitEuler, ImplicitMidpoint or LiePoisson");
-    if constexpr (are_equal)
+    if constexpr (are_equal && says)
       static_assert(can_move,
                     "delassus: NewtonMidpoint moves rigid bodies only, Rattle and RungeKutta4 those and particles, GeneralizedAlpha, "
                     "Newmark and Bdf2 particles and soft bodies, FullNewton soft bodies and rods; take the other sets out of World{...}, or use ImplicitMidpoint");
     if constexpr (are_equal && can_move)
       static_assert(is_plain,
-                    "delassus: NewtonMidpoint, Rattle, RungeKutta4, GeneralizedAlpha, Newmark, Bdf2 and FullNewton make their step at once, "
+                    "delassus: an integrator with move(step), such as NewtonMidpoint, makes its step at once, "
                     "without W; take out the scheme, the activity and the listeners that publish the problem");
     return are_equal && can_move && is_plain;
   }
@@ -119,7 +130,7 @@ consteval bool refinement_fits() {
   constexpr bool fit = !is_refined || Policies::Laws::pool_count == 0 ||
                        !(OverridesStages<typename Policies::Scheme> || names_override<NewtonImpact>(typename order_of_overrides<Policies>::type{}));
   static_assert(fit,
-                "delassus: LazyCompliance and PrecomputedCompliance take no PredictiveScheme and no law with "
+                "delassus: LazyCompliance and PrecomputedCompliance take no scheme that overrides stages, such as PredictiveScheme, and no law with "
                 "restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance");
   return fit;
 }
