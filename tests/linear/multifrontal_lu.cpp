@@ -120,10 +120,10 @@ TEST_CASE("a singular pivot block of a front and one that is not finite are refu
   }
 }
 
-TEST_CASE("fronts tell the sign of the determinant") {
+TEST_CASE("block pivots tell the sign of the determinant") {
   const Net net(4);
   for (const bool is_flipped : {false, true}) {
-    MultifrontalLu<3, double> A;
+    BlockLu<3, double> A;
     A.analyse(net.joints(), net.pairs);
     fill<3>(A, net.joints(), net.pairs, 1);
     for (Index j = 0; is_flipped && j < net.joints(); ++j) {  // the first row of block 7 with the other sign

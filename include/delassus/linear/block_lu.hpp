@@ -77,7 +77,11 @@ class BlockLu {
   }
 
   /// Whether det A < 0.
-  bool is_negative() const { return delassus::is_negative<w, T>(pivot_); }
+  bool is_negative() const {
+    bool is = false;
+    for (const auto& pivot : pivot_) is ^= pivot.is_negative();
+    return is;
+  }
 
   /// x ← A⁻¹ x.
   template <class Ends = Never>

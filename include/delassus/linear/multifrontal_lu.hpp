@@ -51,9 +51,6 @@ class MultifrontalLu {
     return true;
   }
 
-  /// Whether det A < 0.
-  bool is_negative() const { return delassus::is_negative<w, T>(pivot_); }
-
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w, T>> x) const {
     y_.resize(x.size());

@@ -32,8 +32,6 @@ class SparseLu {
   Block& at(Index i, Index j) { return has_fronts_ ? fronts_.at(i, j) : plain_.at(i, j); }
   /// False when a pivot block is singular or not finite.
   bool factor() { return has_fronts_ ? fronts_.factor() : plain_.factor(); }
-  /// Whether det A < 0.
-  bool is_negative() const { return has_fronts_ ? fronts_.is_negative() : plain_.is_negative(); }
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w, T>> x) const { has_fronts_ ? fronts_.solve(x) : plain_.solve(x); }
 

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 #include <utility>
 
 namespace delassus {
@@ -74,13 +73,5 @@ class PivotedLu {
   std::array<T, w> over_;  ///< 1 / U_kk
   std::array<int, w> swap_;
 };
-
-/// Whether det A < 0 of an A with these block pivots.
-template <int w, class T>
-bool is_negative(std::span<const PivotedLu<w, T>> pivots) {
-  bool is = false;
-  for (const auto& pivot : pivots) is ^= pivot.is_negative();
-  return is;
-}
 
 }  // namespace delassus

@@ -43,6 +43,10 @@ class PositionLawSet<Constraints<Laws...>, T> {
     return false;
   }
   template <int p>
+  static constexpr T friction(Index) {
+    return 0;
+  }
+  template <int p>
   static constexpr bool clamps() {
     return true;
   }
