@@ -14,7 +14,7 @@ inline constexpr int count_of = (0 + ... + int(Plays<Policies, Role>));
 
 /// `is.template operator()<Part>()` for every set of a World, or every law of Constraints.
 template <template <class...> class Whole, class... Part>
-consteval bool all_parts(std::type_identity<Whole<Part...>>, auto is) {
+consteval bool all_parts(std::type_identity<Whole<Part...>>, [[maybe_unused]] auto is) {
   return (is.template operator()<Part>() && ...);
 }
 
