@@ -1,4 +1,5 @@
-/// When a solve may stop.
+/// When a solve may stop: the number that is compared with the solver's tolerance. `sum` is the island's, `worst` the largest share
+/// of one constraint, which a solver with `all_verified` compares.
 #pragma once
 
 #include <delassus/solvers/measure.hpp>
@@ -12,7 +13,7 @@ struct Residual {
   static double worst(const Measure& m) { return m.worst; }
 };
 
-/// Stops on Siconos' measure, for comparison.
+/// Stops on Siconos' measure, for comparison. It has no shares: `all_verified` compares the island's, which is stricter.
 struct SiconosError {
   static constexpr bool needs_measure = true;
   static double sum(const Measure& m) { return m.siconos; }

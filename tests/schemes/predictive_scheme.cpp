@@ -4,7 +4,7 @@
 
 #include "catch.hpp"
 
-namespace prediction_tests {
+namespace predictive_scheme_tests {
 
 using namespace scenes;
 
@@ -171,4 +171,4 @@ TEST_CASE("soft rows are predicted as stiff ones are: the spring of a joint sags
   REQUIRE(-set.position(a).z() - 1 == Approx(m * g / k).epsilon(1e-9));
 }
 
-}  // namespace prediction_tests
+}  // namespace predictive_scheme_tests

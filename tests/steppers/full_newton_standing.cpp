@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+namespace full_newton_standing_tests {
+
 using namespace delassus;
 
 namespace {
@@ -60,3 +62,5 @@ TEMPLATE_TEST_CASE("a load that is no number stops its own body under full Newto
   };
   CHECK((fall(true) - fall(false)).norm() < 1e-11);
 }
+
+}  // namespace full_newton_standing_tests
