@@ -16,6 +16,7 @@ add_library(delassus_warnings INTERFACE)
 target_compile_options(delassus_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers  # policies are set by designated initialisers: leaving a member out is the normal use
+  $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wshadow-uncaptured-local>  # what g++ counts among -Wshadow
   # Flow analysis of inlined Eigen expressions; sanitizers look at the same mistakes without guessing.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-stringop-overflow>
   # No warning: g++ collects its garbage from 0.8 GB on, not from 0.1 GB. A sixth to a quarter of the compiler's time was that.

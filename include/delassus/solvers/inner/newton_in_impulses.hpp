@@ -90,7 +90,7 @@ struct NewtonInImpulses {
       if (step > 0 && !problem.has_time_for(work)) break;
       if (!space.find_direction(epsilon)) return 1;
       ++report.factorizations;
-      const double before = size, t = halve_step(size, 13, [&](double t) { return space.evaluate(epsilon, t); });
+      const double before = size, t = halve_step(size, 13, [&](double part) { return space.evaluate(epsilon, part); });
       if (!(size < 0.999 * before)) return before / first;
       space.advance(t);
     }
