@@ -115,7 +115,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   bool moves(Index b) const { return state_.inverse_mass[b] > T(0); }
   /// Takes a body's answer to impulses away (A⁻¹ = 0), or gives it back.
   void set_fixed(Index b, bool is_held) {
-    if (is_held) state_.inverse_mass[b] = T(0), state_.inverse_inertia_world[b].setZero();
+    if (is_held) state_.inverse_mass[b] = T(0), set_all(state_.inverse_inertia_world[b], T(0));
     else set_mass(b);
   }
   Motion motion(Index b) const { return motion_[b]; }
@@ -225,7 +225,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
       }
       if (is_finite(v_next[b])) v_[b] = v_next[b];
       else quarantine_.leave(load_.data(), load_[b]);
-      load_[b].setZero();
+      set_all(load_[b], T(0));
     }
   }
   auto& targets() { return targets_; }
@@ -266,12 +266,12 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     const bool is_done =
         motion_[b] == Motion::kinematic ? follow(b, next, h) : state_.drift(b, v_[b], next, h, share);
     if (!is_done) [[unlikely]] return quarantine_.leave(load_.data(), load_[b]);
-    load_[b].setZero();
+    set_all(load_[b], T(0));
   }
   /// A kinematic body goes where it was told, or on with its velocity.
   bool follow(Index b, const Velocity& next, T h) {
     if (!state_.displace(b, h * linear_part(next), h * angular_part(next))) return false;
-    if (targets_.reach(b, state_)) v_[b].setZero();
+    if (targets_.reach(b, state_)) set_all(v_[b], T(0));
     return true;
   }
 

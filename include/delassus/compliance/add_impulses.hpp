@@ -18,14 +18,14 @@ void add_impulses(const Set& set, const Rows& rows, std::span<typename Set::Velo
   const bool is_coupled = inner::is_coupled(set);
   if (is_coupled) {
     scratch.resize(set.blocks());
-    for (auto& x : scratch) x.setZero();
+    for (auto& x : scratch) set_all(x, typename Set::Scalar(0));
   }
   each_pool(rows, [&](auto, const auto& pool) {
     const auto& blocks = std::get<s>(pool.sets);
     for (Index i = 0; i < pool.items(); ++i)
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
-        if (is_coupled) scratch[blocks.block[e]].noalias() += blocks.H[e].transpose() * pool.lambda[i];
-        else to[blocks.block[e]].noalias() += blocks.G[e] * pool.lambda[i];
+        if (is_coupled) scratch[blocks.block[e]] += blocks.H[e].transpose() * pool.lambda[i];
+        else to[blocks.block[e]] += blocks.G[e] * pool.lambda[i];
       }
   });
   if constexpr (requires { set.solve(scratch); })

@@ -27,8 +27,8 @@ void apply_inverse(const Set& set, Rows& rows, S s) {
     constexpr int R = Rows::template rows_of<p>;
     blocks.G.resize(blocks.H.size());
     for (std::size_t e = 0; e < blocks.H.size(); ++e) {
-      if constexpr (of_masses) blocks.G[e] = set.template solve_mass<R>(blocks.block[e], blocks.H[e].transpose());
-      else blocks.G[e] = set.template solve_block<R>(blocks.block[e], blocks.H[e].transpose());
+      if constexpr (of_masses) blocks.G[e] = set.template solve_mass<R>(blocks.block[e], transposed(blocks.H[e]));
+      else blocks.G[e] = set.template solve_block<R>(blocks.block[e], transposed(blocks.H[e]));
     }
   });
 }

@@ -56,7 +56,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     for_each_index<Rows::set_count>([&](auto s) {
       const auto& set = std::get<s>(pool.sets);
       const auto& y = std::get<s>(y_);
-      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) r.noalias() += set.H[e].template cast<Sum>() * y[set.block[e]];
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) r += set.H[e].template cast<Sum>() * y[set.block[e]];
     });
     r += std::get<p>(compliance_)[i].cwiseProduct(pool.lambda[i]).template cast<Sum>();
     return r.template cast<T>();
@@ -69,7 +69,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
       const auto& set = std::get<s>(pool.sets);
       auto& y = std::get<s>(y_);
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) 
-        y[set.block[e]].noalias() += set.G[e].template cast<Sum>() * change.template cast<Sum>();
+        y[set.block[e]] += set.G[e].template cast<Sum>() * change.template cast<Sum>();
     });
   }
 
@@ -93,7 +93,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
         const auto& set = std::get<s>(pool.sets);
         for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
           for (Index f = set.offset[i]; f < set.offset[i + 1]; ++f)
-            if (set.block[e] == set.block[f]) W.noalias() += set.H[e] * set.G[f];
+            if (set.block[e] == set.block[f]) W += set.H[e] * set.G[f];
       });
       compliance[i] = pool.compliance[i] + pool.relative_compliance[i].cwiseProduct(W.diagonal());
       W.diagonal() += compliance[i];

@@ -58,11 +58,11 @@ struct Pool {
     const Index place = slots.take();
     if (place == Index(items.size())) {
       items.push_back(item);
-      impulse.push_back(Vec<rows>::Zero());
+      impulse.push_back(zero<Vec<rows>>());
       starts_cold.push_back(0);
     }
     items[place] = item;
-    impulse[place].setZero();
+    set_all(impulse[place], 0.0);
     starts_cold[place] = 0;
     return {place, slots.generation(place), owner};
   }

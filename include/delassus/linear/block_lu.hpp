@@ -29,12 +29,12 @@ class BlockLu {
   /// in `factor`, and in `solve` x.
   template <class Ends = Never>
   void set_identity(Ends&& ends = {}) {
-    for (Block& b : diagonal_) b.setIdentity();
+    for (Block& b : diagonal_) b = diagonal_of<w>(T(1));
     for (auto* entries : {&lower_, &upper_}) entries->resize(pattern_.entries());
     for (auto* entries : {&lower_, &upper_})
       for (Block& b : *entries) {
         if (ends(1)) return;
-        b.setZero();
+        set_all(b, T(0));
       }
   }
   /// A_ij, to be added to.

@@ -31,9 +31,9 @@ class MultifrontalLu {
   }
 
   void set_identity() {
-    for (Block& b : diagonal_) b.setIdentity();
-    for (Block& b : lower_) b.setZero();
-    for (Block& b : upper_) b.setZero();
+    for (Block& b : diagonal_) b = diagonal_of<w>(T(1));
+    for (Block& b : lower_) set_all(b, T(0));
+    for (Block& b : upper_) set_all(b, T(0));
   }
   /// A_ij, to be added to.
   Block& at(Index i, Index j) {
@@ -72,8 +72,8 @@ class MultifrontalLu {
         plan_, s, [&](Index place) -> const Block& { return diagonal_[place]; },
         [&](Index entry) -> const Block& { return lower_[entry]; });
     U_.open(
-        plan_, s, [&](Index place) -> Block { return diagonal_[place].transpose(); },
-        [&](Index entry) -> Block { return upper_[entry].transpose(); });
+        plan_, s, [&](Index place) -> Block { return transposed(diagonal_[place]); },
+        [&](Index entry) -> Block { return transposed(upper_[entry]); });
     const Columns<T> L = L_.columns(plan_, s), U = U_.columns(plan_, s);
     const Index height = w * Index(x.rows.size()), width = w * x.width, below = height - width;
     if (!factor_columns(L, U, height, x.first, x.width)) return false;
@@ -114,17 +114,17 @@ class MultifrontalLu {
     const Index height = w * Index(x.rows.size());
     const Columns<const T> L = L_.columns(plan_, s);
     gather_.assign(height, T(0));
-    for (Index k = 0; k < x.width; ++k) Line(&gather_[w * k], w) = y_[x.first + k].array();
+    for (Index k = 0; k < x.width; ++k) std::copy_n(y_[x.first + k].data(), w, &gather_[w * k]);
     for (Index k = 0; k < x.width; ++k) {
       const Index next = w * (k + 1), rest = height - next;
       Vec<w, T>& y = y_[x.first + k];
-      y = ConstLine(&gather_[w * k], w).matrix();
+      std::copy_n(&gather_[w * k], w, y.data());
       pivot_[x.first + k].solve(y);
       for (int c = 0; c < w; ++c)
         Line(gather_.data() + next, rest) -= y[c] * ConstLine(L.at(next, w * k + c), rest);
     }
     for (Index k = x.width; k < Index(x.rows.size()); ++k)
-      y_[x.rows[k]] += ConstLine(&gather_[w * k], w).matrix();
+      for (int c = 0; c < w; ++c) y_[x.rows[k]][c] += gather_[w * k + c];
   }
   /// y ← U⁻¹ y.
   void backward(Index s) const {
@@ -132,13 +132,13 @@ class MultifrontalLu {
     const Index height = w * Index(x.rows.size());
     const Columns<const T> U = U_.columns(plan_, s);
     gather_.resize(height);
-    for (Index k = 0; k < Index(x.rows.size()); ++k) Line(&gather_[w * k], w) = y_[x.rows[k]].array();
+    for (Index k = 0; k < Index(x.rows.size()); ++k) std::copy_n(y_[x.rows[k]].data(), w, &gather_[w * k]);
     for (Index k = x.width; k-- > 0;) {
       const Index next = w * (k + 1), rest = height - next;
       for (int c = 0; c < w; ++c)
         gather_[w * k + c] -=
             (ConstLine(U.at(next, w * k + c), rest) * ConstLine(gather_.data() + next, rest)).sum();
-      y_[x.first + k] = ConstLine(&gather_[w * k], w).matrix();
+      std::copy_n(&gather_[w * k], w, y_[x.first + k].data());
     }
   }
 

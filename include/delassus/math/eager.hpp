@@ -1,30 +1,56 @@
-/// Sums and products of 3-vectors and 3 × 3 matrices, evaluated where they stand.
+/// Sums and products of small matrices of fixed size, evaluated where they stand.
 #pragma once
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <concepts>
 #include <type_traits>
 
 namespace delassus {
 
 // Eigen makes a type of every expression, and some eighty functions to compile for each. These operators are chosen over
-// Eigen's when both sides are a plain Vec<3, T> or Mat<3, 3, T>, and they return one again: a program compiles a dozen
-// small functions instead. Sums run from left to right, whatever the vector instructions. Everything else (blocks, other
-// sizes, mixed scalars) stays with Eigen. Vectors are written out, since a loop over them would keep them in memory.
+// Eigen's when both sides are plain matrices of fixed size with at most six rows and columns, and they return one again: a
+// program compiles one small function for each size instead. Sums run from left to right, whatever the vector instructions.
+// Everything else (blocks, larger and dynamic sizes, mixed scalars) stays with Eigen. Sums and multiples of 3-vectors are
+// written out, since a loop over them would keep them in memory.
+
+// Of a trip count that is a constant: at -O2 g++ would leave such a loop as it is.
+#if defined(__clang__)
+#define DELASSUS_UNROLL _Pragma("unroll")
+#elif defined(__GNUC__)
+#define DELASSUS_UNROLL _Pragma("GCC unroll 36")
+#else
+#define DELASSUS_UNROLL
+#endif
 
 namespace inner {
 
-/// 3 × C, a vector or a square matrix. Column-major, so that entry (i, k) is data()[i + 3 k].
-template <class T, int C>
-using Small = Eigen::Matrix<T, 3, C>;
+template <int... sizes>
+concept SmallSizes = ((sizes > 0 && sizes <= 6) && ...);
 
 /// What Eigen lets a matrix be scaled by: its own scalar or an integer.
 template <class S, class T>
 concept ScalarOf = std::same_as<S, T> || std::integral<S>;
 
-template <class A, class T>
-concept Square = std::same_as<std::remove_const_t<A>, Small<T, 3>>;
+/// R × K, and R or K as a name that is not yet known.
+template <class M, class T, int R, int K>
+concept Plain = std::same_as<std::remove_const_t<M>, Eigen::Matrix<T, R, K>> && SmallSizes<R, K>;
+
+/// Y = A B. Column-major, so that entry (i, k) of an R × K matrix is data()[i + R k].
+template <int R, int K, int C, class T>
+[[gnu::always_inline]] inline void set_product(const T* A, const T* B, T* Y) {
+  DELASSUS_UNROLL
+  for (int c = 0; c < C; ++c) {
+    DELASSUS_UNROLL
+    for (int i = 0; i < R; ++i) Y[i + R * c] = A[i] * B[K * c];
+    DELASSUS_UNROLL
+    for (int k = 1; k < K; ++k) {
+      DELASSUS_UNROLL
+      for (int i = 0; i < R; ++i) Y[i + R * c] += A[i + R * k] * B[k + K * c];
+    }
+  }
+}
 
 /// (x, y, z) · column.
 template <class T>
@@ -35,68 +61,78 @@ inline T row_times(T x, T y, T z, const T* column) {
 }  // namespace inner
 
 template <class T>
-inline inner::Small<T, 1> operator+(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
+inline Eigen::Matrix<T, 3, 1> operator+(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
   const T *x = a.data(), *y = b.data();
   return {x[0] + y[0], x[1] + y[1], x[2] + y[2]};
 }
-template <class T>
-inline inner::Small<T, 3> operator+(const Eigen::Matrix<T, 3, 3>& a, const Eigen::Matrix<T, 3, 3>& b) {
-  inner::Small<T, 3> c;
-  for (int i = 0; i < 9; ++i) c.data()[i] = a.data()[i] + b.data()[i];
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C> operator+(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  Eigen::Matrix<T, R, C> c;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] + b.data()[i];
   return c;
 }
 
 template <class T>
-inline inner::Small<T, 1> operator-(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
+inline Eigen::Matrix<T, 3, 1> operator-(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
   const T *x = a.data(), *y = b.data();
   return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 }
-template <class T>
-inline inner::Small<T, 3> operator-(const Eigen::Matrix<T, 3, 3>& a, const Eigen::Matrix<T, 3, 3>& b) {
-  inner::Small<T, 3> c;
-  for (int i = 0; i < 9; ++i) c.data()[i] = a.data()[i] - b.data()[i];
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C> operator-(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  Eigen::Matrix<T, R, C> c;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] - b.data()[i];
   return c;
 }
 
 template <class T>
-inline inner::Small<T, 1> operator-(const Eigen::Matrix<T, 3, 1>& a) {
+inline Eigen::Matrix<T, 3, 1> operator-(const Eigen::Matrix<T, 3, 1>& a) {
   const T* x = a.data();
   return {-x[0], -x[1], -x[2]};
 }
-template <class T>
-inline inner::Small<T, 3> operator-(const Eigen::Matrix<T, 3, 3>& a) {
-  inner::Small<T, 3> c;
-  for (int i = 0; i < 9; ++i) c.data()[i] = -a.data()[i];
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C> operator-(const Eigen::Matrix<T, R, C>& a) {
+  Eigen::Matrix<T, R, C> c;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) c.data()[i] = -a.data()[i];
   return c;
 }
 
 template <class T, inner::ScalarOf<T> S>
-inline inner::Small<T, 1> operator*(const Eigen::Matrix<T, 3, 1>& a, S s) {
+inline Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 1>& a, S s) {
   const T* x = a.data();
   return {x[0] * T(s), x[1] * T(s), x[2] * T(s)};
 }
-template <class T, inner::ScalarOf<T> S>
-inline inner::Small<T, 3> operator*(const Eigen::Matrix<T, 3, 3>& a, S s) {
-  inner::Small<T, 3> c;
-  for (int i = 0; i < 9; ++i) c.data()[i] = a.data()[i] * T(s);
+template <class T, int R, int C, inner::ScalarOf<T> S>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C> operator*(const Eigen::Matrix<T, R, C>& a, S s) {
+  Eigen::Matrix<T, R, C> c;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] * T(s);
   return c;
 }
 
-template <class T, int C, inner::ScalarOf<T> S>
-  requires(C == 1 || C == 3)
-inline inner::Small<T, C> operator*(S s, const Eigen::Matrix<T, 3, C>& a) {
+template <class T, int R, int C, inner::ScalarOf<T> S>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C> operator*(S s, const Eigen::Matrix<T, R, C>& a) {
   return a * s;
 }
 
 template <class T, inner::ScalarOf<T> S>
-inline inner::Small<T, 1> operator/(const Eigen::Matrix<T, 3, 1>& a, S s) {
+inline Eigen::Matrix<T, 3, 1> operator/(const Eigen::Matrix<T, 3, 1>& a, S s) {
   const T* x = a.data();
   return {x[0] / T(s), x[1] / T(s), x[2] / T(s)};
 }
-template <class T, inner::ScalarOf<T> S>
-inline inner::Small<T, 3> operator/(const Eigen::Matrix<T, 3, 3>& a, S s) {
-  inner::Small<T, 3> c;
-  for (int i = 0; i < 9; ++i) c.data()[i] = a.data()[i] / T(s);
+template <class T, int R, int C, inner::ScalarOf<T> S>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C> operator/(const Eigen::Matrix<T, R, C>& a, S s) {
+  Eigen::Matrix<T, R, C> c;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] / T(s);
   return c;
 }
 
@@ -107,9 +143,11 @@ inline Eigen::Matrix<T, 3, 1>& operator+=(Eigen::Matrix<T, 3, 1>& a, const Eigen
   x[0] += y[0], x[1] += y[1], x[2] += y[2];
   return a;
 }
-template <class T>
-inline Eigen::Matrix<T, 3, 3>& operator+=(Eigen::Matrix<T, 3, 3>& a, const Eigen::Matrix<T, 3, 3>& b) {
-  for (int i = 0; i < 9; ++i) a.data()[i] += b.data()[i];
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C>& operator+=(Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) a.data()[i] += b.data()[i];
   return a;
 }
 
@@ -120,6 +158,13 @@ inline Eigen::Matrix<T, 3, 1>& operator-=(Eigen::Matrix<T, 3, 1>& a, const Eigen
   x[0] -= y[0], x[1] -= y[1], x[2] -= y[2];
   return a;
 }
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C>& operator-=(Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) a.data()[i] -= b.data()[i];
+  return a;
+}
 
 template <class T, inner::ScalarOf<T> S>
 inline Eigen::Matrix<T, 3, 1>& operator*=(Eigen::Matrix<T, 3, 1>& a, S s) {
@@ -127,9 +172,11 @@ inline Eigen::Matrix<T, 3, 1>& operator*=(Eigen::Matrix<T, 3, 1>& a, S s) {
   x[0] *= T(s), x[1] *= T(s), x[2] *= T(s);
   return a;
 }
-template <class T, inner::ScalarOf<T> S>
-inline Eigen::Matrix<T, 3, 3>& operator*=(Eigen::Matrix<T, 3, 3>& a, S s) {
-  for (int i = 0; i < 9; ++i) a.data()[i] *= T(s);
+template <class T, int R, int C, inner::ScalarOf<T> S>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C>& operator*=(Eigen::Matrix<T, R, C>& a, S s) {
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) a.data()[i] *= T(s);
   return a;
 }
 
@@ -139,51 +186,137 @@ inline Eigen::Matrix<T, 3, 1>& operator/=(Eigen::Matrix<T, 3, 1>& a, S s) {
   x[0] /= T(s), x[1] /= T(s), x[2] /= T(s);
   return a;
 }
+template <class T, int R, int C, inner::ScalarOf<T> S>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, R, C>& operator/=(Eigen::Matrix<T, R, C>& a, S s) {
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) a.data()[i] /= T(s);
+  return a;
+}
 
-/// A x and A B.
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline bool operator==(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  bool is_equal = true;
+  for (int i = 0; i < R * C; ++i) is_equal &= a.data()[i] == b.data()[i];
+  return is_equal;
+}
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline bool operator!=(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  return !(a == b);
+}
+
+/// A x, written out.
 template <class T>
-[[gnu::always_inline]] inline inner::Small<T, 1> operator*(const Eigen::Matrix<T, 3, 3>& A,
-                                                           const Eigen::Matrix<T, 3, 1>& x) {
+[[gnu::always_inline]] inline Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 3>& A,
+                                                               const Eigen::Matrix<T, 3, 1>& x) {
   const T *a = A.data(), *b = x.data();
   return {inner::row_times(a[0], a[3], a[6], b), inner::row_times(a[1], a[4], a[7], b),
           inner::row_times(a[2], a[5], a[8], b)};
 }
-template <class T>
-inline inner::Small<T, 3> operator*(const Eigen::Matrix<T, 3, 3>& A, const Eigen::Matrix<T, 3, 3>& B) {
-  inner::Small<T, 3> Y;
-  const T* a = A.data();
-  for (int k = 0; k < 9; k += 3)
-    for (int i = 0; i < 3; ++i) Y.data()[i + k] = inner::row_times(a[i], a[i + 3], a[i + 6], B.data() + k);
+/// A B.
+template <class T, int R, int K, int C>
+  requires inner::SmallSizes<R, K, C>
+inline Eigen::Matrix<T, R, C> operator*(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, K, C>& B) {
+  Eigen::Matrix<T, R, C> Y;
+  inner::set_product<R, K, C>(A.data(), B.data(), Y.data());
   return Y;
 }
 
-/// Aᵀ x and Aᵀ B.
-template <class T, inner::Square<T> M>
-inline inner::Small<T, 1> operator*(const Eigen::Transpose<M>& At, const Eigen::Matrix<T, 3, 1>& x) {
-  const T *a = At.nestedExpression().data(), *b = x.data();
-  return {inner::row_times(a[0], a[1], a[2], b), inner::row_times(a[3], a[4], a[5], b),
-          inner::row_times(a[6], a[7], a[8], b)};
-}
-template <class T, inner::Square<T> M>
-inline inner::Small<T, 3> operator*(const Eigen::Transpose<M>& At, const Eigen::Matrix<T, 3, 3>& B) {
-  inner::Small<T, 3> Y;
-  const T* a = At.nestedExpression().data();
-  for (int k = 0; k < 9; k += 3)
-    for (int i = 0; i < 3; ++i)
-      Y.data()[i + k] = inner::row_times(a[3 * i], a[3 * i + 1], a[3 * i + 2], B.data() + k);
-  return Y;
-}
-
-/// A Bᵀ.
-template <class T, inner::Square<T> M>
-inline inner::Small<T, 3> operator*(const Eigen::Matrix<T, 3, 3>& A, const Eigen::Transpose<M>& Bt) {
-  inner::Small<T, 3> Y;
-  const T *a = A.data(), *b = Bt.nestedExpression().data();
-  for (int k = 0; k < 3; ++k) {
-    const T column[3] = {b[k], b[k + 3], b[k + 6]};
-    for (int i = 0; i < 3; ++i) Y.data()[i + 3 * k] = inner::row_times(a[i], a[i + 3], a[i + 6], column);
+/// Aᵀ as a value, where Eigen's transpose() is a view.
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline Eigen::Matrix<T, C, R> transposed(const Eigen::Matrix<T, R, C>& A) {
+  Eigen::Matrix<T, C, R> Y;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R; ++i) {
+    DELASSUS_UNROLL
+    for (int k = 0; k < C; ++k) Y.data()[k + C * i] = A.data()[i + R * k];
   }
   return Y;
+}
+
+/// Aᵀ B and A Bᵀ of Eigen's view; xᵀ y stays with Eigen, where it is a number.
+template <class M, class T, int K, int C, int R = int(M::ColsAtCompileTime)>
+  requires inner::Plain<M, T, K, R> && inner::SmallSizes<C> && (R * C > 1)
+inline Eigen::Matrix<T, R, C> operator*(const Eigen::Transpose<M>& At, const Eigen::Matrix<T, K, C>& B) {
+  Eigen::Matrix<T, R, C> Y;
+  const T *a = At.nestedExpression().data(), *b = B.data();
+  DELASSUS_UNROLL
+  for (int c = 0; c < C; ++c) {
+    DELASSUS_UNROLL
+    for (int i = 0; i < R; ++i) {
+      T sum = a[K * i] * b[K * c];
+      DELASSUS_UNROLL
+      for (int k = 1; k < K; ++k) sum += a[k + K * i] * b[k + K * c];
+      Y.data()[i + R * c] = sum;
+    }
+  }
+  return Y;
+}
+template <class M, class T, int R, int K, int C = int(M::RowsAtCompileTime)>
+  requires inner::Plain<M, T, C, K> && inner::SmallSizes<R> && (R * C > 1)
+inline Eigen::Matrix<T, R, C> operator*(const Eigen::Matrix<T, R, K>& A, const Eigen::Transpose<M>& Bt) {
+  Eigen::Matrix<T, R, C> Y;
+  const T *a = A.data(), *b = Bt.nestedExpression().data();
+  DELASSUS_UNROLL
+  for (int c = 0; c < C; ++c) {
+    DELASSUS_UNROLL
+    for (int i = 0; i < R; ++i) Y.data()[i + R * c] = a[i] * b[c];
+    DELASSUS_UNROLL
+    for (int k = 1; k < K; ++k) {
+      DELASSUS_UNROLL
+      for (int i = 0; i < R; ++i) Y.data()[i + R * c] += a[i + R * k] * b[c + C * k];
+    }
+  }
+  return Y;
+}
+
+/// a · b of all entries. Of three, the last two are added first, as Eigen does.
+template <class T>
+[[gnu::always_inline]] inline T dot(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
+  const T *x = a.data(), *y = b.data();
+  return x[0] * y[0] + (x[1] * y[1] + x[2] * y[2]);
+}
+template <class T, int R, int C>
+  requires inner::SmallSizes<R, C>
+inline T dot(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+  T sum = a.data()[0] * b.data()[0];
+  DELASSUS_UNROLL
+  for (int i = 1; i < R * C; ++i) sum += a.data()[i] * b.data()[i];
+  return sum;
+}
+template <class T, int R, int C>
+inline T squared_norm(const Eigen::Matrix<T, R, C>& a) {
+  return dot(a, a);
+}
+template <class T, int R, int C>
+inline T norm(const Eigen::Matrix<T, R, C>& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+
+/// Sets every entry.
+template <class T, int R, int C>
+inline void set_all(Eigen::Matrix<T, R, C>& a, T value) {
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) a.data()[i] = value;
+}
+
+/// The matrix with `value` on its diagonal and zeros elsewhere, and of zeros alone.
+template <int R, class T>
+inline Eigen::Matrix<T, R, R> diagonal_of(T value) {
+  Eigen::Matrix<T, R, R> a;
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * R; ++i) a.data()[i] = i % (R + 1) == 0 ? value : T(0);
+  return a;
+}
+template <class M>
+inline M zero() {
+  M a;
+  for (int i = 0; i < M::RowsAtCompileTime * M::ColsAtCompileTime; ++i) a.data()[i] = 0;
+  return a;
 }
 
 }  // namespace delassus

@@ -57,6 +57,18 @@ int largest_entry(const Vec<3, T>& a) {
   return std::abs(a[2]) > std::abs(a[k]) ? 2 : k;
 }
 
+/// A unit vector across n.
+template <class T>
+inline Vec<3, T> unit_across(const Vec<3, T>& n) {
+  const T little = T(1e-12) * std::abs(n[2]);
+  if (std::abs(n[0]) > little || std::abs(n[1]) > little) {
+    const T over = T(1) / std::sqrt(n[0] * n[0] + n[1] * n[1]);
+    return {-n[1] * over, n[0] * over, 0};
+  }
+  const T over = T(1) / std::sqrt(n[1] * n[1] + n[2] * n[2]);
+  return {0, -n[2] * over, n[1] * over};
+}
+
 /// The matrix of the cross product: skew(a) b = a × b.
 template <class T>
 inline Mat<3, 3, T> skew(const Vec<3, T>& a) {
@@ -69,6 +81,19 @@ inline Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
   const Vec<3, T> x(A(0, 0), A(1, 0), A(2, 0)), y(A(0, 1), A(1, 1), A(2, 1)), z(A(0, 2), A(1, 2), A(2, 2));
   const Vec<3, T> yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the rows of adj(A)
   return T(1) / x.dot(yz) * columns<T>({yz[0], zx[0], xy[0]}, {yz[1], zx[1], xy[1]}, {yz[2], zx[2], xy[2]});
+}
+
+/// Adds to the diagonal.
+template <class T, int R>
+inline void add_diagonal(Mat<R, R, T>& A, T value) {
+  for (int k = 0; k < R; ++k) A(k, k) += value;
+}
+
+template <class T, int R>
+inline T trace(const Mat<R, R, T>& A) {
+  T sum = A(0, 0);
+  for (int k = 1; k < R; ++k) sum += A(k, k);
+  return sum;
 }
 
 /// True when every entry is zero, in fewer instructions than Eigen's isZero(0).

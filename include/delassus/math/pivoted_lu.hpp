@@ -24,7 +24,8 @@ class PivotedLu {
       const T size = std::abs(lu_(pivot, k));
       if (!(size > T(0)) || !std::isfinite(size)) return false;
       swap_[k] = pivot;
-      if (pivot != k) lu_.row(k).swap(lu_.row(pivot));
+      if (pivot != k)
+        for (int j = 0; j < w; ++j) std::swap(lu_(k, j), lu_(pivot, j));
       over_[k] = T(1) / lu_(k, k);
       for (int i = k + 1; i < w; ++i) lu_(i, k) *= over_[k];
       for (int j = k + 1; j < w; ++j) {

@@ -16,7 +16,7 @@ namespace delassus {
 /// 900 instructions for 3 × 3 where this takes 100.
 template <int R, class T>
 Mat<R, R, T> inverse_of_positive(const Mat<R, R, T>& S) {
-  Mat<R, R, T> K = Mat<R, R, T>::Zero();  // L⁻¹, row by row as L's rows are found
+  auto K = zero<Mat<R, R, T>>();  // L⁻¹, row by row as L's rows are found
   for (int i = 0; i < R; ++i) {
     Vec<R, T> row;  // row i of L
     T pivot = S(i, i);
@@ -34,7 +34,7 @@ Mat<R, R, T> inverse_of_positive(const Mat<R, R, T>& S) {
     }
     K(i, i) = over;
   }
-  return K.transpose() * K;
+  return transposed(K) * K;
 }
 
 /// x = S⁻¹ b by S = L D Lᵀ, where one right-hand side is all there is: half of what the inverse takes. Only

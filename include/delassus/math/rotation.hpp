@@ -10,15 +10,25 @@ namespace delassus {
 /// q / |q|, also where the squares of q overflow.
 template <class T>
 inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
-  const T size = q.norm();
+  const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  const T size = std::sqrt((x * x + z * z) + (y * y + w * w));
   if (!(size <= std::numeric_limits<T>::max())) {
-    const T largest = q.coeffs().cwiseAbs().maxCoeff();
+    const T largest = std::max({std::abs(w), std::abs(x), std::abs(y), std::abs(z)});
     if (largest <= std::numeric_limits<T>::max()) {
       const T s = T(1) / largest;
-      return unit(Eigen::Quaternion<T>(s * q.w(), s * q.x(), s * q.y(), s * q.z()));
+      return unit(Eigen::Quaternion<T>(s * w, s * x, s * y, s * z));
     }
   }
-  return {q.w() / size, q.x() / size, q.y() / size, q.z() / size};
+  return {w / size, x / size, y / size, z / size};
+}
+
+/// q v q*, of a unit quaternion.
+template <class T>
+inline Vec<3, T> rotated(const Eigen::Quaternion<T>& q, const Vec<3, T>& v) {
+  const Vec<3, T> axis(q.x(), q.y(), q.z());
+  Vec<3, T> twice = axis.cross(v);
+  twice += twice;
+  return v + q.w() * twice + axis.cross(twice);
 }
 
 /// 1 − |q|², of a unit quaternion nearly without rounding.
@@ -42,13 +52,14 @@ inline Eigen::Quaternion<T> unit_again(const Eigen::Quaternion<T>& q) {
 template <class T>
 [[gnu::always_inline]] inline Mat<3, 3, T> rotation_matrix(const Eigen::Quaternion<T>& q) {
   const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
-  const T e = lack_of_unit(q);
-  const T sx = T(2) * (x + e * x), sy = T(2) * (y + e * y), sz = T(2) * (z + e * z);
+  const T lack = lack_of_unit(q);
+  const T sx = T(2) * (x + lack * x), sy = T(2) * (y + lack * y), sz = T(2) * (z + lack * z);
   const T xx = sx * x, yy = sy * y, zz = sz * z, xy = sx * y, yz = sy * z, zx = sz * x, wx = sx * w, wy = sy * w, wz = sz * w;
   Mat<3, 3, T> R;
-  R << T(1) - (yy + zz), xy - wz, zx + wy,  //
-      xy + wz, T(1) - (xx + zz), yz - wx,   //
-      zx - wy, yz + wx, T(1) - (xx + yy);
+  T* e = R.data();
+  e[0] = T(1) - (yy + zz), e[3] = xy - wz, e[6] = zx + wy;
+  e[1] = xy + wz, e[4] = T(1) - (xx + zz), e[7] = yz - wx;
+  e[2] = zx - wy, e[5] = yz + wx, e[8] = T(1) - (xx + yy);
   return R;
 }
 
@@ -117,7 +128,7 @@ MidpointRate<T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate
   for (int iteration = 0; iteration < 20 && size > floor; ++iteration) {
     const Mat<3, 3, T> slope = T(2) * inertia + (h / 2) * (T(2) * skew(mid) * inertia - skew(sum));
     // Scaled by tr I, so that the determinant of a small body's moments does not underflow in single precision.
-    const T scale = T(1) / inertia.trace();
+    const T scale = T(1) / trace(inertia);
     const Vec<3, T> move = inverse(Mat<3, 3, T>(scale * slope)) * (scale * residual);
     T step = 1;
     for (int halving = 0;; ++halving, step /= 2) {
@@ -157,7 +168,9 @@ T lengthened(T h, const Vec<3, T>& rate, const Vec<3, T>& momentum) {
 /// Q = exp(h Ω·e ê), e = c/|c|: a turn about the momentum, so that Qᵀ c = c. Ω₊ = I⁻¹ c has the energy that it had.
 template <class T>
 Eigen::Quaternion<T> turn_about_momentum(const Vec<3, T>& rate, const Vec<3, T>& c, T h) {
-  const Vec<3, T> axis = c.stableNormalized();
+  const T largest = std::abs(c[largest_entry(c)]);
+  const Vec<3, T> scaled = largest > T(0) ? Vec<3, T>(c / largest) : c;
+  const Vec<3, T> axis = largest > T(0) ? Vec<3, T>(scaled / norm(scaled)) : c;
   return exponential<T>(std::remainder(h * rate.dot(axis), T(4 * EIGEN_PI)) * axis);
 }
 
@@ -182,7 +195,7 @@ template <class T>
 Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
                                              const Vec<3, T>& c, T h, int halvings) {
   const Eigen::Quaternion<T> first = midpoint_turn_halving<T>(inertia, rate, a, c, h / 2, halvings);
-  const Vec<3, T> momentum = first.conjugate() * c;
+  const Vec<3, T> momentum = rotated<T>(first.conjugate(), c);
   const Vec<3, T> then = rate_of<T>(inertia, momentum);
   return unit_again(first * midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings));
 }

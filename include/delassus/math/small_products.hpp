@@ -18,4 +18,19 @@ inline void add_product(const Mat<r, k, T>& A, const Mat<k, c, T>& B, Mat<r, c, 
     }
 }
 
+/// (A B)_ij alone.
+template <int r, int k, int c, class T>
+inline T row_times_column(const Mat<r, k, T>& A, int i, const Mat<k, c, T>& B, int j) {
+  T sum = 0;
+  for (int n = 0; n < k; ++n) sum += A.data()[i + r * n] * B.data()[n + k * j];
+  return sum;
+}
+
+template <int r, int c, class T>
+inline Vec<r, T> column(const Mat<r, c, T>& A, int j) {
+  Vec<r, T> x;
+  for (int i = 0; i < r; ++i) x[i] = A.data()[i + r * j];
+  return x;
+}
+
 }  // namespace delassus

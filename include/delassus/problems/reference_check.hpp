@@ -64,7 +64,7 @@ void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
     IslandProblem island(book, problem.rows, problem.W, problem.islands, k, problem.h, nobody);
     island.each([&](auto p, Index i) {
       const auto c = island.template local<p>(i);
-      const auto weight = c.W.trace() / typename Rows::Scalar(Rows::template rows_of<p>);
+      const auto weight = trace(c.W) / typename Rows::Scalar(Rows::template rows_of<p>);
       f(p, i, c, double(book.template natural_map<p>(i, c, weight).norm()));
     });
   }
@@ -79,7 +79,7 @@ Measure measure_of(Problem<Laws, Rows, Operator>& problem) {
 /// ½ uᵀ W⁻¹ u, W lifted by rounding's share where it is singular; a u that is no number counts most.
 template <int R, class T>
 double energy_of(const Mat<R, R, T>& W, const Vec<R, T>& u) {
-  const T lift = T(64) * std::numeric_limits<T>::epsilon() * W.trace();
+  const T lift = T(64) * std::numeric_limits<T>::epsilon() * trace(W);
   const Mat<R, R, T> lifted = W + lift * Mat<R, R, T>::Identity();
   const double energy = 0.5 * double(u.dot(inverse_of_positive(lifted) * u));
   return std::isfinite(energy) ? energy : std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
 #include <delassus/rows/pool_rows.hpp>
 #include <delassus/rows/row_system.hpp>
 
@@ -12,11 +13,11 @@ namespace delassus::inner {
 /// H x of item i of a pool.
 template <int R, class T, int... w, class World, class Member>
 Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, const Member& member) {
-  Vec<R, T> u = Vec<R, T>::Zero();
+  auto u = zero<Vec<R, T>>();
   world.each([&](const auto& set, auto s) {
     const auto& blocks = std::get<s>(pool.sets);
     const auto& v = member(set);
-    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) u.noalias() += blocks.H[e] * v[blocks.block[e]];
+    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) u += blocks.H[e] * v[blocks.block[e]];
   });
   return u;
 }
@@ -29,11 +30,11 @@ auto next_rate(const auto& pool, Index i, const auto& world) {
 /// The same of arrays x, one for each set.
 template <int R, class T, int... w, class... Arrays>
 Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const std::tuple<Arrays...>& x) {
-  Vec<R, T> u = Vec<R, T>::Zero();
+  auto u = zero<Vec<R, T>>();
   for_each_index<int(sizeof...(Arrays))>([&](auto s) {
     const auto& blocks = std::get<s>(pool.sets);
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-      u.noalias() += blocks.H[e] * std::get<s>(x)[blocks.block[e]];
+      u += blocks.H[e] * std::get<s>(x)[blocks.block[e]];
   });
   return u;
 }

@@ -24,8 +24,7 @@ class RowEnd {
       const int count = set.anchor_blocks(anchor_);
       for (int k = 0; k < count; ++k) {
         blocks.block.push_back(set.anchor_block(anchor_, k));
-        blocks.H.emplace_back();
-        blocks.H.back().setZero();
+        blocks.H.push_back(zero<typename std::remove_cvref_t<decltype(blocks.H)>::value_type>());
       }
     });
   }
@@ -36,7 +35,7 @@ class RowEnd {
       auto& blocks = std::get<s>(pool_.sets);
       const int count = set.anchor_blocks(anchor_);
       for (int b = 0; b < count; ++b)
-        blocks.H[first_ + b].row(k) += set.along(anchor_, b, point_, direction).transpose().template cast<T>();
+        add_to_row(blocks.H[first_ + b], k, set.along(anchor_, b, point_, direction));
     });
   }
 
@@ -50,7 +49,7 @@ class RowEnd {
         for_each_index<n>([&](auto row) {
           constexpr int k = row;
           const Vec3 direction(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2));
-          blocks.H[first_ + b].row(k) += set.along(anchor_, b, point_, direction).transpose().template cast<T>();
+          add_to_row(blocks.H[first_ + b], k, set.along(anchor_, b, point_, direction));
         });
     });
   }
@@ -64,8 +63,11 @@ class RowEnd {
         if (set.anchor_blocks(anchor_) == 0) return;
         auto& H = std::get<s>(pool_.sets).H[first_];
         const Vec3 r = sign * (point_ - set.centre(anchor_.block));
-        for (int k = 0; k < 3; ++k) H(k, k) += T(sign);
-        H.template block<3, 3>(0, 3) -= skew(Vec<3, T>(r.template cast<T>()));
+        const Mat<3, 3, T> cross = skew(Vec<3, T>(r.template cast<T>()));
+        for (int k = 0; k < 3; ++k) {
+          H(k, k) += T(sign);
+          for (int i = 0; i < 3; ++i) H(i, 3 + k) -= cross(i, k);
+        }
       } else {
         for (int k = 0; k < 3; ++k) along(k, sign * unit_axis(k));
       }
@@ -79,12 +81,17 @@ class RowEnd {
         auto& blocks = std::get<s>(pool_.sets);
         const int count = set.anchor_blocks(anchor_);
         for (int b = 0; b < count; ++b)
-          blocks.H[first_ + b].row(k) += set.about(anchor_, b, axis).transpose().template cast<T>();
+          add_to_row(blocks.H[first_ + b], k, set.about(anchor_, b, axis));
       }
     });
   }
 
  private:
+  template <int R, int width, class S>
+  static void add_to_row(Mat<R, width, T>& H, int k, const Vec<width, S>& x) {
+    for (int j = 0; j < width; ++j) H(k, j) += T(x[j]);
+  }
+
   const World& world_;
   Pool& pool_;
   const Anchor& anchor_;

@@ -81,7 +81,7 @@ class IslandProblem {
   double sweep(double relaxation, const Impulses<Rows>& x, double& curvature) {
     const Moved moved =
         visit_all<tells_change>(relaxation, [&](auto p, Index i, const auto& change, const auto& z) {
-          return change.dot(z - std::get<p>(x.pools)[i]);
+          return dot(change, z - std::get<p>(x.pools)[i]);
         });
     curvature = -double(moved.along);
     return double(moved.energy);
@@ -96,14 +96,14 @@ class IslandProblem {
       constexpr int R = Rows::template rows_of<p>;
       auto& lambda = rows_.template pool<p>().lambda[i];
       const Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
-      const T s = c.W.norm();
+      const T s = norm(c.W);
       const Vec<R, T> next = lambda - book_.template natural_map<p>(i, c, s) / s;
       const Vec<R, T> change = next - lambda;
       lambda = next;
       W_.template commit<p>(rows_, i, change);
       const T weight = inner::weight_of(c.W);
-      energy += weight * change.squaredNorm();
-      sum -= weight * change.dot(next - std::get<p>(x.pools)[i]);
+      energy += weight * squared_norm(change);
+      sum -= weight * dot(change, next - std::get<p>(x.pools)[i]);
     });
     curvature = double(sum);
     return double(energy);
@@ -197,7 +197,7 @@ class IslandProblem {
 
   template <int p>
   double root_of_weight(Index i) const {
-    return std::sqrt(double(W_.template diagonal<p>(i).trace()) / Rows::template rows_of<p>);
+    return std::sqrt(double(trace(W_.template diagonal<p>(i))) / Rows::template rows_of<p>);
   }
 
   /// λ_i ← what f(p, i, λ_i) makes of it, for every constraint, and W is told.
@@ -210,7 +210,7 @@ class IslandProblem {
   }
   /// λ ← 0.
   void clear() {
-    change([](auto, Index, auto& next) { next.setZero(); });
+    change([](auto, Index, auto& next) { set_all(next, T(0)); });
   }
 
   /// λ_i ← next, and W is told.
@@ -302,7 +302,7 @@ class IslandProblem {
     const Vec<R, T> change = next - lambda;
     lambda = next;
     W_.template commit<p>(rows_, i, change);
-    const T weight = inner::weight_of(W_.template diagonal<p>(i)), square = change.squaredNorm();
+    const T weight = inner::weight_of(W_.template diagonal<p>(i)), square = squared_norm(change);
     moved.energy += weight * square;
     moved.along += weight * see(std::integral_constant<int, p>{}, i, change, next);
     if constexpr (tells_change) {

@@ -85,7 +85,7 @@ class LawSet<Constraints<Laws...>, T> {
       auto memory = std::get<p>(memory_)[i];
       inner::project(pool.law, pool.item(i), trial, memory);
       const Vec<R, T> change = c.lambda - trial.lambda;
-      return (scale * T(R) / c.W.trace()) * (c.W * change);
+      return (scale * T(R) / trace(c.W)) * (c.W * change);
     }
   }
 

@@ -122,7 +122,7 @@ struct MinimumNorm {
         Held how = double(c.d.norm()) <= small ? still : fixed;
         if constexpr (Problem::BookType::template has_cone<p>())
           if (how == fixed && double(std::abs(c.d[0])) <= small && c.lambda[0] > 0) how = slips;
-        if (!(c.W.trace() > 0)) how = fixed;
+        if (!(trace(c.W) > 0)) how = fixed;
         work.search.how.push_back(how);
       });
     }
@@ -250,16 +250,16 @@ struct MinimumNorm {
       std::fill(s.x.begin(), s.x.end(), 0.0);
       s.r = s.b;
       s.p = s.r;
-      double square = inner::dot(s.r, s.r);
+      double square = inner::sum_of_products(s.r, s.r);
       const double goal = 1e-26 * square;
       for (int k = 0; square > goal; ++k) {
         if (k == products) return false;
         multiply(s.p, s.q);
-        const double curvature = inner::dot(s.p, s.q);
-        if (!(curvature > 0)) return square <= 1e-20 * inner::dot(s.b, s.b);
+        const double curvature = inner::sum_of_products(s.p, s.q);
+        if (!(curvature > 0)) return square <= 1e-20 * inner::sum_of_products(s.b, s.b);
         const double alpha = square / curvature;
         for (std::size_t n = 0; n < s.x.size(); ++n) s.x[n] += alpha * s.p[n], s.r[n] -= alpha * s.q[n];
-        const double next = inner::dot(s.r, s.r), beta = next / square;
+        const double next = inner::sum_of_products(s.r, s.r), beta = next / square;
         for (std::size_t n = 0; n < s.x.size(); ++n) s.p[n] = s.r[n] + beta * s.p[n];
         square = next;
       }

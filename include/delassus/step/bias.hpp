@@ -36,9 +36,9 @@ constexpr bool has_slip(const std::array<RowKind, rows>& kinds) {
 /// direction of u⁺, which alone can be held at rest.
 template <class T>
 Vec<2, T> rotated_slip(const Vec<2, T>& u, const Vec<2, T>& free, double theta) {
-  const T size = free.squaredNorm();
-  if (!(u.squaredNorm() > (free - u).squaredNorm()) || !(size > 0)) return Vec<2, T>::Zero();
-  return T(1 - theta) * (u - u.dot(free) / size * free);
+  const T size = squared_norm(free);
+  if (!(squared_norm(u) > squared_norm(free - u)) || !(size > 0)) return {T(0), T(0)};
+  return T(1 - theta) * (u - dot(u, free) / size * free);
 }
 
 struct SoftRow {
@@ -89,13 +89,14 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
     constexpr auto kinds = row_kinds<Law>();
     for (Index i = 0; i < pool.items(); ++i) {
       const auto free = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_free; });
-      Vec<Law::rows, T> start = Vec<Law::rows, T>::Zero();
+      auto start = zero<Vec<Law::rows, T>>();
       if (theta != 1) start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
       pool.d[i] = free;
       if constexpr (inner::has_slip(kinds))
-        if (theta != 1)
-          pool.d[i].template segment<2>(1) +=
-              inner::rotated_slip<T>(start.template segment<2>(1), free.template segment<2>(1), theta);
+        if (theta != 1) {
+          const auto rotated = inner::rotated_slip<T>({start[1], start[2]}, {free[1], free[2]}, theta);
+          pool.d[i][1] += rotated[0], pool.d[i][2] += rotated[1];
+        }
       for (int k = 0; k < Law::rows; ++k) {
         if (kinds[k] == RowKind::friction) continue;
         if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) {

@@ -76,7 +76,7 @@ class BasicContactMemory {
     for (auto i = std::lower_bound(order_.begin(), order_.end(), point[axis_] - reach, is_lower);
          i != order_.end() && entries_[*i].point[axis_] <= point[axis_] + reach; ++i) {
       if (entries_[*i].is_taken) continue;
-      const Scalar distance = (entries_[*i].point - point).squaredNorm();
+      const Scalar distance = squared_norm(Vec3(entries_[*i].point - point));
       if (distance < nearest || (distance == nearest && *i > found)) nearest = distance, found = *i;
     }
     return found < 0 ? nullptr : &entries_[found];
@@ -94,7 +94,8 @@ class BasicContactMemory {
       if (is_finite(entries_[ordered_end_].point)) order_.push_back(ordered_end_);
     if (order_.empty()) return;
     Vec3 low = entries_[order_[0]].point, high = low;
-    for (const Index i : order_) low = low.cwiseMin(entries_[i].point), high = high.cwiseMax(entries_[i].point);
+    for (const Index i : order_)
+      for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], entries_[i].point[k]), high[k] = std::max(high[k], entries_[i].point[k]);
     axis_ = largest_entry(Vec3(high - low));
     std::sort(order_.begin(), order_.end(), [&](Index i, Index j) {
       const Scalar x = entries_[i].point[axis_], y = entries_[j].point[axis_];

@@ -22,7 +22,7 @@ template <class V>
 void drop_rounding(V& v_next, const V& v_free) {
   using T = typename V::Scalar;
   constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
-  const T least = rounding * v_free.template head<3>().cwiseAbs().maxCoeff();
+  const T least = rounding * std::max({std::abs(v_free[0]), std::abs(v_free[1]), std::abs(v_free[2])});
   for (int k = 0; k < 3; ++k)
     if (std::abs(v_next[k]) <= least) v_next[k] = T(0);
 }
@@ -57,7 +57,7 @@ void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, cons
     using T = typename std::remove_reference_t<decltype(set)>::Scalar;
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);
-      if (island >= 0 && is_nonfinite[island]) set.v_next[b].setConstant(std::numeric_limits<T>::quiet_NaN());
+      if (island >= 0 && is_nonfinite[island]) set_all(set.v_next[b], std::numeric_limits<T>::quiet_NaN());
     }
     first += set.blocks();
   });

@@ -14,7 +14,7 @@ void free_motion(Set& set, Inverse&& inverse, const I& integrator, Array<typenam
                  double h) {
   inverse.factor(integrator.scale(h));
   p.resize(set.blocks());
-  for (auto& x : p) x.setZero();
+  for (auto& x : p) set_all(x, typename Set::Scalar(0));
   integrator.impulse(set, p, h);
   const auto& v = set.velocity();
   if (inner::is_coupled(set)) {

@@ -60,7 +60,7 @@ void each_kicked(Set& set, const I& integrator, double h, F&& f) {
       block.v_next = blocks.velocity(b);
     } else {
       std::array<Velocity, 1> p;
-      p[0].setConstant(typename Velocity::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
+      set_all(p[0], typename Velocity::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
       integrator.impulse(block, p, h);
       block.v_next = blocks.velocity(b) + blocks.solve(b, p[0]);
     }

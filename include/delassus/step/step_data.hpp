@@ -155,7 +155,7 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
         constexpr int R = P::Rows::template rows_of<p>;
         for (Index i = 0; i < pool.items(); ++i) {
           const Local<R, Scalar> c{this->W.template diagonal<p>(i), this->W.template residual<p>(this->rows, i), pool.lambda[i]};
-          f(int(p), i, pool.lambda[i], double(book.template natural_map<p>(i, c, c.W.trace() / Scalar(R)).norm()), h);
+          f(int(p), i, pool.lambda[i], double(book.template natural_map<p>(i, c, trace(c.W) / Scalar(R)).norm()), h);
         }
       });
     }

@@ -23,7 +23,7 @@ void warm_start(const Laws& laws, Rows& rows, ContactCache& book, double h, doub
     auto& lambda = rows.template pool<p>().lambda;
     for (Index i = 0; i < pool.count(); ++i) {
       const Index place = pool.slots.active()[i];
-      if (pool.starts_cold[place]) lambda[i].setZero();
+      if (pool.starts_cold[place]) set_all(lambda[i], T(0));
       else lambda[i] = (step_ratio * pool.impulse[place]).template cast<T>();
     }
   });
@@ -34,7 +34,8 @@ void warm_start(const Laws& laws, Rows& rows, ContactCache& book, double h, doub
       const Vec3 impulse = step_ratio * book.remembered(item.result, h);
       if (is_zero(impulse)) continue;
       constexpr int along = inner::rows_along<Rows::template rows_of<p>>;
-      lambda[i].template head<along>() = (item.frame.template topRows<along>() * impulse).template cast<T>();
+      const Vec3 own = item.frame * impulse;
+      for (int k = 0; k < along; ++k) lambda[i][k] = T(own[k]);
       if constexpr (requires { pool.law.clamp(item, lambda[i]); }) pool.law.clamp(item, lambda[i]);
     }
   });
@@ -79,8 +80,8 @@ struct ImpulseLoads {
   void add(double w, const auto& d, const auto& lambda) {
     least = std::min(least, w);
     most = std::max(most, w);
-    load = std::max(load, double(d.norm()));
-    response = std::max(response, w * double(lambda.norm()));
+    load = std::max(load, double(norm(d)));
+    response = std::max(response, w * double(norm(lambda)));
     ++count;
   }
   bool are_exceeded() const { return !(response * least <= double(count) * most * load); }
@@ -98,7 +99,7 @@ void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, Contac
     inner::ImpulseLoads loads;
     each_pool(rows, [&](auto p, const auto& pool) {
       for (const Index i : islands.items(p, k))
-        loads.add(double(W.template diagonal<p>(i).trace()) / Rows::template rows_of<p>, pool.d[i], pool.lambda[i]);
+        loads.add(double(trace(W.template diagonal<p>(i))) / Rows::template rows_of<p>, pool.d[i], pool.lambda[i]);
     });
     if (!loads.are_exceeded()) continue;
     each_kept_pool(laws, [&](auto p, auto& pool) {

@@ -45,7 +45,7 @@ class BodyStorage {
   /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
   void put_to_sleep(Index b) {
     slots_.set_awake(b, false);
-    v_[b].setZero();
+    set_all(v_[b], typename Velocity::Scalar(0));
     v_free[b] = v_next[b] = v_[b];
   }
   void wake(Index b) { slots_.set_awake(b, true); }
@@ -85,7 +85,7 @@ class BodyStorage {
     material_.resize(n);
     for (auto* array : {&group_, &collides_with_}) array->resize(n);
     v_[b] = v_free[b] = v_next[b] = velocity;
-    load_[b].setZero();
+    set_all(load_[b], typename Velocity::Scalar(0));
     material_[b] = body.material;
     note_material(body.material);
     group_[b] = body.group;

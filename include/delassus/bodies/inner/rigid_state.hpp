@@ -38,7 +38,7 @@ struct RigidState {
   /// A body that is not dynamic answers to no impulse: A⁻¹ = 0.
   void set_mass(Index b, bool is_dynamic) {
     inverse_mass[b] = is_dynamic ? T(1) / mass[b] : T(0);
-    if (!is_dynamic) inverse_inertia[b].setZero();
+    if (!is_dynamic) set_all(inverse_inertia[b], T(0));
     turn(b);
   }
 

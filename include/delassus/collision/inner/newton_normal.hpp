@@ -47,7 +47,7 @@ struct NewtonNormal {
 
 
   Vec3 turned(const Vec3& n) const {
-    const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+    const Vec3 x = unit_across(n), y = n.cross(x);
     const std::array<DifferencePoint, 5> p{difference.core(n), difference.core(n + look * x),
                                            difference.core(n - look * x), difference.core(n + look * y),
                                            difference.core(n - look * y)};

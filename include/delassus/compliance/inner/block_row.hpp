@@ -14,7 +14,7 @@ template <int Ra, int Rb, class Sum, class S, class T>
 inline void add_row(Vec<Ra, Sum>& r, Index count, const Mat<Ra, Rb, S>* W, const Index* column,
                     const Vec<Rb, T>* x) {
   for (Index e = 0; e < count; ++e)
-    r.noalias() += W[e].template cast<Sum>() * x[column[e]].template cast<Sum>();
+    r += Mat<Ra, Rb, Sum>(W[e].template cast<Sum>()) * Vec<Rb, Sum>(x[column[e]].template cast<Sum>());
 }
 
 /// Σ_e (W_e x_{column(e)})₀: the first of those rows alone, at a third of the products. Entries take turns

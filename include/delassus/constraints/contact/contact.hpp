@@ -33,8 +33,9 @@ inline constexpr int rows_along = rows < 3 ? rows : 3;
 /// The impulse of a contact as a vector of the world, moments aside.
 template <int rows, class T>
 Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
-  return frame.template topRows<rows_along<rows>>().transpose() *
-         lambda.template head<rows_along<rows>>().template cast<double>();
+  Vec3 sum = double(lambda[0]) * Vec3(frame(0, 0), frame(0, 1), frame(0, 2));
+  for (int k = 1; k < rows_along<rows>; ++k) sum += double(lambda[k]) * Vec3(frame(k, 0), frame(k, 1), frame(k, 2));
+  return sum;
 }
 
 }  // namespace inner
@@ -52,9 +53,9 @@ struct Contact {
 
   struct Item {
     const ContactRecord* record = nullptr;  ///< in the loop's list of contacts, until the next Detect
-    Vec3 point = Vec3::Zero();              ///< where the rows are taken, and how far the bodies are apart: those of the
+    Vec3 point{0, 0, 0};                   ///< where the rows are taken, and how far the bodies are apart: those of the
     double gap = 0;                         ///< record, until a scheme moves them on
-    Mat3 frame = Mat3::Identity();
+    Mat3 frame = diagonal_of<3>(1.0);
     typename Law::Parameters parameters{};
     Index result = -1;  ///< its place in the loop's list of contacts
   };
@@ -68,7 +69,9 @@ struct Contact {
     (void)world;
     const Vec3& point = item.point;
     constexpr int along = inner::rows_along<rows>;
-    const Mat<along, 3> axes = item.frame.template topRows<along>();
+    Mat<along, 3> axes;
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < along; ++j) axes(j, k) = item.frame(j, k);
     auto a = row.end(item.record->a, point);
     a.along(axes, -1);
     if constexpr (rows > along) turn(a, item.frame, -1);

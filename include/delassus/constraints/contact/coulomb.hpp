@@ -50,7 +50,7 @@ struct Coulomb {
   void prepare(const Mat<3, 3, T>& W, Memory<T>& memory) const {
     // Only a block that is singular to rounding (an end that cannot turn, on a line) is lifted by rounding's share, so that
     // its inverse exists: any lift shifts the solution by as much.
-    const T mean = W.trace() / T(3), rounding = T(64) * std::numeric_limits<T>::epsilon();
+    const T mean = trace(W) / T(3), rounding = T(64) * std::numeric_limits<T>::epsilon();
     const T lift = W.determinant() > rounding * mean * mean * mean ? T(0) : rounding * mean;
     Mat<3, 3, T> lifted = W;
     for (int k = 0; k < 3; ++k) lifted(k, k) += lift;

@@ -93,7 +93,7 @@ struct Pyramid {
   static T miss(const Mat<3, 3, T>& W, const Vec<3, T>& b, const int (&way)[2], T mu,
                 const Vec<3, T>& lambda) {
     const Vec<3, T> u = W * lambda + b;
-    const T weight = W.trace() / T(3);
+    const T weight = trace(W) / T(3);
     T off = -weight * lambda[0];
     for (int i = 1; i < 3; ++i)
       off = std::max(

@@ -193,7 +193,7 @@ struct RollingCoulomb {
   template <class T>
   static Vec<6, T> slip_somewhere(const Cones<T>& cones, const Vec<6, T>& b, Memory<T>& memory) {
     const Mat<6, 6, T>& W = memory.W;
-    const T weight = W.trace() / T(6);
+    const T weight = trace(W) / T(6);
     const T enough = T(64) * std::numeric_limits<T>::epsilon() * b.norm();
     Vec<6, T> lambda = memory.last, best = lambda;
     T least = std::numeric_limits<T>::infinity();

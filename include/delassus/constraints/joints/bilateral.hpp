@@ -22,19 +22,23 @@ struct Bilateral {
 
   template <class T>
   void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
-    const T lift = T(64) * std::numeric_limits<T>::epsilon() * W.trace();
-    const Mat<rows, rows, T> lifted = W + lift * Mat<rows, rows, T>::Identity();
+    const T lift = T(64) * std::numeric_limits<T>::epsilon() * trace(W);
+    Mat<rows, rows, T> lifted = W;
+    add_diagonal(lifted, lift);
     memory.inverse = inverse_of_positive(lifted);
   }
   template <class Item, class T>
   void project(const Item&, Local<rows, T>& c, Memory<T>& memory) const {
-    c.lambda.noalias() -= memory.inverse * c.d;
+    c.lambda -= memory.inverse * c.d;
   }
   template <class Item, class T>
   Mat<rows, rows, T> tangent(const Item&, Local<rows, T>& c) const {
-    const Vec<rows, T> over = c.W.diagonal().cwiseInverse();
-    c.lambda -= over.cwiseProduct(c.d);
-    return over.asDiagonal().toDenseMatrix();
+    auto slope = zero<Mat<rows, rows, T>>();
+    for (int k = 0; k < rows; ++k) {
+      slope(k, k) = T(1) / c.W(k, k);
+      c.lambda[k] -= slope(k, k) * c.d[k];
+    }
+    return slope;
   }
   /// s λ − P(s λ − u) with P the identity: the velocity itself.
   template <class Item, class T>

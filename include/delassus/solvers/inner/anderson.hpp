@@ -21,7 +21,7 @@ struct History {
   }
 };
 
-inline double dot(const Array<double>& a, const Array<double>& b) {
+inline double sum_of_products(const Array<double>& a, const Array<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
@@ -63,9 +63,9 @@ void anderson(auto& problem, auto& monitor, History& h, auto&& sweep) {
     problem.gather(h.x);
     if (!monitor.goes_on(sweep())) return;
     problem.gather(h.z);
-    if (limit < 0) limit = 100 * dot(h.z, h.z);
+    if (limit < 0) limit = 100 * sum_of_products(h.z, h.z);
     for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];
-    const double size = std::sqrt(dot(h.f, h.f));
+    const double size = std::sqrt(sum_of_products(h.f, h.f));
     if (has_last && size > 2 * least) {
       problem.scatter(h.good);
       count = place = 0;
@@ -80,7 +80,7 @@ void anderson(auto& problem, auto& monitor, History& h, auto&& sweep) {
         h.change_z[place][i] = h.z[i] - h.last_z[i];
       }
       count = std::min(count + 1, depth);
-      for (int k = 0; k < count; ++k) gram[place][k] = gram[k][place] = dot(h.change_f[place], h.change_f[k]);
+      for (int k = 0; k < count; ++k) gram[place][k] = gram[k][place] = sum_of_products(h.change_f[place], h.change_f[k]);
       place = (place + 1) % depth;
     }
     std::swap(h.last_f, h.f);
@@ -88,12 +88,12 @@ void anderson(auto& problem, auto& monitor, History& h, auto&& sweep) {
     has_last = true;
     if (count == 0) continue;
     double gamma[depth];
-    for (int k = 0; k < count; ++k) gamma[k] = dot(h.change_f[k], h.last_f);
+    for (int k = 0; k < count; ++k) gamma[k] = sum_of_products(h.change_f[k], h.last_f);
     solve_gram(gram, gamma, count);
     h.x = h.last_z;
     for (int k = 0; k < count; ++k)
       for (std::size_t i = 0; i < h.x.size(); ++i) h.x[i] -= gamma[k] * h.change_z[k][i];
-    if (dot(h.x, h.x) <= limit) problem.scatter(h.x);
+    if (sum_of_products(h.x, h.x) <= limit) problem.scatter(h.x);
   }
 }
 

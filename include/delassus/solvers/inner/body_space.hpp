@@ -26,7 +26,7 @@ class BodySpace : public System {
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act.
   bool gather(auto& problem) {
     if (!System::gather(problem)) return false;
-    for (auto* array : {&y_, &change_, &residual_}) array->assign(this->blocks(), Velocity::Zero());
+    for (auto* array : {&y_, &change_, &residual_}) array->assign(this->blocks(), zero<Velocity>());
     return true;
   }
 
@@ -46,9 +46,9 @@ class BodySpace : public System {
     });
     double square = 0;
     each(problem, [&](auto, auto& c, auto& sides) {
-      c.error.setZero();
+      set_all(c.error, 0.0);
       for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, residual_[sides[s].block], c.error);
-      square += c.error.squaredNorm() / c.weight;
+      square += squared_norm(c.error) / c.weight;
     });
     return std::sqrt(square);
   }
@@ -76,7 +76,7 @@ class BodySpace : public System {
       for (int k = 0; k < System::width; ++k) change_[b][k] = -residual_[b][k];
     this->solve(change_, ends);
     each(problem, [&](auto, auto& c, auto& sides) {
-      c.move.setZero();
+      set_all(c.move, 0.0);
       for (Index s = c.first; s < c.last; ++s) add_product(sides[s].H, change_[sides[s].block], c.move);
     });
     return true;
@@ -88,7 +88,7 @@ class BodySpace : public System {
       for (int k = 0; k < System::width; ++k) y_[b][k] += fraction * change_[b][k], change_[b][k] = 0;
     each(problem, [](auto, auto& c, auto&) {
       c.velocity = c.trial;
-      c.move.setZero();
+      set_all(c.move, 0.0);
     });
   }
 
@@ -101,9 +101,8 @@ class BodySpace : public System {
     MeasureSums sums;
     each(problem, [&](auto p, auto& c, auto&) {
       constexpr int r = Rows::template rows_of<p>;
-      Local<r, T> local{Mat<r, r, T>::Zero(), own_velocity(c).template cast<T>(),
+      Local<r, T> local{diagonal_of<r>(T(c.weight)), own_velocity(c).template cast<T>(),
                         c.lambda.template cast<T>()};
-      local.W.diagonal().setConstant(T(c.weight));
       problem.template add<p>(c.item, local, sums);
     });
     error_ = std::sqrt(sums.residual);
@@ -116,7 +115,7 @@ class BodySpace : public System {
       c.velocity = own_velocity(c);
       c.centre = c.lambda;
     });
-    for (auto& y : y_) y.setZero();
+    for (auto& y : y_) set_all(y, 0.0);
   }
 
   /// λ̂ ← what the rows have now, its velocity by W; `best` stays. False when that is not finite.
@@ -126,11 +125,11 @@ class BodySpace : public System {
       const auto local = problem.template local<p>(c.item);
       c.centre = c.lambda = local.lambda.template cast<double>();
       c.velocity = local.d.template cast<double>();
-      c.error.setZero();
+      set_all(c.error, 0.0);
       is_finite = is_finite && delassus::is_finite(c.velocity);
     });
     for (auto* array : {&y_, &change_})
-      for (auto& x : *array) x.setZero();
+      for (auto& x : *array) set_all(x, 0.0);
     return is_finite;
   }
 

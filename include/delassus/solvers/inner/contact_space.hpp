@@ -53,7 +53,7 @@ class ContactSpace {
       Item item{p, i, row, R, is_cone, false, 0, 0, Mat3::Zero(), Mat3::Zero()};
       if constexpr (is_cone) item.friction = problem.book().template friction<p>(i);
       if constexpr (Problem::BookType::template kinds<p>()[0] == RowKind::equality) item.friction = -1;
-      item.w = double(problem.template local<p>(i).W.trace()) / R;
+      item.w = double(trace(problem.template local<p>(i).W)) / R;
       is_known = is_known && item.w > 0;
       items_.push_back(item);
       row += R;
@@ -145,7 +145,7 @@ class ContactSpace {
     std::size_t column = 0;
     problem.each([&](auto p, Index i) {
       constexpr int R = Rows::template rows_of<p>;
-      const double size = 1e3 * scale * R / double(problem.template local<p>(i).W.trace());
+      const double size = 1e3 * scale * R / double(trace(problem.template local<p>(i).W));
       for (int k = 0; k < R; ++k, ++column) {
         Vec<R, T> impulse = Vec<R, T>::Zero();
         impulse[k] = T(size);

@@ -135,7 +135,7 @@ class Contradiction {
       const auto c = problem_.template local<p>(i);
       const auto u = moved_by<p>(i, c);
       const auto& d = problem_.rows().template pool<p>().d[i];
-      const double w = double(c.W.trace()) / double(d.size());
+      const double w = double(trace(c.W)) / double(d.size());
       if (!(w > 0)) return;
       s.work -= double(d.dot(c.lambda));
       s.moved += double(u.squaredNorm()) / w;

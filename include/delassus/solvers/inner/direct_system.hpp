@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/linear/sparse_lu.hpp>
+#include <delassus/math/small_products.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/inner/island_matrices.hpp>
 
@@ -75,7 +76,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   bool take(const Rows& rows, Index i, bool is_bilateral) {
     constexpr int r = Rows::template rows_of<p>;
     const auto& pool = rows.template pool<p>();
-    Node node{p, r, i, Index(sides_.size()), 0, Row::Zero(), Row::Zero()};
+    Node node{p, r, i, Index(sides_.size()), 0, zero<Row>(), zero<Row>()};
     bool is_alone = true;
     for_each_index<Rows::set_count>([&](auto s) {
       constexpr int narrow = Rows::template width_of<s>;
@@ -87,9 +88,9 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
         Side& side = sides_.emplace_back();
         side.node = Index(nodes_.size());
         side.block = number(s, set.block[e]);
-        if constexpr (r < w || narrow < width) side.H.setZero(), side.G.setZero();
-        side.H.template topLeftCorner<r, narrow>() = set.H[e].template cast<double>();
-        side.G.template topLeftCorner<narrow, r>() = set.G[e].template cast<double>();
+        if constexpr (r < w || narrow < width) set_all(side.H, 0.0), set_all(side.G, 0.0);
+        for (int k = 0; k < narrow; ++k)
+          for (int j = 0; j < r; ++j) side.H(j, k) = double(set.H[e](j, k)), side.G(k, j) = double(set.G[e](k, j));
       }
     });
     node.last = Index(sides_.size());
@@ -127,7 +128,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
         if (hub_[b] >= 0)
           join_hub(A, e, hub_[b]);
         else
-          each_bilateral(b, [&](const Side& f) { A.at(e.node, f.node).noalias() += e.H * f.G; });
+          each_bilateral(b, [&](const Side& f) { A.at(e.node, f.node) += e.H * f.G; });
       });
     return A.factor();
   }
@@ -147,7 +148,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     return std::sqrt(square);
   }
   void clear() {
-    for (Row& x : x_) x.setZero();
+    for (Row& x : x_) set_all(x, 0.0);
   }
   void set_right_side(Index k, const Row& r) { x_[k] = r; }
   void solve() { matrix_->solve(x_); }
@@ -162,7 +163,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     if (hub_[e.block] >= 0) {
       for (int k = 0; k < width; ++k) x_[hub_[e.block] + k / w][k % w] += e.G(k, c);
     } else {
-      each_bilateral(e.block, [&](const Side& f) { x_[f.node].noalias() -= f.H * e.G.col(c); });
+      each_bilateral(e.block, [&](const Side& f) { x_[f.node] -= f.H * column(e.G, c); });
     }
   }
 
@@ -197,7 +198,7 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     for (Index e = node.first; e < node.last; ++e)
       for (Index f = node.first; f < node.last; ++f)
         if (sides_[e].block == sides_[f].block)
-          for (int k = 0; k < node.rows; ++k) node.scale[k] += sides_[e].H.row(k).dot(sides_[f].G.col(k));
+          for (int k = 0; k < node.rows; ++k) node.scale[k] += row_times_column(sides_[e].H, k, sides_[f].G, k);
   }
 
   /// The bilateral sides of block b are order_[start_[b]] … : a counting sort.
@@ -234,8 +235,8 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
   static void join_hub(auto& A, const Side& e, Index hub) {
     for (int k = 0; k < width; ++k) {
-      A.at(e.node, hub + k / w).col(k % w) += e.H.col(k);
-      A.at(hub + k / w, e.node).row(k % w) -= e.G.row(k);
+      auto &right = A.at(e.node, hub + k / w), &below = A.at(hub + k / w, e.node);
+      for (int j = 0; j < w; ++j) right(j, k % w) += e.H(j, k), below(k % w, j) -= e.G(k, j);
     }
   }
 

@@ -78,7 +78,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
       if (is_zero(c.slope)) return;
       for (Index s = c.first; s < c.last; ++s) {
         if (is_zero(sides[s].H)) continue;  // of a `WholeSystem` all but one
-        auto SH = std::remove_cvref_t<decltype(sides[s].H)>::Zero().eval();
+        auto SH = zero<std::remove_cvref_t<decltype(sides[s].H)>>();
         add_product(c.slope, sides[s].H, SH);
         for (Index t = c.first; t < c.last; ++t)
           add_product(sides[t].G, SH, J.at(sides[t].block, sides[s].block));
@@ -111,7 +111,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     each_until(ends, [&](auto p, auto& c, auto& sides) {
       constexpr int r = Rows::template rows_of<p>;
       weights += c.weight;
-      fastest = std::max(fastest, double(problem.rows().template pool<p>().d[c.item].squaredNorm()));
+      fastest = std::max(fastest, double(squared_norm(problem.rows().template pool<p>().d[c.item])));
       for (Index s = c.first; s < c.last; ++s) {
         double trace = 0;
         for (int k = 0; k < r; ++k)
@@ -142,7 +142,7 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   void begin(std::size_t blocks) {
     for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
     pairs_.clear();
-    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks, Velocities::value_type::Zero());
+    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks, zero<Vec<width>>());
   }
   bool finish(Index island) {
     balance();
@@ -157,12 +157,10 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     Item<r> c{};
     c.item = item;
     c.first = first;
-    c.weight = double(local.W.trace()) / r;
-    c.compliance.setZero();
+    c.weight = double(trace(local.W)) / r;
     c.best = c.centre = c.lambda = local.lambda.template cast<double>();
     c.velocity = local.d.template cast<double>();
-    c.error.setZero();
-    c.move.setZero();
+    for (Vec<r>* x : {&c.compliance, &c.error, &c.move}) set_all(*x, 0.0);
     return c;
   }
   /// Whether it has a weight.
@@ -177,8 +175,10 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
   void add_to_balance(const NewtonSide<r, width>& side, double over) {
     const auto b = std::size_t(side.block);
     for (int k = 0; k < width; ++k) {
-      unit_[b][k] += over * side.H.col(k).squaredNorm();
-      moved_[b][k] += over * side.G.row(k).squaredNorm();
+      double unit = 0, moved = 0;
+      for (int j = 0; j < r; ++j) unit += side.H(j, k) * side.H(j, k), moved += side.G(k, j) * side.G(k, j);
+      unit_[b][k] += over * unit;
+      moved_[b][k] += over * moved;
     }
   }
 
@@ -241,9 +241,9 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     each_side(pool, i, [&](auto s, Index e) {
       const auto& set = std::get<s>(pool.sets);
       constexpr int narrow = Rows::template width_of<s>;
-      NewtonSide<r, width> side{number_[s][set.block[e]], Mat<r, width>::Zero(), Mat<width, r>::Zero()};
-      side.H.template leftCols<narrow>() = set.H[e].template cast<double>();
-      side.G.template topRows<narrow>() = set.G[e].template cast<double>();
+      NewtonSide<r, width> side{number_[s][set.block[e]], zero<Mat<r, width>>(), zero<Mat<width, r>>()};
+      for (int k = 0; k < narrow; ++k)
+        for (int j = 0; j < r; ++j) side.H(j, k) = double(set.H[e](j, k)), side.G(k, j) = double(set.G[e](k, j));
       for (Index t = c.first; t < Index(sides.size()); ++t)
         if (sides[t].block != side.block) pairs_.push_back(std::minmax({sides[t].block, side.block}));
       add_to_balance(side, 1 / c.weight);
@@ -267,8 +267,8 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     for_each_index<pools>([&](auto p) {
       for (auto& side : std::get<p>(sides_)) {
         const auto b = std::size_t(side.block);
-        for (int k = 0; k < width; ++k) side.H.col(k) *= moved_[b][k];
-        side.G.array().colwise() *= unit_[b].array();
+        for (int k = 0; k < width; ++k)
+          for (int j = 0; j < Rows::template rows_of<p>; ++j) side.H(j, k) *= moved_[b][k], side.G(k, j) *= unit_[b][k];
       }
     });
   }

@@ -106,7 +106,7 @@ class SchurComplement {
         if (to.block != from.block) continue;
         for (int c = 0; c < system.node(j).rows; ++c)
           for (int r = 0; r < system.node(k).rows; ++r)
-            column(w * (j - first) + c)[w * (k - first) + r] += to.H.row(r).dot(from.G.col(c));
+            column(w * (j - first) + c)[w * (k - first) + r] += row_times_column(to.H, r, from.G, c);
       }
   }
   /// The columns of constraint j: what its impulses make the joints do, and what that does to all others.
@@ -119,10 +119,10 @@ class SchurComplement {
       system.clear();
       for (Index e = node.first; e < node.last; ++e) system.disturb(system.side(e), c);
       system.solve();
-      velocity_.assign(system.blocks(), System::Twist::Zero());
+      velocity_.assign(system.blocks(), zero<typename System::Twist>());
       for (Index k = 0; k < system.bilateral(); ++k)
         for (Index e = system.node(k).first; e < system.node(k).last; ++e)
-          velocity_[system.side(e).block].noalias() += system.side(e).G * system.answer(k);
+          velocity_[system.side(e).block] += system.side(e).G * system.answer(k);
       double* s = column(w * (j - first) + c);
       for (Index k = first; k < system.count(); ++k)
         for (Index e = system.node(k).first; e < system.node(k).last; ++e) {

@@ -41,7 +41,7 @@ class SoftenedOperator {
  private:
   template <int p>
   T added(Index i) const {
-    return share * W_.template diagonal<p>(i).trace() / T(Rows::template rows_of<p>);
+    return share * trace(W_.template diagonal<p>(i)) / T(Rows::template rows_of<p>);
   }
   Operator& W_;
 };
