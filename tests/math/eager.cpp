@@ -46,6 +46,54 @@ TEST_CASE("products of 3 × 3 matrices are Eigen's to rounding") {
   }
 }
 
+namespace {
+
+/// Entries below 1, sums of at most six products: each order of summation is within 6 roundings of the exact sum.
+template <int R, int K, int C>
+void compare_with_eigen() {
+  const Mat<R, K> A = Mat<R, K>::Random(), B = Mat<R, K>::Random();
+  const Mat<K, C> X = Mat<K, C>::Random();
+  const Mat<K, R> At = A.transpose();
+  const Mat<C, K> Xt = X.transpose();
+  const double rounding = 12 * std::numeric_limits<double>::epsilon();
+  const auto is_near = [&](const Eigen::MatrixXd& ours, const Eigen::MatrixXd& eigens) {
+    return (ours - eigens).cwiseAbs().maxCoeff() <= rounding;
+  };
+  const Eigen::MatrixXd a = A, b = B, product = Eigen::MatrixXd(A) * Eigen::MatrixXd(X);
+  REQUIRE(is_near(A * X, product));
+  REQUIRE(transposed(A) == At);
+  if constexpr (R * C > 1) {
+    REQUIRE(is_near(At.transpose() * X, product));
+    REQUIRE(is_near(A * Xt.transpose(), product));
+  }
+  REQUIRE((A + B == Mat<R, K>(a + b) && A - B == Mat<R, K>(a - b) && -A == Mat<R, K>(-a)));
+  REQUIRE((3 * A == Mat<R, K>(3 * a) && A / 7 == Mat<R, K>(a / 7)));
+  Mat<R, K> c = A;
+  c += B, c -= A, c *= 2, c /= 3;
+  REQUIRE(c == ((A + B) - A) * 2 / 3);
+  REQUIRE(std::abs(dot(A, B) - a.cwiseProduct(b).sum()) <= R * K * rounding);
+  REQUIRE(std::abs(norm(A) - a.norm()) <= R * K * rounding);
+  REQUIRE(squared_norm(A) == dot(A, A));
+  set_all(c, 0.25);
+  REQUIRE(c == Mat<R, K>(Mat<R, K>::Constant(0.25)));
+  REQUIRE(c != A);
+  REQUIRE(zero<Mat<R, K>>() == Mat<R, K>(Mat<R, K>::Zero()));
+  REQUIRE(diagonal_of<R>(2.) == Mat<R, R>(2 * Eigen::MatrixXd::Identity(R, R)));
+}
+
+}  // namespace
+
+TEST_CASE("sums and products of all small sizes are Eigen's to rounding") {
+  compare_with_eigen<1, 6, 1>();
+  compare_with_eigen<2, 6, 2>();
+  compare_with_eigen<3, 6, 3>();
+  compare_with_eigen<6, 3, 1>();
+  compare_with_eigen<5, 6, 5>();
+  compare_with_eigen<6, 6, 6>();
+  compare_with_eigen<4, 1, 4>();
+  compare_with_eigen<1, 1, 1>();
+}
+
 TEST_CASE("the inverse of a 3 × 3 matrix times the matrix is one") {
   const Mat3 A = Mat3::Random() + 3 * Mat3(Mat3::Identity());  // |A⁻¹| < 2: rows are dominated by their diagonal
   REQUIRE((inverse(A) * A - Mat3(Mat3::Identity())).cwiseAbs().maxCoeff() < 1e-14);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catch.hpp"
 
@@ -45,6 +46,17 @@ TEST_CASE("a load acts over the whole of a divided step, and a kinematic body ar
   loop.step(0.1);
   CHECK(set.velocity(pushed).x() == Approx(0.2).epsilon(1e-14));  // it acted once
   CHECK(set.position(moved) == Vec3(1, 2, 3));
+}
+
+TEST_CASE("a body that stays where it was is counted once, in however many parts") {
+  AnimationLoop loop{World{RigidBodies{}}, Substeps{4}};
+  auto& set = rigid_bodies(loop);
+  const auto sick = set.add({.mass = 2.0, .shape = Sphere{1}});
+  set.add({.position = {9, 0, 0}, .mass = 2.0, .shape = Sphere{1}});
+  set.loads()[sick.index][0] = std::numeric_limits<double>::quiet_NaN();
+  const StepReport report = loop.step(0.1);
+  CHECK(report.quarantined == 1);
+  CHECK(report.status == Status::quarantined);
 }
 
 namespace {

@@ -17,7 +17,7 @@ namespace delassus {
 /// project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds` (one RowKind a row),
 /// natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) or clamp(item, λ, memory) (into its cone), speed(item)
 /// (what its rows' velocity shall be, m/s), follow(item, world) (once a step, for what an item remembers of its pose),
-/// λ = meet(item, b, memory), what `project` does, from the free velocity b = u − W λ alone, and tangent(item, local) (for
+/// λ = solve_local(item, b, memory), what `project` does, from the free velocity b = u − W λ alone, and tangent(item, local) (for
 /// Newton's method).
 template <class L>
 concept ConstraintLaw = requires {

@@ -181,6 +181,7 @@ class Array {
   [[gnu::always_inline]] void pop_back() { --memory_.size; }
   /// Takes the elements [first, last) out; those behind them move up.
   T* erase(T* first, T* last) {
+    if (first == last) return first;
     std::memmove(static_cast<void*>(first), static_cast<const void*>(last),
                  std::size_t(end() - last) * sizeof(T));
     memory_.size -= std::size_t(last - first);

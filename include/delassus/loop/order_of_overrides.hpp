@@ -23,7 +23,13 @@ struct overridden {
 template <class Base, class F, class... Rest>
 struct overridden<Base, F, Rest...> : overridden<Base, Rest...> {};
 template <class Base, OverridesStages F, class... Rest>
-struct overridden<Base, F, Rest...> : overridden<typename F::template stages<Base>, Rest...> {};
+struct overridden<Base, F, Rest...> {
+  using Stages = typename F::template stages<Base>;
+  static constexpr bool derives = std::is_convertible_v<Stages*, Base*>;
+  static_assert(derives, "delassus: what a policy overrides derives from its parameter, or the stages of the policies below it "
+                         "are lost; write `template <class Base> struct stages : Base`");
+  using type = typename overridden<std::conditional_t<derives, Stages, Base>, Rest...>::type;
+};
 
 /// Those of O... that are not among F... yet.
 template <class Found, class... O>

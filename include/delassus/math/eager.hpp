@@ -136,13 +136,6 @@ inline Eigen::Matrix<T, R, C> operator/(const Eigen::Matrix<T, R, C>& a, S s) {
   return c;
 }
 
-template <class T>
-inline Eigen::Matrix<T, 3, 1>& operator+=(Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
-  T* x = a.data();
-  const T* y = b.data();
-  x[0] += y[0], x[1] += y[1], x[2] += y[2];
-  return a;
-}
 template <class T, int R, int C>
   requires inner::SmallSizes<R, C>
 inline Eigen::Matrix<T, R, C>& operator+=(Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
@@ -151,13 +144,6 @@ inline Eigen::Matrix<T, R, C>& operator+=(Eigen::Matrix<T, R, C>& a, const Eigen
   return a;
 }
 
-template <class T>
-inline Eigen::Matrix<T, 3, 1>& operator-=(Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
-  T* x = a.data();
-  const T* y = b.data();
-  x[0] -= y[0], x[1] -= y[1], x[2] -= y[2];
-  return a;
-}
 template <class T, int R, int C>
   requires inner::SmallSizes<R, C>
 inline Eigen::Matrix<T, R, C>& operator-=(Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
@@ -166,12 +152,6 @@ inline Eigen::Matrix<T, R, C>& operator-=(Eigen::Matrix<T, R, C>& a, const Eigen
   return a;
 }
 
-template <class T, inner::ScalarOf<T> S>
-inline Eigen::Matrix<T, 3, 1>& operator*=(Eigen::Matrix<T, 3, 1>& a, S s) {
-  T* x = a.data();
-  x[0] *= T(s), x[1] *= T(s), x[2] *= T(s);
-  return a;
-}
 template <class T, int R, int C, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
 inline Eigen::Matrix<T, R, C>& operator*=(Eigen::Matrix<T, R, C>& a, S s) {
@@ -180,12 +160,6 @@ inline Eigen::Matrix<T, R, C>& operator*=(Eigen::Matrix<T, R, C>& a, S s) {
   return a;
 }
 
-template <class T, inner::ScalarOf<T> S>
-inline Eigen::Matrix<T, 3, 1>& operator/=(Eigen::Matrix<T, 3, 1>& a, S s) {
-  T* x = a.data();
-  x[0] /= T(s), x[1] /= T(s), x[2] /= T(s);
-  return a;
-}
 template <class T, int R, int C, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
 inline Eigen::Matrix<T, R, C>& operator/=(Eigen::Matrix<T, R, C>& a, S s) {

@@ -13,7 +13,6 @@ namespace delassus {
 /// With an exact W the motion is that of `PlainOrder`; with an inexact one its error acts on the change of λ alone.
 struct PredictiveScheme {
   using plays = role::Scheme;
-  static constexpr bool predicts = true;
 
   template <class Base>
   using stages = inner::PredictiveStages<Base>;

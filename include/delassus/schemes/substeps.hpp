@@ -6,6 +6,8 @@
 #include <delassus/schemes/inner/step_parts.hpp>
 #include <delassus/step/plain_step.hpp>
 
+#include <algorithm>
+
 namespace delassus {
 
 /// Detect once, then `count` times Linearize to Advance with h/count: what falls with the step (the error of
@@ -27,10 +29,14 @@ struct Substeps {
     stage::detect(step);
     auto& parts = step.template state<role::Scheme>();
     parts.begin(step, count);
+    Index quarantined = 0;  // of one part: each names the same bodies again
     for (int left = count; left-- > 0;) {
+      step.summary.quarantined = 0;
       stage::move(step);
+      quarantined = std::max(quarantined, step.summary.quarantined);
       parts.end_part(step, left);
     }
+    step.summary.quarantined = quarantined;
   }
 };
 

@@ -45,7 +45,11 @@ template <class Policies, class... Args>
 consteval bool whole_step_fits() {
   using I = typename Policies::Integrator;
   if constexpr (!MovesAtOnce<I>) {
-    return true;
+    constexpr bool says_move =
+        !all_parts(std::type_identity<typename Policies::World>{}, []<class S>() { return !SaysWhatItMoves<I, S>; });
+    static_assert(!says_move, "delassus: an integrator that says can_move makes its step at once, by `void move(auto& step) const`, "
+                              "and this one has no such function; add it, or take can_move out");
+    return !says_move;
   } else {
     constexpr bool are_equal =
         all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return holds_exactly<L>(); });
