@@ -1,4 +1,4 @@
-/// Which islands take part in a step.
+/// The default activity: every island takes part in every step.
 #pragma once
 
 #include <delassus/core/roles.hpp>

@@ -10,7 +10,8 @@
 
 namespace delassus {
 
-/// `rows` and `Item` by type; project(item, Local<rows>&) replaces local.lambda by one that meets the law.
+/// A law has `rows` and `Item`, a type of its own by which the loop finds the law; linearize(item, world, row) writes H and φ; and
+/// project(item, Local<rows>&) replaces local.lambda by one that meets the law.
 ///
 /// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then has
 /// prepare(W, memory), or prepare(item, W, h, memory) where a cap on the force makes one on the impulse, and

@@ -99,7 +99,7 @@ class RowEnd {
   Index first_ = 0;
 };
 
-/// Writes H and φ of one item. A law never divides by h: the stabilisation alone turns φ into a rate.
+/// Writes H and φ of one item. A law never divides by h: φ becomes a rate in step/bias.hpp.
 template <class World, class Pool>
 class RowWriter {
  public:
@@ -111,7 +111,8 @@ class RowWriter {
   /// Violation of row k, m or rad.
   void phi(int k, double value) { pool_.phi[item_][k] = typename Pool::Scalar(value); }
 
-  /// Makes row k a spring with a damper, N/m and N·s/m (N·m/rad and N·m·s/rad for a row about an axis).
+  /// Makes row k a spring with a damper, N/m and N·s/m (N·m/rad and N·m·s/rad for a row about an axis). A row of kind
+  /// `friction` is one only if its law has speed(item).
   void soft(int k, double stiffness, double damping) {
     pool_.stiffness[item_][k] = typename Pool::Scalar(stiffness);
     pool_.damping[item_][k] = typename Pool::Scalar(damping);

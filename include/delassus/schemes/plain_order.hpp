@@ -1,4 +1,4 @@
-/// The order of the stages.
+/// The default scheme: Detect, then all other stages, once a step.
 #pragma once
 
 #include <delassus/core/roles.hpp>

@@ -17,7 +17,7 @@
 
 namespace delassus {
 
-/// Asks a solver to tell of every sweep.
+/// An observer that wants nothing. One with `every_sweep = true` has each sweep measured, and is called with its number and measure.
 struct NoObserver {
   static constexpr bool every_sweep = false;
   void begin_island(Index) const {}

@@ -1,4 +1,4 @@
-/// How a violated constraint is pulled back: the one place where a violation becomes a rate.
+/// How a violated rigid row is pulled back: φ becomes a rate. Open rows and springs have theirs in step/bias.hpp.
 #pragma once
 
 #include <delassus/core/roles.hpp>

@@ -11,8 +11,8 @@ namespace delassus {
 struct StepReport {
   Status status = Status::converged;
   int sweeps = 0;                 ///< of the island that took most
-  double residual = 0;            ///< err_s, largest of the islands
-  double natural_map_error = 0;       ///< err, largest of the islands
+  double residual = 0;            ///< `Measure::residual`, largest of the islands
+  double natural_map_error = 0;   ///< `Measure::siconos`, largest of the islands
   double max_penetration = 0;     ///< m, at the start of the step
   double max_joint_violation = 0; ///< m or rad, at the start of the step
   Index contacts = 0;
