@@ -31,9 +31,9 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
 
   explicit AnimationLoop(Args... policies);
 
-  /// Moves the scene by h seconds. Throws InvalidArgument when h is not finite and > 0, a number of a policy was made
+  /// Moves the scene by so many seconds. Throws InvalidArgument when they are not finite and > 0, a number of a policy was made
   /// invalid, or a body's material was never added; never for what happens inside.
-  StepReport step(double h);
+  StepReport step(double seconds);
 
   /// What a step reads and writes: for a host that calls the stages one by one, `stage::begin(loop.data(), h)` and so on.
   Data& data() { return *this; }

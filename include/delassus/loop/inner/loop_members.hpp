@@ -39,11 +39,11 @@ void AnimationLoop<Args...>::check_policies() const {
 }
 
 template <class... Args>
-StepReport AnimationLoop<Args...>::step(double h) {
+StepReport AnimationLoop<Args...>::step(double seconds) {
   if constexpr (is_sound)
     if constexpr (inner::scheme_runs<typename Data::Policies::Scheme, Data>()) {
       check_policies();  // their numbers may have been edited since
-      take_step(data(), h);
+      take_step(data(), seconds);
     }
   return report();
 }
