@@ -94,6 +94,28 @@ TEST_CASE("sums and products of all small sizes are Eigen's to rounding") {
   compare_with_eigen<1, 1, 1>();
 }
 
+TEST_CASE("matrices stored by rows stay Eigen's, and beside others are no riddle") {
+  const Mat3 A = Mat3::Random(), B = Mat3::Random();
+  const Vec3 x = Vec3::Random();
+  const auto by_rows = B.transpose().eval();
+  static_assert(decltype(by_rows)::IsRowMajor);
+  const Mat3 sum = A + by_rows, product = A * by_rows, twice = by_rows + by_rows, other = by_rows * A;
+  const Vec3 turned = by_rows * x;
+  for (int i = 0; i < 3; ++i) {
+    double of_vector = 0;
+    for (int k = 0; k < 3; ++k) {
+      double first = 0, second = 0;
+      for (int j = 0; j < 3; ++j) first += A(i, j) * B(k, j), second += B(j, i) * A(j, k);
+      of_vector += B(k, i) * x[k];
+      REQUIRE(sum(i, k) == A(i, k) + B(k, i));
+      REQUIRE(twice(i, k) == 2 * B(k, i));
+      REQUIRE(std::abs(product(i, k) - first) < 1e-15);  // three products of numbers in [−1, 1]
+      REQUIRE(std::abs(other(i, k) - second) < 1e-15);
+    }
+    REQUIRE(std::abs(turned[i] - of_vector) < 1e-15);
+  }
+}
+
 TEST_CASE("the inverse of a 3 × 3 matrix times the matrix is one") {
   const Mat3 A = Mat3::Random() + 3 * Mat3(Mat3::Identity());  // |A⁻¹| < 2: rows are dominated by their diagonal
   REQUIRE((inverse(A) * A - Mat3(Mat3::Identity())).cwiseAbs().maxCoeff() < 1e-14);

@@ -29,6 +29,14 @@ namespace inner {
 template <int... sizes>
 concept SmallSizes = ((sizes > 0 && sizes <= 6) && ...);
 
+/// With its options by name: left out they follow from R and C, and g++ would convert a matrix stored by rows to fit.
+template <class T, int R, int C, int O>
+using Fixed = Eigen::Matrix<T, R, C, O, R, C>;
+
+/// Entry (i, k) of R rows is data()[i + R k].
+template <int R, int O>
+concept ByColumns = R == 1 || !(O & Eigen::RowMajor);
+
 /// What Eigen lets a matrix be scaled by: its own scalar or an integer.
 template <class S, class T>
 concept ScalarOf = std::same_as<S, T> || std::integral<S>;
@@ -65,10 +73,10 @@ inline Eigen::Matrix<T, 3, 1> operator+(const Eigen::Matrix<T, 3, 1>& a, const E
   const T *x = a.data(), *y = b.data();
   return {x[0] + y[0], x[1] + y[1], x[2] + y[2]};
 }
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C> operator+(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
-  Eigen::Matrix<T, R, C> c;
+inline inner::Fixed<T, R, C, O> operator+(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
+  inner::Fixed<T, R, C, O> c;
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] + b.data()[i];
   return c;
@@ -79,10 +87,10 @@ inline Eigen::Matrix<T, 3, 1> operator-(const Eigen::Matrix<T, 3, 1>& a, const E
   const T *x = a.data(), *y = b.data();
   return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 }
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C> operator-(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
-  Eigen::Matrix<T, R, C> c;
+inline inner::Fixed<T, R, C, O> operator-(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
+  inner::Fixed<T, R, C, O> c;
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] - b.data()[i];
   return c;
@@ -93,10 +101,10 @@ inline Eigen::Matrix<T, 3, 1> operator-(const Eigen::Matrix<T, 3, 1>& a) {
   const T* x = a.data();
   return {-x[0], -x[1], -x[2]};
 }
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C> operator-(const Eigen::Matrix<T, R, C>& a) {
-  Eigen::Matrix<T, R, C> c;
+inline inner::Fixed<T, R, C, O> operator-(const inner::Fixed<T, R, C, O>& a) {
+  inner::Fixed<T, R, C, O> c;
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) c.data()[i] = -a.data()[i];
   return c;
@@ -107,18 +115,18 @@ inline Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 1>& a, S s) {
   const T* x = a.data();
   return {x[0] * T(s), x[1] * T(s), x[2] * T(s)};
 }
-template <class T, int R, int C, inner::ScalarOf<T> S>
+template <class T, int R, int C, int O, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C> operator*(const Eigen::Matrix<T, R, C>& a, S s) {
-  Eigen::Matrix<T, R, C> c;
+inline inner::Fixed<T, R, C, O> operator*(const inner::Fixed<T, R, C, O>& a, S s) {
+  inner::Fixed<T, R, C, O> c;
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] * T(s);
   return c;
 }
 
-template <class T, int R, int C, inner::ScalarOf<T> S>
+template <class T, int R, int C, int O, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C> operator*(S s, const Eigen::Matrix<T, R, C>& a) {
+inline inner::Fixed<T, R, C, O> operator*(S s, const inner::Fixed<T, R, C, O>& a) {
   return a * s;
 }
 
@@ -127,57 +135,57 @@ inline Eigen::Matrix<T, 3, 1> operator/(const Eigen::Matrix<T, 3, 1>& a, S s) {
   const T* x = a.data();
   return {x[0] / T(s), x[1] / T(s), x[2] / T(s)};
 }
-template <class T, int R, int C, inner::ScalarOf<T> S>
+template <class T, int R, int C, int O, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C> operator/(const Eigen::Matrix<T, R, C>& a, S s) {
-  Eigen::Matrix<T, R, C> c;
+inline inner::Fixed<T, R, C, O> operator/(const inner::Fixed<T, R, C, O>& a, S s) {
+  inner::Fixed<T, R, C, O> c;
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) c.data()[i] = a.data()[i] / T(s);
   return c;
 }
 
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C>& operator+=(Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+inline inner::Fixed<T, R, C, O>& operator+=(inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) a.data()[i] += b.data()[i];
   return a;
 }
 
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C>& operator-=(Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+inline inner::Fixed<T, R, C, O>& operator-=(inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) a.data()[i] -= b.data()[i];
   return a;
 }
 
-template <class T, int R, int C, inner::ScalarOf<T> S>
+template <class T, int R, int C, int O, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C>& operator*=(Eigen::Matrix<T, R, C>& a, S s) {
+inline inner::Fixed<T, R, C, O>& operator*=(inner::Fixed<T, R, C, O>& a, S s) {
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) a.data()[i] *= T(s);
   return a;
 }
 
-template <class T, int R, int C, inner::ScalarOf<T> S>
+template <class T, int R, int C, int O, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
-inline Eigen::Matrix<T, R, C>& operator/=(Eigen::Matrix<T, R, C>& a, S s) {
+inline inner::Fixed<T, R, C, O>& operator/=(inner::Fixed<T, R, C, O>& a, S s) {
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) a.data()[i] /= T(s);
   return a;
 }
 
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline bool operator==(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+inline bool operator==(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
   bool is_equal = true;
   for (int i = 0; i < R * C; ++i) is_equal &= a.data()[i] == b.data()[i];
   return is_equal;
 }
-template <class T, int R, int C>
+template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
-inline bool operator!=(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
+inline bool operator!=(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
   return !(a == b);
 }
 
@@ -190,9 +198,9 @@ template <class T>
           inner::row_times(a[2], a[5], a[8], b)};
 }
 /// A B.
-template <class T, int R, int K, int C>
-  requires inner::SmallSizes<R, K, C>
-inline Eigen::Matrix<T, R, C> operator*(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, K, C>& B) {
+template <class T, int R, int K, int C, int O, int P>
+  requires inner::SmallSizes<R, K, C> && inner::ByColumns<R, O> && inner::ByColumns<K, P>
+inline Eigen::Matrix<T, R, C> operator*(const inner::Fixed<T, R, K, O>& A, const inner::Fixed<T, K, C, P>& B) {
   Eigen::Matrix<T, R, C> Y;
   inner::set_product<R, K, C>(A.data(), B.data(), Y.data());
   return Y;
@@ -212,9 +220,9 @@ inline Eigen::Matrix<T, C, R> transposed(const Eigen::Matrix<T, R, C>& A) {
 }
 
 /// Aᵀ B and A Bᵀ of Eigen's view; xᵀ y stays with Eigen, where it is a number.
-template <class M, class T, int K, int C, int R = int(M::ColsAtCompileTime)>
-  requires inner::Plain<M, T, K, R> && inner::SmallSizes<C> && (R * C > 1)
-inline Eigen::Matrix<T, R, C> operator*(const Eigen::Transpose<M>& At, const Eigen::Matrix<T, K, C>& B) {
+template <class M, class T, int K, int C, int O, int R = int(M::ColsAtCompileTime)>
+  requires inner::Plain<M, T, K, R> && inner::SmallSizes<C> && inner::ByColumns<K, O> && (R * C > 1)
+inline Eigen::Matrix<T, R, C> operator*(const Eigen::Transpose<M>& At, const inner::Fixed<T, K, C, O>& B) {
   Eigen::Matrix<T, R, C> Y;
   const T *a = At.nestedExpression().data(), *b = B.data();
   DELASSUS_UNROLL
@@ -229,9 +237,9 @@ inline Eigen::Matrix<T, R, C> operator*(const Eigen::Transpose<M>& At, const Eig
   }
   return Y;
 }
-template <class M, class T, int R, int K, int C = int(M::RowsAtCompileTime)>
-  requires inner::Plain<M, T, C, K> && inner::SmallSizes<R> && (R * C > 1)
-inline Eigen::Matrix<T, R, C> operator*(const Eigen::Matrix<T, R, K>& A, const Eigen::Transpose<M>& Bt) {
+template <class M, class T, int R, int K, int O, int C = int(M::RowsAtCompileTime)>
+  requires inner::Plain<M, T, C, K> && inner::SmallSizes<R> && inner::ByColumns<R, O> && (R * C > 1)
+inline Eigen::Matrix<T, R, C> operator*(const inner::Fixed<T, R, K, O>& A, const Eigen::Transpose<M>& Bt) {
   Eigen::Matrix<T, R, C> Y;
   const T *a = A.data(), *b = Bt.nestedExpression().data();
   DELASSUS_UNROLL
