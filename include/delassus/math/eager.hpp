@@ -104,10 +104,7 @@ inline Eigen::Matrix<T, 3, 1> operator-(const Eigen::Matrix<T, 3, 1>& a) {
 template <class T, int R, int C, int O>
   requires inner::SmallSizes<R, C>
 inline inner::Fixed<T, R, C, O> operator-(const inner::Fixed<T, R, C, O>& a) {
-  inner::Fixed<T, R, C, O> c;
-  DELASSUS_UNROLL
-  for (int i = 0; i < R * C; ++i) c.data()[i] = -a.data()[i];
-  return c;
+  return a * T(-1);
 }
 
 template <class T, inner::ScalarOf<T> S>
@@ -183,12 +180,6 @@ inline bool operator==(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, 
   for (int i = 0; i < R * C; ++i) is_equal &= a.data()[i] == b.data()[i];
   return is_equal;
 }
-template <class T, int R, int C, int O>
-  requires inner::SmallSizes<R, C>
-inline bool operator!=(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
-  return !(a == b);
-}
-
 /// A x, written out.
 template <class T>
 [[gnu::always_inline]] inline Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 3>& A,
