@@ -98,7 +98,7 @@ FrictionProblem cluster() {
   std::vector<Touch> touches;
   for (int k = 0; k < 4; ++k) {
     const double mass = std::exp(draw(-2, 2));
-    const Vec3 x = vector(2), v = vector(1), size(draw(0.3, 2), draw(0.3, 2), draw(0.3, 2));
+    const Vec3 x = vector(2), v = vector(1), size{draw(0.3, 2), draw(0.3, 2), draw(0.3, 2)};  // braces: from left to right
     bodies.push_back({mass, x, v, size});
   }
   for (int k = 0; k < 7; ++k) {

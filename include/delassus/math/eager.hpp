@@ -101,12 +101,6 @@ inline Eigen::Matrix<T, 3, 1> operator-(const Eigen::Matrix<T, 3, 1>& a) {
   const T* x = a.data();
   return {-x[0], -x[1], -x[2]};
 }
-template <class T, int R, int C, int O>
-  requires inner::SmallSizes<R, C>
-inline inner::Fixed<T, R, C, O> operator-(const inner::Fixed<T, R, C, O>& a) {
-  return a * T(-1);
-}
-
 template <class T, inner::ScalarOf<T> S>
 inline Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 1>& a, S s) {
   const T* x = a.data();
@@ -125,6 +119,12 @@ template <class T, int R, int C, int O, inner::ScalarOf<T> S>
   requires inner::SmallSizes<R, C>
 inline inner::Fixed<T, R, C, O> operator*(S s, const inner::Fixed<T, R, C, O>& a) {
   return a * s;
+}
+
+template <class T, int R, int C, int O>
+  requires inner::SmallSizes<R, C>
+inline inner::Fixed<T, R, C, O> operator-(const inner::Fixed<T, R, C, O>& a) {
+  return a * T(-1);
 }
 
 template <class T, inner::ScalarOf<T> S>
@@ -180,6 +180,12 @@ inline bool operator==(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, 
   for (int i = 0; i < R * C; ++i) is_equal &= a.data()[i] == b.data()[i];
   return is_equal;
 }
+template <class T, int R, int C, int O>
+  requires inner::SmallSizes<R, C>
+inline bool operator!=(const inner::Fixed<T, R, C, O>& a, const inner::Fixed<T, R, C, O>& b) {
+  return !(a == b);
+}
+
 /// A x, written out.
 template <class T>
 [[gnu::always_inline]] inline Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 3>& A,
@@ -266,8 +272,7 @@ inline T squared_norm(const Eigen::Matrix<T, R, C>& a) {
 }
 template <class T, int R, int C>
 inline T norm(const Eigen::Matrix<T, R, C>& a) {
-  using std::sqrt;
-  return sqrt(dot(a, a));
+  return std::sqrt(dot(a, a));
 }
 
 /// Sets every entry.
