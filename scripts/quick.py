@@ -6,8 +6,9 @@
     scripts/quick.py --write            writes tests/zero_cost/counts.txt anew, and checks nothing
 
 In this order: rooms and levels; each changed header alone; a wrong program of each role; memory and functions of examples/stack.cpp; then
-the programs are built: the traces (tests/trace), the steps that are counted, warm steps without allocation, and the tests nearest to
-the change; then they run. Each line says what it checked, how long it took and what it found; exit code 1 if anything is wrong.
+the programs are built: the traces (tests/trace; for laws alone those of contacts, joints, particles and problems), the steps that are
+counted, warm steps without allocation, and the tests nearest to the change; then they run. Each line says what it checked, how long it
+took and what it found; exit code 1 if anything is wrong.
 """
 import argparse
 import os
@@ -29,6 +30,7 @@ ONE_A_ROLE = ("bodies_of_no_set integrator_without_advance collision_without_det
               "law_without_linearize stabilisation_without_equality solver_without_solve scheme_without_run "
               "listener_without_after policy_without_role contact_of_nothing item_without_ends").split()
 MOST_TESTS = 6  # of those nearest to the change; scripts/tests_of.py runs the rest
+LAW_TRACES, LAW_TESTS = ("contacts", "joints", "particles", "problems"), 3  # a law's rows are all made and solved in these
 MORE = {"instructions": 1.02, "MB": 1.03, "functions": 1.0}  # than the count that is stored
 
 
@@ -150,11 +152,11 @@ def program_check(path, *words):
     return check
 
 
-def near(headers, tests):
+def near(headers, tests, most):
     """The tests to run, nearest first, and how many more reach the headers."""
     found = [source for hops, source in tests_of(headers) if hops is not None] if headers else []
     chosen = list(dict.fromkeys([*tests, *found]))
-    return chosen[:max(MOST_TESTS, len(tests))], len(chosen) - min(len(chosen), max(MOST_TESTS, len(tests)))
+    return chosen[:max(most, len(tests))], len(chosen) - min(len(chosen), max(most, len(tests)))
 
 
 def main():
@@ -196,7 +198,11 @@ def main():
     traces = sorted(path.stem for path in (ROOT / "tests/trace").glob("*.cpp"))
     if not options.all:
         traces = [name for name in traces if not name.endswith("_more")]
-    near_tests, left = near(headers, tests)
+    is_law = headers and not options.all and all(re.match("constraints/(contact|joints)/", name) for name in headers)
+    if is_law:
+        print(f"only laws were changed: the traces {', '.join(name for name in traces if name not in LAW_TRACES)} are left out")
+        traces = [name for name in traces if name in LAW_TRACES]
+    near_tests, left = near(headers, tests, LAW_TESTS if is_law else MOST_TESTS)
     programs = {**{f"trace_{name}": ("--data", ROOT / "tests/trace/data") for name in traces}, "one_no_allocation": (),
                 **{target_of(source): () for source in near_tests}}
     examples = [f"example_{path.stem}" for path in sorted((ROOT / "examples").glob("*.cpp"))] if options.all else []

@@ -1,5 +1,10 @@
 // The coordinates of free axes: their rates against differences, and turns counted beyond one.
-#include <delassus/delassus.hpp>
+#include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/constraints/joints/coordinate.hpp>
+#include <delassus/constraints/joints/drive.hpp>
+#include <delassus/constraints/joints/hinge.hpp>
+#include <delassus/constraints/joints/motor.hpp>
+#include <delassus/loop/animation_loop.hpp>
 
 #include <cmath>
 #include <numbers>

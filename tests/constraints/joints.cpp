@@ -1,5 +1,13 @@
 // What every joint owes: H is the derivative of φ in every pose, and its rank is what the joint takes away.
-#include <delassus/delassus.hpp>
+#include <delassus/bodies/anchor_at.hpp>
+#include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/constraints/joints/cylindrical.hpp>
+#include <delassus/constraints/joints/hinge.hpp>
+#include <delassus/constraints/joints/planar.hpp>
+#include <delassus/constraints/joints/point_on_line.hpp>
+#include <delassus/constraints/joints/slider.hpp>
+#include <delassus/constraints/joints/universal.hpp>
+#include <delassus/constraints/joints/weld.hpp>
 
 #include <algorithm>
 #include <numbers>

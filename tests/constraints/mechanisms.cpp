@@ -1,6 +1,18 @@
 // Joints as machines: a pendulum's period and its order, a slider-crank, two boxes welded to one, single
 // precision.
-#include <delassus/delassus.hpp>
+#include <delassus/bodies/anchor_at.hpp>
+#include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/bodies/world.hpp>
+#include <delassus/compliance/matrix_free.hpp>
+#include <delassus/constraints/joints/ball_joint.hpp>
+#include <delassus/constraints/joints/cylindrical.hpp>
+#include <delassus/constraints/joints/hinge.hpp>
+#include <delassus/constraints/joints/motor.hpp>
+#include <delassus/integrators/implicit_midpoint.hpp>
+#include <delassus/loop/animation_loop.hpp>
+#include <delassus/math/rotation.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/stabilisation/position_projection.hpp>
 
 #include <algorithm>
 #include <cmath>

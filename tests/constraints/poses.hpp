@@ -1,7 +1,12 @@
 /// Bodies of every kind at random poses, and the rows that a law writes there, as a dense matrix.
 #pragma once
 
-#include <delassus/delassus.hpp>
+#include <delassus/bodies/particles.hpp>
+#include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/bodies/world.hpp>
+#include <delassus/rows/anchor.hpp>
+#include <delassus/rows/pool_rows.hpp>
+#include <delassus/rows/writer.hpp>
 
 #include <algorithm>
 #include <random>

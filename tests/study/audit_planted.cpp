@@ -2,8 +2,6 @@
 #include "catch.hpp"
 #include "study/planted.hpp"
 
-#include <delassus/constraints/joints/hinge.hpp>
-#include <delassus/constraints/joints/limit.hpp>
 #include <delassus/solvers/proximal_newton.hpp>
 
 #include <cmath>

@@ -1,9 +1,6 @@
 #include "catch.hpp"
 #include "study/planted.hpp"
 
-#include <delassus/constraints/joints/hinge.hpp>
-#include <delassus/constraints/joints/limit.hpp>
-
 namespace audit_savings_tests {
 
 using namespace planted;

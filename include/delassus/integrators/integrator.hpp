@@ -45,7 +45,7 @@ namespace inner {
 /// p += f(q, v), and all of it times h: N·s.
 void kick(const auto& set, auto& p, double h) {
   set.add_forces(p);
-  times(p, h);
+  for (const Index b : set.active()) p[b] *= h;
 }
 
 }  // namespace inner

@@ -17,6 +17,7 @@ struct OneBlock {
   Index b;
   Velocity v_next;
 
+  std::array<Index, 1> active() const { return {0}; }  // the only place of p
   void add_forces(std::array<Velocity, 1>& p) const { blocks.add_force(b, p[0]); }
   void add_mass_times_velocity(std::array<Velocity, 1>& p, double s) const {
     blocks.add_mass_times_velocity(b, p[0], s);
@@ -52,15 +53,14 @@ inline constexpr bool steps_by_block<World<Sets...>> = true;
 /// Calls f(block, b), block.v_next = v + A⁻¹ p, for every block of a set.
 template <class Set, class I, class F>
 void each_kicked(Set& set, const I& integrator, double h, F&& f) {
-  using Velocity = typename Set::Velocity;
   auto blocks = set.by_block(integrator.scale(h));
   for (const Index b : set.active()) {
-    OneBlock<decltype(blocks), Velocity> block{blocks, b, {}};
+    OneBlock<decltype(blocks), typename Set::Velocity> block{blocks, b, {}};
     if (!blocks.moves(b)) [[unlikely]] {
       block.v_next = blocks.velocity(b);
     } else {
-      std::array<Velocity, 1> p;
-      set_all(p[0], typename Velocity::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
+      std::array<typename Set::Velocity, 1> p;
+      set_all(p[0], typename Set::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
       integrator.impulse(block, p, h);
       block.v_next = blocks.velocity(b) + blocks.solve(b, p[0]);
     }
