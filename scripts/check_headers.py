@@ -3,7 +3,7 @@
 
     scripts/check_headers.py [ROOT] --compiler g++ clang++ --system /usr/include/eigen3 [--absent fcl] [--cache DIR] [--only HEADER...]
 
-The first compiler sees the header alone; some of what the header reaches, and no more, it finds precompiled. A clang after it
+The first compiler sees the header alone; what the header reaches of Eigen, and no more, it finds precompiled. A clang after it
 is asked for what it alone refuses: it starts from a precompiled Eigen and gets sixteen headers at a time, and only where it
 refuses them each by itself.
 
@@ -37,18 +37,10 @@ def closure(include, header, seen):
     return seen
 
 
-def starts_of(include, headers):
-    """What each header may start from: the Eigen it reaches, or the largest other header that it and eleven more reach."""
-    reached = {header: closure(include, header, set()) for header in headers}
-    starts = {}
-    for start in sorted(headers, key=lambda header: (-len(reached[header]), header)):
-        users = [header for header in headers if header not in starts and header != start and start in reached[header]]
-        if len(users) >= 12:
-            starts.update(dict.fromkeys(users, (start,)))
-    for header in headers:
-        texts = [(include / part).read_text(encoding="utf-8") for part in reached[header]]
-        starts.setdefault(header, tuple(sorted({name for text in texts for name in EIGEN.findall(text)})))
-    return starts
+def eigen_of(include, header):
+    """The headers of Eigen that `header` reaches, sorted."""
+    texts = [(include / part).read_text(encoding="utf-8") for part in closure(include, header, set())]
+    return tuple(sorted({name for text in texts for name in EIGEN.findall(text)}))
 
 
 def stamp_of(include, header, command):
@@ -84,7 +76,7 @@ def compile_batch(include, headers, command, head_start, cache):
 
 
 def precompiled(folder, command, version, names):
-    """Flags by which this compiler starts from these headers, precompiled."""
+    """Flags by which this compiler starts from these headers of Eigen, precompiled."""
     source = Path(folder) / (hashlib.sha256(repr((command, names)).encode()).hexdigest()[:8] + ".hpp")
     source.write_text("".join(f"#include <{name}>\n" for name in names))
     is_clang = "clang" in version
@@ -111,10 +103,10 @@ def check(include, compilers, system, absent, cache, jobs, only=None):
             head_start = precompiled(folder.name, command, version, ["Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"])
             tasks += [(compiler, headers[k:k + 16], command, head_start) for k in range(0, len(headers), 16)]
             continue
-        by_start = {}
-        for header, names in starts_of(include, headers).items():
-            by_start.setdefault(names, []).append(header)
-        for names, those in by_start.items():
+        by_eigen = {}
+        for header in headers:
+            by_eigen.setdefault(eigen_of(include, header), []).append(header)
+        for names, those in by_eigen.items():
             # Precompiling takes as long as two headers do.
             head_start = precompiled(folder.name, command, version, names) if names and len(those) > 3 else []
             tasks += [(compiler, [header], command, head_start) for header in those]
