@@ -2,10 +2,11 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
-#include <delassus/compliance/inner/block_row.hpp>
 #include <delassus/compliance/inner/incidence.hpp>
 #include <delassus/compliance/inner/nodal_rows.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/rows/block_row.hpp>
+#include <delassus/rows/show_rows.hpp>
 
 #include <tuple>
 #include <type_traits>
@@ -115,18 +116,18 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     return Vec<Rows::template rows_of<p>, T>(others<p>(rows, i).template cast<T>());
   }
 
-  /// Its first row, of three.
+  /// The arrays that a solver reads of row p.
   template <int p>
-  requires(Rows::template rows_of<p> == 3) T free_normal_velocity(const Rows& rows, Index i)
-  const {
-    double sum = double(rows.template pool<p>().d[i][0]);
+  void show(const Rows& rows, RowView<T>& view, SetBlocksView<T>*, BlockRowsView<T>* out) const {
+    view.form = FormOfW::square_blocks;
+    view.diagonal = inner::numbers_of(std::get<p>(diagonal_));
     for_each_index<pools>([&](auto b) {
       const auto& W = std::get<b>(std::get<p>(blocks_));
-      const Index first = W.start[i];
-      sum += inner::first_of_row(W.start[i + 1] - first, W.block.data() + first, W.column.data() + first,
-                                 rows.template pool<b>().lambda.data());
+      if (W.block.empty()) return;
+      if (R_of<b> != R_of<p>) view.form = FormOfW::blocks;
+      out[view.block_rows++] = {W.start.data(), W.column.data(), inner::numbers_of(W.block),
+                                inner::numbers_of(rows.template pool<b>().lambda), R_of<b>};
     });
-    return T(sum);
   }
 
   static constexpr bool commit_is_free = true;
@@ -168,12 +169,17 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     Vec<Rows::template rows_of<p>, Sum> r = rows.template pool<p>().d[i].template cast<Sum>();
     for_each_index<pools>([&](auto b) {
       const auto& W = std::get<b>(std::get<p>(blocks_));
-      const Index first = W.start[i], count = W.start[i + 1] - first;
-      inner::add_row(r, count, W.block.data() + first, W.column.data() + first,
-                     rows.template pool<b>().lambda.data());
+      const T* x = inner::numbers_of(rows.template pool<b>().lambda);
+      if constexpr (R_of<p> == R_of<b>)
+        inner::add_row<R_of<p>>(r.data(), W.start[i], W.start[i + 1], inner::numbers_of(W.block), W.column.data(), x);
+      else
+        inner::add_wide_row<R_of<p>>(r.data(), W.start[i], W.start[i + 1], inner::numbers_of(W.block), W.column.data(), x, R_of<b>);
     });
     return r;
   }
+
+  template <int p>
+  static constexpr int R_of = Rows::template rows_of<p>;
 
   template <class Set>
   static constexpr bool couples = Inverse::is_whole && inner::may_couple<std::remove_cvref_t<Set>>;

@@ -50,6 +50,17 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     return is_whole_ ? matrix_.template diagonal<p>(i) : bodies_.template diagonal<p>(i);
   }
 
+  /// The arrays that a solver reads of row p.
+  template <int p>
+  void show(const Rows& rows, RowView<T>& view, SetBlocksView<T>* sets, BlockRowsView<T>* blocks) {
+    matrix_.template show<p>(rows, view, sets, blocks);
+    if (is_whole_) return;
+    const FormOfW of_blocks = view.form;
+    bodies_.template show<p>(rows, view, sets, blocks);
+    view.form = has_crowded_ ? FormOfW::mixed : of_blocks;
+    view.crowded = kinds_[p].data();
+  }
+
   template <int p>
   [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     return is_crowded<p>(i) ? bodies_.template residual<p>(rows, i) : matrix_.template residual<p>(rows, i);
@@ -75,9 +86,6 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   }
 
  private:
-  struct Kind {
-    bool is_crowded, meets_crowded;  ///< meets: one of its bodies is one of a crowded item
-  };
   struct Block {
     Index rows;
     bool is_crowded;
@@ -121,7 +129,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   AssembledCompliance::Operator<Rows> matrix_;
   MatrixFreeCompliance::Operator<Rows> bodies_;
   std::array<Array<Block>, Rows::set_count> blocks_;
-  std::array<Array<Kind>, pools> kinds_;
+  std::array<Array<CrowdedRow>, pools> kinds_;
   bool is_whole_ = false, has_crowded_ = false;
 };
 

@@ -4,6 +4,7 @@
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/rows/show_rows.hpp>
 
 #include <tuple>
 
@@ -46,6 +47,15 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   template <int p>
   const auto& diagonal(Index i) const {
     return std::get<p>(diagonal_)[i];
+  }
+
+  /// The arrays that a solver reads of row p.
+  template <int p>
+  void show(const Rows&, RowView<T>& view, SetBlocksView<T>* sets, BlockRowsView<T>*) {
+    view.form = FormOfW::bodies;
+    view.diagonal = inner::numbers_of(std::get<p>(diagonal_));
+    view.on_diagonal = inner::numbers_of(std::get<p>(compliance_));
+    std::apply([&](auto&... y) { ((sets++->y = inner::numbers_of(y)), ...); }, y_);
   }
 
   template <int p>

@@ -108,7 +108,7 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
     auto& problem = slot.snapshot.problem;
     if (!slot.tool.take(loop.world(), problem, coupling_)) return;
     slot.book.prepare(problem.W, problem.rows, problem.h);
-    slot.workspace.reset(problem.rows);
+    slot.workspace.reset(problem.rows.row_count());
     slots_.publish();
   }
 
@@ -142,7 +142,7 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
   struct Slot {
     Snapshot<Problem> snapshot;
     inner::ToolRows<Problem> tool;
-    LawSet<Laws, T> book{snapshot.problem.laws};
+    LawSet<Laws, T, inner::needs_of<Timed>> book{snapshot.problem.laws};
     typename Timed::template Workspace<Rows> workspace;
   };
 
@@ -150,7 +150,7 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
     auto& problem = slot.snapshot.problem;
     NoObserver nobody;
     IslandProblem island(slot.book, problem.rows, problem.W, problem.islands, slot.tool.island(), problem.h, nobody);
-    slot.workspace.reset(problem.rows);  // the sizes are right: only the clock starts anew
+    slot.workspace.reset(problem.rows.row_count());  // the sizes are right: only the clock starts anew
     return Timed{parameters_.solver, parameters_.budget, parameters_.clock}.solve(island, slot.workspace);
   }
 

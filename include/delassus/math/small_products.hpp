@@ -18,6 +18,16 @@ inline void add_product(const Mat<r, k, T>& A, const Mat<k, c, T>& B, Mat<r, c, 
     }
 }
 
+/// The same of numbers by columns, of sizes that are known at run time: r × k times k × c.
+template <class T>
+[[gnu::always_inline]] inline void add_product(int r, int k, int c, const T* A, const T* B, T* C) {
+  for (int column = 0; column < c; ++column)
+    for (int j = 0; j < k; ++j) {
+      const T b = B[k * column + j];
+      for (int i = 0; i < r; ++i) C[r * column + i] += A[r * j + i] * b;
+    }
+}
+
 /// (A B)_ij alone.
 template <int r, int k, int c, class T>
 inline T row_times_column(const Mat<r, k, T>& A, int i, const Mat<k, c, T>& B, int j) {

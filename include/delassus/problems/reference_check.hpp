@@ -53,21 +53,14 @@ struct ReferenceCheck {
 
 namespace inner {
 
-/// f(p, i, local problem, |F|) for every constraint of every island.
+/// f(p, i, |F|) for every constraint of every island.
 template <class Laws, class Rows, class Operator, class F>
 void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
   LawSet<Laws, typename Rows::Scalar> book(problem.laws);
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
-  NoObserver nobody;
-  for (Index k = 0; k < problem.islands.count(); ++k) {
-    IslandProblem island(book, problem.rows, problem.W, problem.islands, k, problem.h, nobody);
-    island.each([&](auto p, Index i) {
-      const auto c = island.template local<p>(i);
-      const auto weight = trace(c.W) / typename Rows::Scalar(Rows::template rows_of<p>);
-      f(p, i, c, double(book.template natural_map<p>(i, c, weight).norm()));
-    });
-  }
+  for (Index k = 0; k < problem.islands.count(); ++k)
+    each_item(problem.islands, k, [&](auto p, Index i) { f(p, i, book.natural_error(p, i)); });
 }
 
 /// Of the λ in the problem, the worst island's.
@@ -146,16 +139,16 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
     const Measure end = inner::measure_of(other);
     check.reached = check.reference.status == Status::converged && end.residual <= tolerance + end.floor;
 
-    inner::each_local(mine, [&](auto p, Index i, const auto&, double residual) {
+    inner::each_local(mine, [&](auto p, Index i, double residual) {
       check.constraints.push_back({.pool = int(p), .item = i, .residual = residual});
     });
     std::size_t next = 0;
-    inner::each_local(other, [&](auto p, Index i, const auto& c, double residual) {
+    inner::each_local(other, [&](auto p, Index i, double residual) {
       ReferenceDifference& difference = check.constraints[next++];
-      const auto apart = (mine.W.template residual<p>(mine.rows, i) - c.d).eval();
+      const auto apart = (mine.W.template residual<p>(mine.rows, i) - other.W.template residual<p>(other.rows, i)).eval();
       difference.velocity = double(apart.norm());
-      difference.energy = inner::energy_of(c.W, apart);
-      difference.impulse = double((mine.rows.template pool<p>().lambda[i] - c.lambda).norm());
+      difference.energy = inner::energy_of(other.W.template diagonal<p>(i), apart);
+      difference.impulse = double((mine.rows.template pool<p>().lambda[i] - other.rows.template pool<p>().lambda[i]).norm());
       difference.reference_residual = residual;
       // A velocity that is no number differs most of all.
       if (!(difference.velocity <= check.velocity)) check.velocity = difference.velocity;

@@ -3,6 +3,7 @@
 
 #include <delassus/rows/pool_rows.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <tuple>
@@ -29,6 +30,9 @@ struct RowSystem<T, Widths<w...>, R...> {
   static constexpr int rows_of = std::array<int, sizeof...(R) + 1>{R..., 0}[p];
   template <int s>
   static constexpr int width_of = std::array<int, sizeof...(w) + 1>{w..., 0}[s];
+
+  /// The most velocities per block, and rows per item.
+  static constexpr int widest = std::max({0, w...}), highest = std::max({0, R...});
 
   std::tuple<PoolRows<R, T, w...>...> pools;
 

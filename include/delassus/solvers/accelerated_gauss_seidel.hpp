@@ -11,12 +11,43 @@
 #include <delassus/solvers/inner/extrapolate_to_cone_boundary.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/newton_stage.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace delassus {
+namespace inner {
+
+/// Room for accelerated sweeps.
+template <class T, class Newton>
+struct SweepSpace {
+  Array<T> x, best;
+  History history;
+  [[no_unique_address]] Newton newton;
+  void reset(Index rows) {
+    for (auto* impulses : {&x, &best}) impulses->reserve(std::size_t(rows));
+    history.each([rows](Array<double>& v) { v.reserve(std::size_t(rows)); });
+    newton.reserve(std::size_t(rows));
+  }
+};
+
+/// Sweeps that tell how their change lies to the one before.
+template <class T>
+struct ExactSweep {
+  Island<T>& island;
+  double relaxation;
+  bool tells_change;
+  double operator()(const Array<T>& x, double& curvature) const { return island.sweep(relaxation, x, curvature, tells_change); }
+};
+template <class T>
+struct OneProjection {
+  Island<T>& island;
+  double operator()(const Array<T>& x, double& curvature) const { return island.project_once(x, curvature); }
+};
+
+}  // namespace inner
 
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
 ///
@@ -53,17 +84,10 @@ struct BasicAcceleratedGaussSeidel {
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
 
+  static constexpr Needs needs = Newton::needs;
   template <class Rows>
-  struct Workspace {
-    Impulses<Rows> x, best;
-    inner::History history;
-    [[no_unique_address]] typename Newton::template Space<Rows> newton;
-    void reset(const Rows& rows) {
-      for (auto* set : {&x, &best}) set->resize_like(rows);
-      history.each([&](Array<double>& v) { v.reserve(std::size_t(rows.row_count())); });
-      newton.resize_like(rows);
-    }
-  };
+  using Workspace =
+      inner::SweepSpace<typename Rows::Scalar, typename Newton::template Space<typename Rows::Scalar, Rows::widest>>;
 
   void check() const {
     inner::expect_at_least_zero("AcceleratedGaussSeidel: tolerance", tolerance);
@@ -76,8 +100,8 @@ struct BasicAcceleratedGaussSeidel {
   /// where it does not go round in circles it has three times as many once more, after the mixing.
   static int first_patience(int rows) { return std::clamp(3 * rows, 100, 400); }
 
-  template <class Problem, class Space>
-  SolveReport solve(Problem& problem, Space& work) const;
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const;
 
  private:
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell: of
@@ -91,17 +115,13 @@ struct BasicAcceleratedGaussSeidel {
 };
 
 template <class Criterion, class Newton>
-template <class Problem, class Space>
-SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& problem, Space& work) const {
-  inner::ConvergenceMonitor<Criterion, BasicAcceleratedGaussSeidel, Problem, decltype(work.best)> monitor(
-      *this, problem, work.best);
+template <class T, class Space>
+SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Island<T>& problem, Space& work) const {
+  inner::ConvergenceMonitor<Criterion, BasicAcceleratedGaussSeidel, Island<T>, Array<T>> monitor(*this, problem, work.best);
   if (!monitor.begin()) return monitor.finish();
-  const auto exact = [&](auto&... curvature) {
-    return problem.template sweep<!Criterion::needs_measure>(relaxation, curvature...);
-  };
-  const auto one_projection = [&](auto& x, double& curvature) {
-    return problem.project_once(x, curvature);
-  };
+  const auto plain = [&] { return problem.sweep(relaxation, !Criterion::needs_measure); };
+  const inner::ExactSweep<T> exact{problem, relaxation, !Criterion::needs_measure};
+  const inner::OneProjection<T> one_projection{problem};
   auto newton = Newton::template stage<Criterion>(*this, problem, monitor, work.newton);
   const int shortest = first_patience(problem.row_count());
   for (int patience = shortest;; patience *= 2) {
@@ -111,7 +131,7 @@ SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& probl
       monitor.open(name, factor * patience);
       return true;
     };
-    const auto momentum = [&](const char* name, int factor, auto& sweep) {
+    const auto momentum = [&](const char* name, int factor, const auto& sweep) {
       if (!open(name, factor)) return false;
       for (;;) {
         const bool circles =
@@ -131,8 +151,8 @@ SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Problem& probl
     }
     if (inner::contradicts(problem, monitor, work.x))
       return inner::compromise(problem, monitor.finish(), work.best, work.x);
-    if (open("anderson", 1) && settle(monitor, exact))
-      inner::anderson(problem, monitor, work.history, exact);
+    if (open("anderson", 1) && settle(monitor, plain))
+      inner::anderson(problem, monitor, work.history, plain);
     if (!is_in_circles) momentum("momentum", 3, exact);
     momentum("projection", 4, one_projection);
     momentum("patient", 10, exact);

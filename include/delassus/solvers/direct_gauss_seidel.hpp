@@ -9,9 +9,10 @@
 #include <delassus/solvers/inner/compromise.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
+#include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/inner/schur_complement.hpp>
 #include <delassus/solvers/inner/sweeps_then_newton.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <cmath>
@@ -46,15 +47,20 @@ struct BasicDirectGaussSeidel {
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
 
+  static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
   struct Workspace {
-    inner::DirectSystem<Rows> joints;
-    inner::SchurComplement<Rows> others;
-    Impulses<Rows> before, after;
+    using T = typename Rows::Scalar;
+    static_assert(Rows::widest > 0,
+                  "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
+                  "solve it by AcceleratedGaussSeidel");
+    inner::DirectSystem<std::max(1, Rows::highest), std::max(1, Rows::widest)> joints;
+    inner::SchurComplement<T, decltype(joints)> others;
+    Array<T> before, after;
     typename inner::SweepsThenNewton<Criterion>::template Workspace<Rows> contacts;
-    void reset(const Rows& rows) {
+    void reset(Index rows) {
       contacts.reset(rows);
-      for (auto* set : {&before, &after}) set->resize_like(rows);
+      for (auto* impulses : {&before, &after}) impulses->reserve(std::size_t(rows));
     }
   };
 
@@ -64,8 +70,8 @@ struct BasicDirectGaussSeidel {
     inner::expect_at_least_zero("DirectGaussSeidel: max_swept_rows", max_swept_rows);
   }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
     SolveReport report{.measure = problem.measure()};
     if (!std::isfinite(report.measure.residual))
       return {.status = Status::quarantined, .measure = report.measure};
@@ -77,10 +83,8 @@ struct BasicDirectGaussSeidel {
     report.ended_by = "factorization";
     bool is_contradiction = false;
     for (const double epsilon : {fine, coarse}) {
-      joints.each([&](auto p, Index k) {
-        const Index item = joints.node(k).item;
-        problem.template assign<p>(item, 0 * problem.impulse(p, item));
-      });
+      const T nothing[Island<T>::most_rows] = {};
+      for (Index k = 0; k < joints.bilateral(); ++k) problem.assign(span_of(problem, joints.node(k)), joints.node(k).item, nothing);
       ++report.factorizations;
       if (!joints.factor(epsilon)) continue;
       if (settle(problem, joints)) break;
@@ -94,7 +98,7 @@ struct BasicDirectGaussSeidel {
       settle(problem, joints);
       if (round == 0 && (swept == Status::infeasible || swept == Status::max_iterations)) {
         problem.save(work.after);
-        if (inner::Contradiction<Problem>(problem).is_proved(work.before)) {
+        if (inner::Contradiction<T>(problem).is_proved(work.before)) {
           auto& space = work.contacts.newton.sweeps;
           return inner::compromise(problem, report, space.best, space.x);
         }
@@ -115,34 +119,50 @@ struct BasicDirectGaussSeidel {
  private:
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
 
+  template <class T, class Node>
+  static const Span<T>& span_of(const Island<T>& problem, const Node& node) {
+    return problem.begin()[node.pool];
+  }
+
   /// The bilateral constraints first; false where there are none, or the direct path cannot act.
-  template <class Problem, class System>
-  bool gather(const Problem& problem, System& joints) const {
+  template <class T, class System>
+  bool gather(const Island<T>& problem, System& joints) const {
     joints.begin();
     bool can = true;
     int swept = 0;
     for (const bool is_bilateral : {true, false})
-      problem.each([&](auto p, Index i) {
-        if (inner::are_equalities(Problem::BookType::template kinds<p>()) != is_bilateral) return;
-        can &= joints.template take<p>(problem.rows(), i, is_bilateral);
-        if (!is_bilateral) swept += System::Rows::template rows_of<p>;
-      });
+      for (const Span<T>& span : problem) {
+        const PoolView<T>& pool = *span.pool;
+        if (inner::are_equalities(pool.table->kinds, pool.rows) != is_bilateral) continue;
+        for (const Index i : span) can &= joints.take(pool, i, is_bilateral, int(&span - problem.begin()));
+        if (!is_bilateral) swept += pool.rows * int(span.count);
+      }
     if (!can || joints.bilateral() == 0 || swept > max_swept_rows) return false;
     joints.analyse(problem.island());
     return true;
   }
 
+  /// The right side ← −(d + W λ)_b.
+  template <class T, class System>
+  static double load(Island<T>& problem, System& joints) {
+    return joints.load([&](const auto& node, auto& to) {
+      T u[Island<T>::most_rows];
+      problem.velocity(span_of(problem, node), node.item, u);
+      for (int r = 0; r < node.rows; ++r) to[r] = double(u[r]);
+    });
+  }
   /// λ_b ← λ_b − W_bb⁻¹ (d + W λ)_b, repeated while that halves the velocity of the joints' rows: what ε and
   /// rounding left goes. A repetition that makes it worse is taken back. False when rows contradict each
   /// other: a thousandth stays.
-  static bool settle(auto& problem, auto& joints) {
-    const double first = joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
+  template <class T, class System>
+  static bool settle(Island<T>& problem, System& joints) {
+    const double first = load(problem, joints);
     double size = first;
     for (int repetition = 0; repetition < 8 && size > 0; ++repetition) {
       joints.solve();
       joints.keep();
       push(problem, joints, 1);
-      const double next = joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
+      const double next = load(problem, joints);
       if (!(next < size)) {
         push(problem, joints, -1);
         break;
@@ -154,67 +174,57 @@ struct BasicDirectGaussSeidel {
     return size <= 1e-3 * first;
   }
   /// Whether that is proved, by the way in which λ_b runs away.
-  template <class Problem, class Workspace>
-  static bool contradicts(Problem& problem, Workspace& work) {
-    work.joints.load([&](auto p, Index item) { return problem.template local<p>(item).d; });
+  template <class T, class Space>
+  static bool contradicts(Island<T>& problem, Space& work) {
+    load(problem, work.joints);
     work.joints.solve();
     work.joints.keep();
     problem.save(work.before);
     push(problem, work.joints, 1);
-    if (inner::Contradiction<Problem>(problem).is_proved(work.before)) return true;
+    if (inner::Contradiction<T>(problem).is_proved(work.before)) return true;
     problem.load(work.before);
     return false;
   }
   /// λ_b ← λ_b + sign δ.
-  template <class Problem, class System>
-  static void push(Problem& problem, const System& joints, double sign) {
-    using T = typename Problem::T;
-    joints.each([&](auto p, Index k) {
-      const Index item = joints.node(k).item;
-      auto lambda = problem.rows().template pool<p>().lambda[item];
-      for (int r = 0; r < int(lambda.size()); ++r) lambda[r] += T(sign * joints.step(k)[r]);
-      problem.template assign<p>(item, lambda);
-    });
+  template <class T, class System>
+  static void push(Island<T>& problem, const System& joints, double sign) {
+    T next[Island<T>::most_rows];
+    for (Index k = 0; k < joints.bilateral(); ++k) {
+      const auto& node = joints.node(k);
+      const Span<T>& span = span_of(problem, node);
+      const T* lambda = problem.impulse(span, node.item);
+      for (int r = 0; r < node.rows; ++r) next[r] = lambda[r] + T(sign * joints.step(k)[r]);
+      problem.assign(span, node.item, next);
+    }
   }
 
   /// The others with S in place of W, from the λ they have, to that share of the tolerance; W is told in the
   /// end.
-  template <class Problem, class Workspace>
-  Status sweep_others(Problem& problem, Workspace& work, SolveReport& report, double share) const {
-    work.others.build(work.joints, problem);
+  template <class T, class Space>
+  Status sweep_others(Island<T>& problem, Space& work, SolveReport& report, double share) const {
+    Island<T> rest = work.others.build(work.joints, problem);
     problem.save(work.before);
-    Rest<Problem, decltype(work.others)> rest(problem, work.others);
-    rest.each([&](auto p, Index i) { rest.template prepare<p>(i, work.others.template diagonal<p>(i)); });
     const inner::SweepsThenNewton<Criterion> solver{
         inner::sweeps_of<Criterion>(*this, max_iterations - report.sweeps, min_iterations, share)};
     const SolveReport swept = solver.solve(rest, work.contacts);
     report.sweeps += swept.sweeps;
     report.factorizations += swept.factorizations;
     if (swept.factorizations > 0) report.ended_by = swept.ended_by;
-    rest.each([&](auto p, Index i) {
-      auto& lambda = problem.impulse(p, i);
-      const auto found = lambda;
-      lambda = std::get<p>(work.before.pools)[i];
-      problem.template assign<p>(i, found);
-      problem.template prepare<p>(i, problem.template local<p>(i).W);
-    });
+    T found[Island<T>::most_rows];
+    const T* before = work.before.data();
+    for (const Span<T>& span : problem) {
+      const int R = span.pool->rows;
+      const bool is_swept = !inner::are_equalities(span.pool->table->kinds, R);
+      for (const Index i : span) {
+        T* lambda = span.pool->lambda + std::ptrdiff_t(R) * i;
+        for (int k = 0; k < R && is_swept; ++k) found[k] = lambda[k], lambda[k] = before[k];
+        before += R;
+        if (is_swept) problem.assign(span, i, found);
+      }
+      if (is_swept) span.pool->table->prepare(span, problem.h());
+    }
     return swept.status;
   }
-
-  /// The island without its joints, which asks the whole one for the time.
-  template <class Problem, class Others>
-  using RestOf =
-      decltype(std::declval<const Problem&>().with(std::declval<Others&>(), std::declval<const Others&>()));
-  template <class Problem, class Others>
-  struct Rest : RestOf<Problem, Others> {
-    Problem& whole;
-    Rest(Problem& problem, Others& others)
-        : RestOf<Problem, Others>(problem.with(others, others)), whole(problem) {}
-    bool is_out_of_time() { return whole.is_out_of_time(); }
-    bool has_time_for(double sweeps) { return whole.has_time_for(sweeps); }
-    bool may_attempt(double sweeps) { return whole.may_attempt(sweeps); }
-    void attempted(bool was_of_use) { whole.attempted(was_of_use); }
-  };
 };
 
 using DirectGaussSeidel = BasicDirectGaussSeidel<>;

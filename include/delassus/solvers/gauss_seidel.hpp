@@ -4,7 +4,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/criteria.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <cmath>
@@ -24,6 +24,7 @@ struct BasicGaussSeidel {
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
 
+  static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
   struct Workspace {};
 
@@ -34,8 +35,8 @@ struct BasicGaussSeidel {
                          "must lie in (0, 2)");
   }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace&) const {
+  template <class T, class Room>
+  SolveReport solve(Island<T>& problem, Room&) const {
     const int rows = problem.row_count();
     SolveReport report;
     report.measure = problem.measure();
@@ -46,13 +47,13 @@ struct BasicGaussSeidel {
       const bool is_done = Criterion::needs_measure ? inner::is_done<Criterion>(*this, report.measure, rows)
                                                     : inner::is_within<Criterion>(*this, report.measure, rows);
       if (report.sweeps >= min_iterations && is_done) break;
-      const int batch = Criterion::needs_measure && !Problem::Observes::every_sweep ? inner::patience(report.sweeps) : 1;
+      const int batch = Criterion::needs_measure && !problem.observes_sweeps() ? inner::patience(report.sweeps) : 1;
       for (int k = 0; k < batch && !is_over && !(k > 0 && problem.is_measure_due()); ++k) {
-        problem.template sweep<!Criterion::needs_measure>(relaxation);
+        problem.sweep(relaxation, !Criterion::needs_measure);
         ++report.sweeps;
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       }
-      if constexpr (Criterion::needs_measure || Problem::Observes::every_sweep) report.measure = problem.measure();
+      if (Criterion::needs_measure || problem.observes_sweeps()) report.measure = problem.measure();
       else report.measure.last_change = problem.last_change(), report.measure.worst_change = problem.worst_change();
       problem.notify(report.sweeps, report.measure);
     }

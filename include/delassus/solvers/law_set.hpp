@@ -3,8 +3,11 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
-#include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/rows/show_rows.hpp>
+#include <delassus/solvers/inner/functions_of_w.hpp>
+#include <delassus/solvers/inner/law_loops.hpp>
+#include <delassus/solvers/law_table.hpp>
 
 #include <concepts>
 #include <tuple>
@@ -13,19 +16,33 @@
 
 namespace delassus {
 
-template <class Constraints, class T>
+namespace inner {
+
+/// `items` and `memory` by place, `places` of the items: null where these are all.
+template <class Law, Needs needs, class T>
+void show_law(const Law& law, const void* items, const Index* places, void* memory, PoolView<T>& view) {
+  view.table = &LawLoops<Law, T>::table;
+  if constexpr (needs != Needs::sweeps && Differentiable<Law>) view.tangent = &LawLoops<Law, T>::tangent;
+  if constexpr (needs == Needs::convex_tangents && Differentiable<Law>) view.convex_tangent = &LawLoops<Law, T>::convex_tangent;
+  view.law = &law;
+  view.law_items = items;
+  view.places = places;
+  view.memory = memory;
+}
+
+}  // namespace inner
+
+template <class Constraints, class T, Needs needs = Needs::tangents>
 class LawSet;
 
-/// Calls each law with its item and its memory. `prepare` runs once a step, when W is built.
-template <class... Laws, class T>
-class LawSet<Constraints<Laws...>, T> {
+/// Shows each pool with its law and its memory. `prepare` runs once a step, when W is built; the rows and W stay where they
+/// are as long as the views are used.
+template <class... Laws, class T, Needs needs>
+class LawSet<Constraints<Laws...>, T, needs> {
+  static constexpr int pools = int(sizeof...(Laws));
   using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<Laws, T>>...>;
   template <int p>
   using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
-  template <int p>
-  using Pool = decltype(std::declval<const Constraints<Laws...>&>().template pool<p>());
-  template <int p>
-  using Memory = typename std::tuple_element_t<p, Memories>::value_type;
 
  public:
   LawSet() = default;  ///< of nothing, before it is attached
@@ -39,125 +56,48 @@ class LawSet<Constraints<Laws...>, T> {
     std::apply([&](auto&... memory) { (memory.reserve(items), ...); }, memory_);
   }
 
-  void prepare(const auto& W, const auto& rows, double h) {
-    for_each_index<sizeof...(Laws)>([&](auto p) {
-      auto& memory = std::get<p>(memory_);
-      memory.resize(rows.template pool<p>().items());
-      for (Index i = 0; i < Index(memory.size()); ++i) prepare_item<p>(i, W.template diagonal<p>(i), h);
-    });
+  /// Shows the rows and W, and lets each law prepare what it keeps of its own blocks of W.
+  void prepare(auto& W, auto& rows, double h) {
+    show(W, rows);
+    for (const PoolView<T>& pool : views_) pool.table->prepare({&pool, nullptr, pool.items}, h);
   }
-  template <int p, class Own>
-  void prepare_item(Index i, const Own& own_block, double h) {
-    auto& memory = std::get<p>(memory_);
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.prepare(pool.item(i), own_block, h, memory[i]); })
-      pool.law.prepare(pool.item(i), own_block, h, memory[i]);
-    else inner::prepare(pool.law, own_block, memory[i]);
+  /// The same without what laws keep: for rows of other numbers.
+  template <class Operator, class Rows>
+  void show(Operator& W, Rows& rows) {
+    sets_.resize(std::size_t(pools * Rows::set_count));
+    for_each_index<pools>([&](auto p) { show_pool<p>(W, rows); });
   }
+  const PoolView<T>& view(int pool) const { return views_[pool]; }
 
-  template <int p, int R>
-  void project(Index i, Local<R, T>& c) {
-    const auto& pool = constraints_->template pool<p>();
-    inner::project(pool.law, pool.item(i), c, std::get<p>(memory_)[i]);
-  }
-
-  /// Whether the law of pool p answers to the free velocity alone.
-  template <int p>
-  static constexpr bool meets() {
-    return requires(Pool<p> pool, const Vec<Law<p>::rows, T>& b, Memory<p>& memory) {
-      { pool.law.solve_local(pool.item(0), b, memory) } -> std::same_as<Vec<Law<p>::rows, T>>;
-    };
-  }
-  template <int p, int R>
-  Vec<R, T> solve_local(Index i, const Vec<R, T>& b) {
-    const auto& pool = constraints_->template pool<p>();
-    return pool.law.solve_local(pool.item(i), b, std::get<p>(memory_)[i]);
-  }
-
-  /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
-  template <int p, int R>
-  Vec<R, T> natural_map(Index i, const Local<R, T>& c, T scale) {
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.natural_map(pool.item(i), c.lambda, c.d, scale); }) {
-      return pool.law.natural_map(pool.item(i), c.lambda, c.d, scale);
-    } else {
-      Local<R, T> trial = c;
-      auto memory = std::get<p>(memory_)[i];
-      inner::project(pool.law, pool.item(i), trial, memory);
-      const Vec<R, T> change = c.lambda - trial.lambda;
-      return (scale * T(R) / trace(c.W)) * (c.W * change);
-    }
-  }
-
-  /// |natural_map|² at `scale` and at 1, where the law knows both at once.
-  template <int p, int R>
-  requires requires(const Law<p>& law, const typename Law<p>::Item& item, const Vec<R, T>& x, T scale) {
-    law.natural_squares(item, x, x, scale);
-  }
-  Vec<2, T> natural_squares(Index i, const Local<R, T>& c, T scale) const {
-    const auto& pool = constraints_->template pool<p>();
-    return pool.law.natural_squares(pool.item(i), c.lambda, c.d, scale);
-  }
-
-  template <int p>
-  static constexpr auto kinds() {
-    return row_kinds<Law<p>>();
-  }
-  /// Whether the law of pool p is a round cone, and its μ.
-  template <int p>
-  static constexpr bool has_cone() {
-    constexpr auto law_kinds = kinds<p>();
-    if constexpr (law_kinds.size() != 3 || !requires(Pool<p> pool) { pool.item(0).parameters.friction; })
-      return false;
-    else
-      return law_kinds[0] == RowKind::lower && law_kinds[1] == RowKind::friction && law_kinds[2] == RowKind::friction;
-  }
-  template <int p>
-  double friction(Index i) const {
-    return double(constraints_->template pool<p>().item(i).parameters.friction);
-  }
-
-  /// −∂λ/∂d of the impulse that meets the law where W is diagonal, and that impulse: see `constraints/law.hpp`.
-  template <int p, int R, class N>
-    requires Differentiable<Law<p>>
-  Mat<R, R, N> tangent(Index i, Local<R, N>& c) const {
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.tangent(pool.item(i), c); })
-      return pool.law.tangent(pool.item(i), c);
-    else
-      return pool.law.tangent(pool.item(i), c, std::get<p>(memory_)[i]);
-  }
-
-  /// The same with the slip of friction rows given, where the law has a convex form.
-  template <int p, int R, class N>
-    requires Differentiable<Law<p>>
-  Mat<R, R, N> convex_tangent(Index i, Local<R, N>& c, N slip) const {
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.convex_tangent(pool.item(i), c, slip); })
-      return pool.law.convex_tangent(pool.item(i), c, slip);
-    else
-      return tangent<p>(i, c);
-  }
-
-  /// Whether the law of pool p has a cone or a cap of its own.
-  template <int p>
-  static consteval bool clamps() {
-    using Item = typename Law<p>::Item;
-    using X = Vec<Law<p>::rows, T>;
-    return requires(const Law<p>& law, const Item& item, X& x, const Memory<p>& m) { law.clamp(item, x, m); }
-    || requires(const Law<p>& law, const Item& item, X& x) { law.clamp(item, x); };
-  }
-  template <int p, int R>
-  void clamp(Index i, Vec<R, T>& lambda) const {
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.clamp(pool.item(i), lambda, std::get<p>(memory_)[i]); })
-      pool.law.clamp(pool.item(i), lambda, std::get<p>(memory_)[i]);
-    else if constexpr (requires { pool.law.clamp(pool.item(i), lambda); }) pool.law.clamp(pool.item(i), lambda);
+  /// |F_i| of item i of a pool: of its natural map at w_i.
+  double natural_error(int pool, Index i) const {
+    const PoolView<T>& view = views_[pool];
+    MeasureSums sums;
+    view.table->measure({&view, &i, 1}, sums);
+    return std::sqrt(sums.residual);
   }
 
  private:
+  template <int p, class Operator, class Rows>
+  void show_pool(Operator& W, Rows& rows) {
+    PoolView<T>& view = views_[p];
+    auto& memory = std::get<p>(memory_);
+    const auto& pool = constraints_->template pool<p>();
+    auto* sets = sets_.data() + p * Rows::set_count;
+    inner::show_rows(rows.template pool<p>(), p, view, sets);
+    memory.resize(std::size_t(view.items));
+    const Index* places = nullptr;
+    if constexpr (!ContactLaw<Law<p>>) places = pool.slots.active().data();
+    inner::show_law<Law<p>, needs>(pool.law, pool.items.data(), places, memory.data(), view);
+    inner::show_W<p>(W, rows, view, sets, &blocks_[p * pools], own_diagonals_[p]);
+  }
+
   const Constraints<Laws...>* constraints_ = nullptr;
   Memories memory_;
+  PoolView<T> views_[pools > 0 ? pools : 1];
+  BlockRowsView<T> blocks_[pools > 0 ? pools * pools : 1];
+  Array<SetBlocksView<T>> sets_;
+  Array<T> own_diagonals_[pools > 0 ? pools : 1];  ///< of a W that shows no arrays
 };
 
 }  // namespace delassus

@@ -7,7 +7,7 @@
 #include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -27,6 +27,18 @@ struct NormSearch {
   }
   void resize(std::size_t unknowns) {
     for (auto* v : {&x, &b, &r, &p, &q}) v->assign(unknowns, 0);
+  }
+};
+
+template <class T, class Space>
+struct NormSpace {
+  Space solver;
+  Array<T> solved, target;
+  NormSearch search;
+  void reset(Index rows) {
+    if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
+    for (auto* impulses : {&solved, &target}) impulses->reserve(std::size_t(rows));
+    search.reserve(std::size_t(rows));
   }
 };
 
@@ -63,29 +75,20 @@ struct MinimumNorm {
   Solver solver{};
   int max_products = 200;  ///< with W; when they run out λ stays as it was solved
 
+  static constexpr Needs needs = inner::needs_of<Solver>;
   template <class Rows>
-  struct Workspace {
-    typename Solver::template Workspace<Rows> solver;
-    Impulses<Rows> solved, target;
-    inner::NormSearch search;
-    void reset(const Rows& rows) {
-      if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
-      solved.resize_like(rows);
-      target.resize_like(rows);
-      search.reserve(std::size_t(rows.row_count()));
-    }
-  };
+  using Workspace = inner::NormSpace<typename Rows::Scalar, typename Solver::template Workspace<Rows>>;
 
   void check() const {
     solver.check();
     inner::expect_at_least_zero("MinimumNorm: max_products", max_products);
   }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
     SolveReport report = solver.solve(problem, work.solver);
     if (report.status > Status::stalled || problem.is_out_of_time()) return report;
-    Search<Problem, Workspace> now{problem, work};
+    Search<T, Space> now{problem, work};
     now.sort(report.measure);
     for (int round = 0; round < 4; ++round)
       if (!now.shrink(max_products)) break;
@@ -102,29 +105,32 @@ struct MinimumNorm {
  private:
   enum Held : char { still, slips, fixed };
 
-  template <class Problem, class Workspace>
+  template <class T, class Space>
   struct Search {
-    Problem& problem;
-    Workspace& work;
+    Island<T>& problem;
+    Space& work;
 
     /// Which constraints are free: those whose velocity is within the error of the solve.
     void sort(const Measure& measure) {
       problem.save(work.solved);
-      double d = 0, u = 0;
-      problem.each([&](auto p, Index i) {
-        d += double(problem.rows().template pool<p>().d[i].squaredNorm());
-        u += double(problem.template local<p>(i).d.squaredNorm());
-      });
-      const double small = 10 * std::max(measure.residual, measure.floor) * std::sqrt(std::max(d, u));
+      T u[Island<T>::most_rows];
+      double d = 0, moved = 0;
+      for (const Span<T>& span : problem)
+        for (const Index i : span) {
+          d += square_of(problem.free_of_impulses(span, i), span.pool->rows);
+          problem.velocity(span, i, u);
+          moved += square_of(u, span.pool->rows);
+        }
+      const double small = 10 * std::max(measure.residual, measure.floor) * std::sqrt(std::max(d, moved));
       work.search.how.clear();
-      problem.each([&](auto p, Index i) {
-        const auto c = problem.template local<p>(i);
-        Held how = double(c.d.norm()) <= small ? still : fixed;
-        if constexpr (Problem::BookType::template has_cone<p>())
-          if (how == fixed && double(std::abs(c.d[0])) <= small && c.lambda[0] > 0) how = slips;
-        if (!(trace(c.W) > 0)) how = fixed;
-        work.search.how.push_back(how);
-      });
+      for (const Span<T>& span : problem)
+        for (const Index i : span) {
+          problem.velocity(span, i, u);
+          Held how = std::sqrt(square_of(u, span.pool->rows)) <= small ? still : fixed;
+          if (span.pool->table->friction && how == fixed && double(std::abs(u[0])) <= small && problem.impulse(span, i)[0] > 0) how = slips;
+          if (!(span.pool->trace(i) > 0)) how = fixed;
+          work.search.how.push_back(how);
+        }
     }
 
     /// One round: false when λ is the smallest, or nothing more can be done.
@@ -132,7 +138,7 @@ struct MinimumNorm {
       auto& s = work.search;
       problem.save(work.target);  // λ*
       std::size_t unknowns = 0;
-      each_free([&](auto, Index, auto&&, int count) { unknowns += std::size_t(count); });
+      each_free([&](const Free& free) { unknowns += std::size_t(free.count); });
       s.resize(unknowns);
       gather(s.x);
       multiply(s.x, s.b);
@@ -142,35 +148,57 @@ struct MinimumNorm {
     }
 
    private:
-    /// f(p, i, the unknowns as impulses: a function of their number, how many) for each free constraint.
-    void each_free(auto&& f) {
+    /// A constraint that is free: `count` unknowns, which are impulses along `at`, or on each row.
+    struct Free {
+      const Span<T>& span;
+      Index i;
+      const T* at;  ///< λ*
+      bool slips;
+      int rows, count;
+      double over, length;
+
+      /// Row of the impulse that the n-th unknown stands for.
+      double unit(int n, int row) const {
+        if (slips) return over * double(at[row]) / length;
+        return n == row ? over : 0.0;
+      }
+      /// B x.
+      void impulse(const double* x, T* sum) const {
+        for (int row = 0; row < rows; ++row) sum[row] = 0;
+        for (int n = 0; n < count; ++n)
+          for (int row = 0; row < rows; ++row) sum[row] += T(unit(n, row) * x[n]);
+      }
+    };
+
+    static double square_of(const T* x, int rows) {
+      double sum = 0;
+      for (int k = 0; k < rows; ++k) sum += double(x[k]) * double(x[k]);
+      return sum;
+    }
+    /// f(free) for each free constraint.
+    template <class F>
+    void each_free(const F& f) {
       std::size_t k = 0;
-      problem.each([&](auto p, Index i) {
-        constexpr int R = Problem::RowsType::template rows_of<p>;
-        const char how = work.search.how[k++];
-        if (how == fixed) return;
-        const double over = 1 / problem.template root_of_weight<p>(i);
-        const auto& at = std::get<p>(work.target.pools)[i];
-        const double length = how == slips ? double(at.norm()) : 1;
-        f(
-            p, i,
-            [&, over, how, length](int n, int row) {
-              if (how == slips) return over * double(at[row]) / length;
-              return n == row ? over : 0.0;
-            },
-            how == slips ? 1 : R);
-      });
+      const T* at = work.target.data();
+      for (const Span<T>& span : problem)
+        for (const Index i : span) {
+          const T* const target = at;
+          at += span.pool->rows;
+          const char how = work.search.how[k++];
+          if (how == fixed) continue;
+          f(Free{span, i, target, how == slips, span.pool->rows, how == slips ? 1 : span.pool->rows,
+                 1 / problem.root_of_weight(span, i), how == slips ? std::sqrt(square_of(target, span.pool->rows)) : 1});
+        }
     }
     /// x = √w Bᵀ λ.
     void gather(Array<double>& x) {
       std::size_t k = 0;
-      each_free([&](auto p, Index i, auto&& unit, int count) {
-        const auto& at = std::get<p>(work.target.pools)[i];
-        for (int n = 0; n < count; ++n, ++k) {
+      each_free([&](const Free& free) {
+        for (int n = 0; n < free.count; ++n, ++k) {
           double sum = 0, square = 0;
-          for (int row = 0; row < int(at.size()); ++row) {
-            sum += unit(n, row) * double(at[row]);
-            square += unit(n, row) * unit(n, row);
+          for (int row = 0; row < free.rows; ++row) {
+            sum += free.unit(n, row) * double(free.at[row]);
+            square += free.unit(n, row) * free.unit(n, row);
           }
           x[k] = sum / square;
         }
@@ -180,50 +208,49 @@ struct MinimumNorm {
     void multiply(const Array<double>& x, Array<double>& y) {
       problem.clear();
       std::size_t k = 0;
-      each_free([&](auto p, Index i, auto&& unit, int count) {
-        problem.template assign<p>(i, impulse(std::get<p>(work.target.pools)[i], unit, count, &x[k]));
-        k += std::size_t(count);
+      T numbers[Island<T>::most_rows];
+      each_free([&](const Free& free) {
+        free.impulse(&x[k], numbers);
+        problem.assign(free.span, free.i, numbers);
+        k += std::size_t(free.count);
       });
       k = 0;
-      each_free([&](auto p, Index i, auto&& unit, int count) {
-        auto u = problem.template local<p>(i).d;
-        u -= problem.rows().template pool<p>().d[i];
-        for (int n = 0; n < count; ++n, ++k) {
+      each_free([&](const Free& free) {
+        problem.velocity(free.span, free.i, numbers);
+        const T* d = problem.free_of_impulses(free.span, free.i);
+        for (int n = 0; n < free.count; ++n, ++k) {
           y[k] = 0;
-          for (int row = 0; row < int(u.size()); ++row) y[k] += unit(n, row) * double(u[row]);
+          for (int row = 0; row < free.rows; ++row) y[k] += free.unit(n, row) * double(numbers[row] - d[row]);
         }
       });
-    }
-    /// B x of one constraint.
-    template <class V, class Unit>
-    static V impulse(const V& at, Unit&& unit, int count, const double* x) {
-      V sum = 0 * at;
-      for (int n = 0; n < count; ++n)
-        for (int row = 0; row < int(at.size()); ++row) sum[row] += typename Problem::T(unit(n, row) * x[n]);
-      return sum;
     }
 
     /// λ ← λ* + s (B x − λ*), in the cones; whether they let it. `outside` has who does not.
     bool go(double s) {
       auto& search = work.search;
-      std::size_t k = 0, free = 0;
+      std::size_t k = 0, place = 0;
       bool is_inside = true;
       search.outside.assign(search.how.size(), 0);
-      each_free([&](auto p, Index i, auto&& unit, int count) {
-        const auto& at = std::get<p>(work.target.pools)[i];
-        const auto goal = impulse(at, unit, count, &search.x[k]);
-        auto next = at;
-        for (int row = 0; row < int(at.size()); ++row)
-          next[row] += typename Problem::T(s) * (goal[row] - at[row]);
-        auto inside = next;
-        problem.book().template clamp<p>(i, inside);
-        if (double((inside - next).norm()) > 1e-12 * double(next.norm())) {
-          is_inside = false;
-          search.outside[free] = 1;
+      T next[Island<T>::most_rows], inside[Island<T>::most_rows];
+      each_free([&](const Free& free) {
+        free.impulse(&search.x[k], next);
+        double size = 0, apart = 0;
+        for (int row = 0; row < free.rows; ++row) {
+          next[row] = free.at[row] + T(s) * (next[row] - free.at[row]);
+          inside[row] = next[row];
         }
-        problem.template assign<p>(i, inside);
-        k += std::size_t(count);
-        ++free;
+        problem.clamp(free.span, free.i, inside);
+        for (int row = 0; row < free.rows; ++row) {
+          size += double(next[row]) * double(next[row]);
+          apart += double(inside[row] - next[row]) * double(inside[row] - next[row]);
+        }
+        if (std::sqrt(apart) > 1e-12 * std::sqrt(size)) {
+          is_inside = false;
+          search.outside[place] = 1;
+        }
+        problem.assign(free.span, free.i, inside);
+        k += std::size_t(free.count);
+        ++place;
       });
       return is_inside;
     }

@@ -11,11 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace delassus {
 
-/// Follows the solutions (x, log τ) of `inner::PathItem`, a curve that begins with a τ at which all
+/// Follows the solutions (x, log τ) of `inner::PathRows`, a curve that begins with a τ at which all
 /// constraints are alike and ends at τ = 0, by its length: a step along the tangent, then Newton's method
 /// across it. Coulomb's law is not monotone, so τ need not fall all along the curve: where it turns back, a
 /// method that lowers τ alone is caught, and this one goes around. Nothing stands on a corner before τ is
@@ -39,13 +40,15 @@ struct BasicPathNewton {
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
 
+  static constexpr Needs needs = Needs::tangents;
   template <class Rows>
   struct Workspace {
-    inner::PathLaws<Rows> laws;
-    Impulses<Rows> best;
+    using T = typename Rows::Scalar;
+    inner::PathLaws<T, inner::PathSystem<Rows>> laws;
+    Array<T> best;
     typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
-    void reset(const Rows& rows) {
-      best.resize_like(rows);
+    void reset(Index rows) {
+      best.reserve(std::size_t(rows));
       sweeps.reset(rows);
     }
   };
@@ -56,9 +59,9 @@ struct BasicPathNewton {
     inner::expect_at_least_zero("PathNewton: max_sweeps", max_sweeps);
   }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
-    Walk<Problem, Workspace> now{*this, problem, work.laws, work.best};
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
+    Walk<T, decltype(work.laws)> now{*this, problem, work.laws, work.best};
     now.report.measure = now.best = problem.measure();
     now.report.ended_by = "path";
     problem.notify(0, now.best);
@@ -85,12 +88,12 @@ struct BasicPathNewton {
  private:
   static constexpr double least_step = 1e-7;  ///< of the curve's length: below it goes to and fro in rounding
 
-  template <class Problem, class Workspace>
+  template <class T, class Laws>
   struct Walk {
     const BasicPathNewton& solver;
-    Problem& problem;
-    decltype(Workspace::laws)& work;
-    decltype(Workspace::best)& kept;
+    Island<T>& problem;
+    Laws& work;
+    Array<T>& kept;
     SolveReport report{};
     Measure best{};
     double log_tau = 0, next = 0;  ///< next: log τ of the last evaluation
@@ -102,28 +105,21 @@ struct BasicPathNewton {
     double evaluate(double t, double s) {
       const double tau = std::exp(next), size = work.evaluate(problem, tau, t, s);
       const double rounding = 16 * std::numeric_limits<double>::epsilon() * work.reach();
-      return size / (std::sqrt(double(work.rows())) * std::max(1e-5 * std::sqrt(tau), rounding));
+      return size / (std::sqrt(double(work.row_count())) * std::max(1e-5 * std::sqrt(tau), rounding));
     }
     bool factor() {
       if (report.factorizations >= solver.max_iterations) return false;
       ++report.factorizations;
-      return work.template factor<Problem>(std::exp(next));
+      return work.factor(problem, std::exp(next));
     }
     /// Newton's step from where |r| is `size`, halved until that falls; |r| at the last try.
     double take_step(double size) {
-      work.find_direction();
-      work.each_item([](auto& c) { c.direction = c.lambda; });
+      work.rows.direction = work.find_direction(problem);
       double least = size;
       for (double t = 1; t > 1e-4 && !(least < size); t /= 2) least = evaluate(t, 0);
       if (least < size) work.advance();
       return least;
     }
-    /// Σ over the path's length of two directions, the second by its member.
-    double along(const auto& which) {
-      return work.product(
-          tau(), [](const auto& c) { return c.tangent; }, which);
-    }
-
     /// Newton's method at the first τ, from x = 0.
     bool reach_path() {
       next = log_tau;
@@ -175,20 +171,19 @@ struct BasicPathNewton {
     /// many.
     int go_along(double step) {
       next = log_tau + step * rise;
-      work.each_item([](auto& c) { c.direction.setZero(); });
+      auto& rows = work.rows;
+      rows.direction.assign(rows.direction.size(), 0.0);
       double last = 0;
       for (int k = 0; k < 7; ++k) {
         const double size = evaluate(1, step);
         if (size <= 1) return k;
         if (!std::isfinite(size) || (k > 0 && size > 0.5 * last) || !factor()) return -1;
         last = size;
-        work.find_direction();
-        work.each_item([](auto& c) { c.best = c.lambda; });
-        work.template find_rate<Problem>(std::exp(next));
+        rows.newton = work.find_direction(problem);
+        work.find_rate(problem, std::exp(next));
         // −J δ + ∂r/∂log τ δσ = −r across the tangent: δ = J⁻¹ r + rate δσ.
-        const double change = -along([](const auto& c) { return c.best; }) /
-                              (along([](const auto& c) { return c.rate; }) + rise);
-        work.each_item([&](auto& c) { c.direction += c.best + change * c.rate; });
+        const double change = -work.product(tau(), rows.tangent, rows.newton) / (work.product(tau(), rows.tangent, rows.rate) + rise);
+        for (std::size_t n = 0; n < rows.newton.size(); ++n) rows.direction[n] += rows.newton[n] + change * rows.rate[n];
         next += change;
       }
       return -1;
@@ -199,13 +194,13 @@ struct BasicPathNewton {
     /// within a step.
     bool turn() {
       if (!factor()) return false;
-      work.template find_rate<Problem>(std::exp(next));
+      work.find_rate(problem, std::exp(next));
       work.advance();
       log_tau = next;
-      const auto rate = [](const auto& c) { return c.rate; };
-      const double length = std::sqrt(work.product(tau(), rate, rate) + 1);
+      auto& rows = work.rows;
+      const double length = std::sqrt(work.product(tau(), rows.rate, rows.rate) + 1);
       rise = (work.is_negative() ? 1 : -1) / length;
-      work.each_item([&](auto& c) { c.tangent = rise * c.rate; });
+      for (std::size_t n = 0; n < rows.rate.size(); ++n) rows.tangent[n] = rise * rows.rate[n];
       return std::isfinite(length);
     }
 

@@ -24,7 +24,7 @@ struct Problem {
 /// What `solve` keeps of problems of one type for the next of them.
 template <class Problem, class Solver>
 struct SolverWorkspace {
-  LawSet<decltype(Problem::laws), typename Problem::Rows::Scalar> book;
+  LawSet<decltype(Problem::laws), typename Problem::Rows::Scalar, inner::needs_of<Solver>> book;
   typename Solver::template Workspace<typename Problem::Rows> solver;
 };
 
@@ -35,7 +35,7 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver,
                   SolverWorkspace<Problem<Laws, Rows, Operator>, Solver>& workspace) {
   auto& book = workspace.book;
   book.attach(problem.laws);
-  if constexpr (requires { workspace.solver.reset(problem.rows); }) workspace.solver.reset(problem.rows);
+  if constexpr (requires { workspace.solver.reset(Index()); }) workspace.solver.reset(problem.rows.row_count());
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;

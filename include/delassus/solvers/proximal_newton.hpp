@@ -7,7 +7,7 @@
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
 #include <delassus/solvers/inner/proximal_point.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -40,11 +40,16 @@ struct BasicProximalNewton {
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
 
+  static constexpr Needs needs = Needs::tangents;
   template <class Rows>
   struct Workspace {
-    inner::BodySpace<Rows> body;
+    using T = typename Rows::Scalar;
+    static_assert(Rows::widest > 0,
+                  "delassus: Newton's method needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
+                  "solve it by AcceleratedGaussSeidel");
+    inner::BodySpace<T, inner::NewtonSystem<T, std::max(1, Rows::widest)>, inner::LawsAsTheyAre<T>> body;
     typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
-    void reset(const Rows& rows) { sweeps.reset(rows); }
+    void reset(Index rows) { sweeps.reset(rows); }
   };
 
   void check() const {
@@ -53,11 +58,11 @@ struct BasicProximalNewton {
     inner::expect_at_least_zero("ProximalNewton: max_sweeps", max_sweeps);
   }
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
     problem.must_complete();  // what `body` has found since the last measure by W is the better λ
     if (!work.body.gather(problem)) return sweep(problem, work, max_sweeps, min_iterations);
-    Point<Problem, Workspace> now(*this, problem, work.body);
+    Point<T, decltype(work.body)> now(*this, problem, work.body);
     const Measure start = now.begin();
     problem.notify(0, start);
     if (!std::isfinite(start.residual)) return {.status = Status::quarantined, .measure = start};
@@ -78,8 +83,8 @@ struct BasicProximalNewton {
   }
 
  private:
-  template <class Problem, class Workspace>
-  using Point = inner::ProximalPoint<Criterion, BasicProximalNewton, Problem, decltype(Workspace::body)>;
+  template <class T, class Body>
+  using Point = inner::ProximalPoint<Criterion, BasicProximalNewton, T, Body>;
 
   /// The tolerance was not met: what is left of the sweeps leads on from the best λ.
   SolveReport give_up(auto& now, auto& work) const {

@@ -7,7 +7,8 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/rows/impulses.hpp>
-#include <delassus/solvers/inner/timed_problem.hpp>
+#include <delassus/solvers/inner/solve_timer.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -16,6 +17,27 @@
 #include <limits>
 
 namespace delassus {
+namespace inner {
+
+/// Room for a solver, and for the best that it has measured.
+template <class T, class Space>
+struct TimedSpace {
+  Space solver;
+  Array<T> best;
+  Array<Attempts> attempts;                                 ///< of each island
+  double until = std::numeric_limits<double>::quiet_NaN();  ///< NaN before the first island
+
+  void reset(Index rows) {
+    if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
+    best.reserve(std::size_t(rows));
+    const auto islands = std::size_t(rows);  // at most
+    if (attempts.capacity() < islands) attempts.reserve(2 * islands);
+    until = std::numeric_limits<double>::quiet_NaN();
+  }
+  void memory(auto& archive) { archive(attempts); }
+};
+
+}  // namespace inner
 
 /// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one
 /// millisecond together. The clock is read after each sweep, inside long sweeps, measures and factorizations
@@ -34,22 +56,9 @@ struct WithDeadline {
   double deadline =
       std::numeric_limits<double>::infinity();  ///< on `clock`, s; the earlier of the two counts
 
+  static constexpr Needs needs = inner::needs_of<Solver>;
   template <class Rows>
-  struct Workspace {
-    typename Solver::template Workspace<Rows> solver;
-    Impulses<Rows> best;
-    Array<inner::Attempts> attempts;                    ///< of each island
-    double until = std::numeric_limits<double>::quiet_NaN();  ///< NaN before the first island
-
-    void reset(const Rows& rows) {
-      if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
-      best.resize_like(rows);
-      const auto islands = std::size_t(rows.row_count());  // at most
-      if (attempts.capacity() < islands) attempts.reserve(2 * islands);
-      until = std::numeric_limits<double>::quiet_NaN();
-    }
-    void memory(auto& archive) { archive(attempts); }
-  };
+  using Workspace = inner::TimedSpace<typename Rows::Scalar, typename Solver::template Workspace<Rows>>;
 
   void check() const {
     solver.check();
@@ -58,20 +67,27 @@ struct WithDeadline {
                     "WithDeadline: the deadline must be a number of seconds on its clock");
   }
 
-  SolveReport solve(auto& problem, auto& work) const {
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
     if (std::isnan(work.until))
       work.until = std::isinf(budget) ? deadline : std::min(deadline, clock.now() + budget);
     const auto island = std::size_t(problem.island());
     if (work.attempts.size() <= island) work.attempts.resize(island + 1);
     inner::Attempts& attempts = work.attempts[island];
-    inner::TimedProblem timed(problem, clock, work.until, work.best, attempts.is_due());
-    SolveReport report = solver.solve(timed, work.solver);
-    const bool is_half_done = timed.has_let_go() && report.status != Status::infeasible;
-    const bool is_late = is_half_done || (timed.was_late() && report.status == Status::max_iterations);
-    if (timed.has_attempted()) attempts.note(timed.was_of_use() || !is_late);
+    inner::SolveTimer<T> timer(&clock, [](const void* which) { return static_cast<const C*>(which)->now(); }, work.until, work.best,
+                               attempts.is_due(), problem.cost_of_load());
+    problem.set_timer(&timer);
+    SolveReport report = solver.solve(problem, work.solver);
+    problem.set_timer(nullptr);
+    const bool is_half_done = timer.has_let_go() && report.status != Status::infeasible;
+    const bool is_late = is_half_done || (timer.was_late() && report.status == Status::max_iterations);
+    if (timer.has_attempted()) attempts.note(timer.was_of_use() || !is_late);
     if (!is_late) return report;
     report.status = Status::deadline;
-    if (is_half_done || timed.least().residual < report.measure.residual) report.measure = timed.restore_best();
+    if (is_half_done || timer.least().residual < report.measure.residual) {
+      problem.load(timer.best());
+      report.measure = timer.least();
+    }
     return report;
   }
 };

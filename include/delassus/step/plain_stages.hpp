@@ -98,7 +98,7 @@ struct PlainStages : StagesWithoutConstraints {
   static void solve_islands(auto& step, auto& observer) {
     using Stages = typename std::remove_reference_t<decltype(step)>::Stages;
     step.W.reset(step.rows);
-    if constexpr (requires { step.solver_workspace.reset(step.rows); }) step.solver_workspace.reset(step.rows);
+    if constexpr (requires { step.solver_workspace.reset(Index()); }) step.solver_workspace.reset(step.rows.row_count());
     step.reports.resize(step.islands.count());
     for (Index k = 0; k < step.islands.count(); ++k) {
       observer.begin_island(k);

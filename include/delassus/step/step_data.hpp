@@ -36,7 +36,7 @@ struct RowData {
   Rows rows;
   Islands<P::Laws::pool_count> islands;
   Operator W;
-  LawSet<typename P::Laws, typename P::World::Scalar> law_set;
+  LawSet<typename P::Laws, typename P::World::Scalar, inner::needs_of<typename P::Solver>> law_set;
   typename P::Solver::template Workspace<Rows> solver_workspace;
   Array<SolveReport> reports;  ///< of the islands, in their order
   Array<char> is_nonfinite;         ///< islands with a velocity that is not finite
@@ -151,12 +151,9 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
     if constexpr (has_problem) {
       auto book = this->law_set;
       book.attach(laws());  // the loop may be a copy
+      book.show(const_cast<StepData*>(this)->W, const_cast<StepData*>(this)->rows);  // nothing is written through it here
       each_pool(this->rows, [&](auto p, const auto& pool) {
-        constexpr int R = P::Rows::template rows_of<p>;
-        for (Index i = 0; i < pool.items(); ++i) {
-          const Local<R, Scalar> c{this->W.template diagonal<p>(i), this->W.template residual<p>(this->rows, i), pool.lambda[i]};
-          f(int(p), i, pool.lambda[i], double(book.template natural_map<p>(i, c, trace(c.W) / Scalar(R)).norm()), h);
-        }
+        for (Index i = 0; i < pool.items(); ++i) f(int(p), i, pool.lambda[i], book.natural_error(p, i), h);
       });
     }
   }

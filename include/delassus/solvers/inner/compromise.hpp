@@ -11,18 +11,19 @@ namespace delassus::inner {
 
 /// λ of the rows as `Softened` lets them yield, from zero, and the errors of the rows as they are. The report
 /// is that of what found the contradiction.
-template <class Problem, class Impulses>
-SolveReport compromise(Problem& problem, SolveReport report, Impulses& best, Impulses& last) {
+template <class T>
+SolveReport compromise(Island<T>& problem, SolveReport report, Array<T>& best, Array<T>& last) {
   problem.must_complete();
-  Softened<Problem> soft(problem);
+  Softened<T> softened(problem);
+  Island<T>& soft = softened.island();
   const SolveLimits limits{.max_iterations = 1000, .min_iterations = 1};
-  ConvergenceMonitor<Residual, SolveLimits, Softened<Problem>, Impulses> monitor(limits, soft, best);
+  ConvergenceMonitor<Residual, SolveLimits, Island<T>, Array<T>> monitor(limits, soft, best);
   if (monitor.begin()) {
     monitor.open("compromise", limits.max_iterations);
-    momentum(soft, monitor, last, [&](auto& x, double& curvature) { return soft.sweep(1, x, curvature); });
+    momentum(soft, monitor, last, [&](const Array<T>& x, double& curvature) { return soft.sweep(1, x, curvature); });
   }
   report.sweeps += monitor.finish().sweeps;
-  soft.restore();
+  softened.restore();
   report.measure = problem.measure();
   report.status = Status::infeasible;
   report.ended_by = "compromise";

@@ -8,7 +8,7 @@
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/inner/rows_alone.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -22,10 +22,10 @@ namespace delassus::inner {
 ///
 /// Where G = 0 (a contact that is open) F_i is w λ_i, so that only the rows of the others meet in the matrix.
 /// Source: [AlartCurnier1991], [AcaryBremondHuber2018].
-template <class Rows>
+template <class T>
 class ContactSpace {
   struct Item {
-    Index pool, item, first;  ///< its first row
+    Index first;  ///< its first row
     int rows;
     bool is_cone, is_active = false;
     double friction, w;
@@ -33,54 +33,52 @@ class ContactSpace {
   };
 
  public:
-  /// Whether the law of pool p has such a form.
-  template <class Problem, int p>
-  static constexpr bool knows() {
-    return Problem::BookType::template has_cone<p>() ||
-           (Rows::template rows_of<p> == 1 && has_rows_alone<Problem, p>());
+  /// Whether a law has such a form.
+  static bool knows(const PoolView<T>& pool) {
+    return pool.table->friction || (pool.rows == 1 && has_rows_alone(pool.table->kinds, 1));
   }
 
   /// False where a law has no such form.
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(Island<T>& island) {
     items_.clear();
     bool is_known = true;
     Index row = 0;
-    problem.each([&](auto p, Index i) {
-      constexpr int R = Rows::template rows_of<p>;
-      constexpr bool is_cone = Problem::BookType::template has_cone<p>();
-      is_known = is_known && knows<Problem, p>();
-      Item item{p, i, row, R, is_cone, false, 0, 0, Mat3::Zero(), Mat3::Zero()};
-      if constexpr (is_cone) item.friction = problem.book().template friction<p>(i);
-      if constexpr (Problem::BookType::template kinds<p>()[0] == RowKind::equality) item.friction = -1;
-      item.w = double(trace(problem.template local<p>(i).W)) / R;
-      is_known = is_known && item.w > 0;
-      items_.push_back(item);
-      row += R;
-    });
+    for (const Span<T>& span : island)
+      for (const Index i : span) {
+        const PoolView<T>& pool = *span.pool;
+        Item item{row, pool.rows, pool.table->friction != nullptr, false, 0, pool.weight(i), Mat3::Zero(), Mat3::Zero()};
+        if (item.is_cone) item.friction = pool.table->friction(pool, i);
+        if (pool.table->kinds[0] == RowKind::equality) item.friction = -1;
+        is_known = is_known && knows(pool) && item.w > 0;
+        items_.push_back(item);
+        row += pool.rows;
+      }
     if (!is_known) return false;
     const std::size_t n = std::size_t(row);
     for (auto* v : {&lambda, &centre_, &d_, &u_, &F_, &direction_, &trial_}) v->assign(n, 0);
     W_.assign(n * n, 0);
-    read_W(problem);
+    read_W(island);
     return true;
   }
 
-  /// λ̂ ← λ ← what the problem has.
-  void take(const auto& problem) {
+  /// λ̂ ← λ ← what the island has.
+  void take(const Island<T>& island) {
     std::size_t at = 0;
-    problem.each([&](auto p, Index i) {
-      for (const auto x : problem.rows().template pool<p>().lambda[i]) lambda[at++] = double(x);
-    });
+    for (const Span<T>& span : island)
+      for (const Index i : span)
+        for (int k = 0; k < span.pool->rows; ++k) lambda[at++] = double(island.impulse(span, i)[k]);
     centre_ = lambda;
   }
-  /// The problem takes λ, each brought into its law's cone.
-  void give(auto& problem) const {
+  /// The island takes λ, each brought into its law's cone.
+  void give(Island<T>& island) const {
     std::size_t at = 0;
-    problem.change([&](auto p, Index i, auto& next) {
-      for (auto& x : next) x = typename Rows::Scalar(lambda[at++]);
-      problem.book().template clamp<p>(i, next);
-    });
+    T next[Island<T>::most_rows];
+    for (const Span<T>& span : island)
+      for (const Index i : span) {
+        for (int k = 0; k < span.pool->rows; ++k) next[k] = T(lambda[at++]);
+        island.clamp(span, i, next);
+        island.assign(span, i, next);
+      }
   }
 
   /// |F| at λ + t δ.
@@ -126,37 +124,38 @@ class ContactSpace {
 
  private:
   /// W column by column, from the answer to an impulse on each row; d with it.
-  void read_W(auto& problem) {
-    using T = typename Rows::Scalar;
+  void read_W(Island<T>& island) {
     const std::size_t n = lambda.size();
-    was_.resize_like(problem.rows());
-    problem.save(was_);
-    problem.clear();
-    const auto read = [&](double* to) {
-      std::size_t at = 0;
-      problem.each([&](auto p, Index i) {
-        for (const T x : problem.template local<p>(i).d) to[at++] = double(x);
-      });
-    };
-    read(d_.data());
+    island.save(was_);
+    island.clear();
+    read(island, d_.data());
     double scale = 0;
     for (const double x : d_) scale = std::max(scale, std::abs(x));
     if (scale == 0) scale = 1;
     std::size_t column = 0;
-    problem.each([&](auto p, Index i) {
-      constexpr int R = Rows::template rows_of<p>;
-      const double size = 1e3 * scale * R / double(trace(problem.template local<p>(i).W));
-      for (int k = 0; k < R; ++k, ++column) {
-        Vec<R, T> impulse = Vec<R, T>::Zero();
-        impulse[k] = T(size);
-        problem.template assign<p>(i, impulse);
-        read(&W_[column * n]);
-        for (std::size_t row = 0; row < n; ++row)
-          W_[column * n + row] = (W_[column * n + row] - d_[row]) / size;
+    for (const Span<T>& span : island)
+      for (const Index i : span) {
+        const double size = 1e3 * scale / span.pool->weight(i);
+        T impulse[Island<T>::most_rows] = {};
+        for (int k = 0; k < span.pool->rows; ++k, ++column) {
+          impulse[k] = T(size);
+          island.assign(span, i, impulse);
+          impulse[k] = T(0);
+          read(island, &W_[column * n]);
+          for (std::size_t row = 0; row < n; ++row)
+            W_[column * n + row] = (W_[column * n + row] - d_[row]) / size;
+        }
+        island.assign(span, i, impulse);
       }
-      problem.template assign<p>(i, Vec<R, T>::Zero());
-    });
-    problem.load(was_);
+    island.load(was_);
+  }
+  static void read(const Island<T>& island, double* to) {
+    T u[Island<T>::most_rows];
+    for (const Span<T>& span : island)
+      for (const Index i : span) {
+        island.velocity(span, i, u);
+        for (int k = 0; k < span.pool->rows; ++k) *to++ = double(u[k]);
+      }
   }
 
   /// u ← d + W x.
@@ -228,7 +227,7 @@ class ContactSpace {
   Array<double> centre_, d_, u_, F_, direction_, trial_, right_, W_;  ///< W column by column
   Array<Index> active_;
   DenseElimination matrix_;
-  Impulses<Rows> was_;
+  Array<T> was_;
 };
 
 }  // namespace delassus::inner

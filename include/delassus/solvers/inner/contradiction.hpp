@@ -2,7 +2,8 @@
 #pragma once
 
 #include <delassus/rows/row_kind.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,33 +26,41 @@ namespace delassus::inner {
 /// that sweeps get through. Joints that contradict each other through a body that contacts hold are found
 /// without the contacts, which would let W z fall slowly. In single precision there is no such margin:
 /// nothing is proved there. Source: [Gale1960], the theorem of the alternative.
-template <class Problem>
+template <class T>
 class Contradiction {
-  using T = typename Problem::T;
   static constexpr double rounding = std::numeric_limits<double>::epsilon();
   static constexpr double margin = 1.5e10;
+  static constexpr int most_rows = Island<T>::most_rows;
   struct Sums {
     double work = 0, moved = 0, free = 0, size = 0;
   };
 
  public:
-  explicit Contradiction(Problem& problem) : problem_(problem) {}
+  explicit Contradiction(Island<T>& island) : island_(island) {}
 
   /// From the direction in which λ has gone since `before` was saved; λ is something else afterwards.
-  bool is_proved(const auto& before) {
+  bool is_proved(const Array<T>& before) {
     if constexpr (sizeof(T) < sizeof(double)) return false;
-    problem_.change([&](auto p, Index i, auto& z) {
-      z -= std::get<p>(before.pools)[i];
-      clear_bounded<p>(i, z);
-    });
+    T z[most_rows];
+    const T* at = before.data();
+    for (const Span<T>& span : island_)
+      for (const Index i : span) {
+        const T* lambda = island_.impulse(span, i);
+        for (int k = 0; k < span.pool->rows; ++k) z[k] = lambda[k] - *at++;
+        clear_bounded(span, i, z);
+        island_.assign(span, i, z);
+      }
     if (moves_nothing()) return true;
     bool has_less = false;
     has_two_sided_alone_ = true;
-    problem_.change([&](auto p, Index i, auto& z) {
-      const auto whole = z;
-      clear_bounded<p>(i, z);
-      has_less = has_less || z != whole;
-    });
+    for (const Span<T>& span : island_)
+      for (const Index i : span) {
+        const T* whole = island_.impulse(span, i);
+        for (int k = 0; k < span.pool->rows; ++k) z[k] = whole[k];
+        clear_bounded(span, i, z);
+        for (int k = 0; k < span.pool->rows; ++k) has_less = has_less || z[k] != whole[k];
+        island_.assign(span, i, z);
+      }
     return has_less && moves_nothing();
   }
 
@@ -65,28 +74,23 @@ class Contradiction {
       const double free = std::sqrt(s.free), size = std::sqrt(s.size);
       const double moved = std::sqrt(s.moved) + 8 * rounding * free;
       if (s.work > 1e-6 * free * size && s.work >= margin * moved * free) return true;
-      if (!(s.work > 1e-6 * free * size) || !(moved < 0.7 * last) || problem_.is_out_of_time()) return false;
+      if (!(s.work > 1e-6 * free * size) || !(moved < 0.7 * last) || island_.is_out_of_time()) return false;
       // Where rows agree dᵀz goes to zero with W z, else it stays: then their ratio grows by 1/0.7 a round.
       if (round % 3 == 0) {
         if (s.work < 1.2 * promise * moved) return false;
         promise = s.work / moved;
       }
       last = moved;
-      for (int k = 0; k < 8 && !problem_.is_out_of_time(); ++k) sweep();
+      for (int k = 0; k < 8 && !island_.is_out_of_time(); ++k) sweep();
     }
     return false;
   }
 
-  template <int p>
-  static constexpr auto kinds = Problem::BookType::template kinds<p>();
-
-  template <int p, class Z>
-  void clear_bounded(Index i, Z& z) const {
-    for (std::size_t k = 0; k < kinds<p>.size(); ++k) z[Index(k)] = allowed<p>(i, k, z[Index(k)]);
+  void clear_bounded(const Span<T>& span, Index i, T* z) const {
+    for (int k = 0; k < span.pool->rows; ++k) z[k] = allowed(span, i, k, z[k]);
   }
-  template <int p>
-  T allowed(Index i, std::size_t row, T z) const {
-    switch (kinds<p>[row]) {
+  T allowed(const Span<T>& span, Index i, int row, T z) const {
+    switch (island_.kinds(span)[row]) {
       case RowKind::equality:
         return z;
       case RowKind::lower:
@@ -96,19 +100,15 @@ class Contradiction {
       case RowKind::friction:
         break;
     }
-    return has_no_cap<p>(i) ? z : T(0);
+    return has_no_cap(span, i) ? z : T(0);
   }
   /// A row alone whose law leaves any impulse as it is.
-  template <int p>
-  bool has_no_cap(Index i) const {
-    if constexpr (kinds<p>.size() == 1 && kinds<p>[0] == RowKind::friction &&
-                  Problem::BookType::template clamps<p>()) {
-      Vec<1, T> huge(std::sqrt(std::numeric_limits<T>::max()));
-      problem_.book().template clamp<p>(i, huge);
-      return huge[0] == std::sqrt(std::numeric_limits<T>::max());
-    } else {
-      return false;
-    }
+  static bool has_no_cap(const Span<T>& span, Index i) {
+    if (span.pool->rows != 1 || !span.pool->table->clamp) return false;
+    const T most = std::sqrt(std::numeric_limits<T>::max());
+    T huge = most;
+    Island<T>::clamp(span, i, &huge);
+    return huge == most;
   }
 
   /// z ← z |d|/|z|, both in energy: (d + W z) − d loses what is smaller than the rounding of d. False for
@@ -117,61 +117,65 @@ class Contradiction {
     const Sums s = measure();
     const double factor = std::sqrt(s.free / s.size);
     if (!(factor > 0) || !std::isfinite(factor)) return false;
-    problem_.change([&](auto, Index, auto& z) { z *= T(factor); });
+    T next[most_rows];
+    for (const Span<T>& span : island_)
+      for (const Index i : span) {
+        const T* z = island_.impulse(span, i);
+        for (int k = 0; k < span.pool->rows; ++k) next[k] = z[k] * T(factor);
+        island_.assign(span, i, next);
+      }
     return true;
-  }
-
-  /// (W z)_i.
-  template <int p>
-  auto moved_by(Index i, const auto& c) const {
-    auto u = c.d;
-    u -= problem_.rows().template pool<p>().d[i];
-    return u;
   }
 
   Sums measure() const {
     Sums s;
-    problem_.each([&](auto p, Index i) {
-      const auto c = problem_.template local<p>(i);
-      const auto u = moved_by<p>(i, c);
-      const auto& d = problem_.rows().template pool<p>().d[i];
-      const double w = double(trace(c.W)) / double(d.size());
-      if (!(w > 0)) return;
-      s.work -= double(d.dot(c.lambda));
-      s.moved += double(u.squaredNorm()) / w;
-      s.free += double(d.squaredNorm()) / w;
-      s.size += w * double(c.lambda.squaredNorm());
-    });
+    T u[most_rows];
+    for (const Span<T>& span : island_)
+      for (const Index i : span) {
+        const double w = span.pool->weight(i);
+        if (!(w > 0)) continue;
+        island_.velocity(span, i, u);
+        const T *d = island_.free_of_impulses(span, i), *z = island_.impulse(span, i);
+        double work = 0, moved = 0, free = 0, size = 0;
+        for (int k = 0; k < span.pool->rows; ++k) {
+          const double Wz = double(u[k] - d[k]);
+          work += double(d[k]) * double(z[k]), moved += Wz * Wz, free += double(d[k]) * double(d[k]), size += double(z[k]) * double(z[k]);
+        }
+        s.work -= work, s.moved += moved / w, s.free += free / w, s.size += w * size;
+      }
     return s;
   }
 
   /// Gauss-Seidel on min ½ zᵀ W z, row by row.
   void sweep() {
-    problem_.each([&](auto p, Index i) {
-      const auto c = problem_.template local<p>(i);
-      auto u = moved_by<p>(i, c);
-      auto z = c.lambda;
-      for (std::size_t row = 0; row < kinds<p>.size(); ++row) {
-        const Index k = Index(row);
-        if (!(c.W(k, k) > T(0))) continue;
-        const T next = allowed<p>(i, row, z[k] - u[k] / c.W(k, k)), change = next - z[k];
-        z[k] = next;
-        for (Index j = 0; j < Index(kinds<p>.size()); ++j) u[j] += c.W(j, k) * change;
+    T u[most_rows], z[most_rows];
+    for (const Span<T>& span : island_)
+      for (const Index i : span) {
+        const int R = span.pool->rows;
+        const T *d = island_.free_of_impulses(span, i), *now = island_.impulse(span, i), *own = span.pool->own_block(i);
+        island_.velocity(span, i, u);
+        for (int k = 0; k < R; ++k) u[k] -= d[k], z[k] = now[k];  // (W z)_i
+        for (int k = 0; k < R; ++k) {
+          const T* column = own + R * k;
+          if (!(column[k] > T(0))) continue;
+          const T next = allowed(span, i, k, z[k] - u[k] / column[k]), change = next - z[k];
+          z[k] = next;
+          for (int j = 0; j < R; ++j) u[j] += column[j] * change;
+        }
+        island_.assign(span, i, z);
       }
-      problem_.template assign<p>(i, z);
-    });
   }
 
-  Problem& problem_;
+  Island<T>& island_;
   bool has_two_sided_alone_ = false;  ///< z = 0 on lower and upper rows
 };
 
 /// Whether λ runs away because the rows contradict each other: asked where sweeps have stalled, a few after λ
 /// was `before`. Costs little where λ does not, forty sweeps where the rows agree, and at most some three
 /// hundred.
-template <class Problem, class ConvergenceMonitor, class Impulses>
-bool contradicts(Problem& problem, ConvergenceMonitor& monitor, Impulses& before) {
-  if (!problem.is_cut_off(0) && Contradiction<Problem>(problem).is_proved(before)) return true;
+template <class T, class ConvergenceMonitor>
+bool contradicts(Island<T>& island, ConvergenceMonitor& monitor, const Array<T>& before) {
+  if (!island.is_cut_off(0) && Contradiction<T>(island).is_proved(before)) return true;
   monitor.back_to_best();
   return false;
 }

@@ -27,7 +27,7 @@ class ConvergenceMonitor {
   /// tolerance after their first.
   bool begin() {
     problem_.save(best_set_);
-    if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !Problem::Observes::every_sweep)
+    if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !problem_.observes_sweeps())
       return true;
     report_.measure = best_ = problem_.measure();
     problem_.notify(0, report_.measure);
@@ -139,7 +139,7 @@ class ConvergenceMonitor {
   /// but for the first few where ten times the tolerance is not in sight: a measure costs about a sweep, and
   /// small problems end after ten.
   bool is_due(double moved) const {
-    if (Problem::Observes::every_sweep || !Criterion::needs_measure || measured_ == 0) return true;
+    if (problem_.observes_sweeps() || !Criterion::needs_measure || measured_ == 0) return true;
     const double foretold = per_root_of_movement_ * std::sqrt(moved);
     if (foretold <= reach_) return true;
     const bool is_late = report_.sweeps - measured_ >= 2 * inner::patience(report_.sweeps);

@@ -25,17 +25,18 @@ struct ConvexNewton {
   bool from_slips = false;    ///< of the given λ, and nothing else of it; else from all of λ
   int patience = 50;          ///< convex problems before the slips follow one that is half solved
 
+  static constexpr Needs needs = Needs::convex_tangents;
   template <class Rows>
-  using Workspace = ConvexSpace<Rows>;
+  using Workspace = ConvexSpace<typename Rows::Scalar, std::max(1, Rows::widest)>;
 
-  template <class Problem, class Work>
-  SolveReport solve(Problem& problem, Work& work) const {
-    Search<Problem, Work> now{problem, work};
+  template <class T, class Work>
+  SolveReport solve(Island<T>& problem, Work& work) const {
+    Search<T, Work> now{problem, work};
     now.report.measure = now.best = problem.measure();
     now.report.status = Status::max_iterations;
     if (!std::isfinite(now.best.residual)) return {.status = Status::quarantined, .measure = now.best};
     if (!work.gather(problem)) return now.report;
-    work.keep(problem);
+    work.keep();
     if (from_slips && solve_of_slips(now)) return now.report;
     double epsilon = coarse, far = 1, last = 1, polished = 1;
     for (int k = 0, since = 0; k < max_iterations; ++k) {
@@ -46,7 +47,7 @@ struct ConvexNewton {
       if (drifts)
         work.extrapolate(problem, far);
       else
-        work.recentre(problem);
+        work.recentre();
       far = drifts ? 2 * far : std::max(0.25 * far, 1.0);
       last = residual;
       epsilon = std::clamp(residual, least, coarse);
@@ -55,7 +56,7 @@ struct ConvexNewton {
       polished = residual;
       if (polish(now)) return now.report;
     }
-    work.hand_over(problem, [](const auto& c) { return c.best; });
+    work.hand_over(problem, work.best);
     now.report.measure = problem.measure();
     return now.report;
   }
@@ -66,9 +67,9 @@ struct ConvexNewton {
 
   static constexpr double same_slips = 1e-3;  ///< of all velocities: one motion, to what tolerances leave of it
 
-  template <class Problem, class Work>
+  template <class T, class Work>
   struct Search {
-    Problem& problem;
+    Island<T>& problem;
     Work& work;
     SolveReport report{};
     Measure best{};
@@ -82,17 +83,17 @@ struct ConvexNewton {
   bool solve_of_slips(auto& now) const {
     constexpr int turns = 20, between_turns = 10, between_polishes = 20, between_marks = 50;
     now.work.forget(now.problem);
-    now.work.keep(now.problem);
+    now.work.keep();
     now.best.residual = std::numeric_limits<double>::infinity();
     double epsilon = coarse, marked = epsilon;
     for (int k = 1, turned = 0; k <= max_iterations && turned <= turns; ++k) {
       now.report.factorizations += now.work.descend(now.problem, epsilon);
       if (is_done(now)) return true;
-      const double left = now.work.distance(now.problem, epsilon), residual = now.report.measure.residual;
+      const double left = now.work.distance(epsilon), residual = now.report.measure.residual;
       const bool is_near = left < std::min(10 * tolerance, 0.5 * residual);
       const bool is_solved =
           left < 0.1 * tolerance || (is_near && k > patience && k % between_turns == 0);
-      now.work.recentre(now.problem, !is_solved);
+      now.work.recentre(!is_solved);
       turned += is_solved;
       if (k % between_marks == 0) {
         if (turned == 0 && left > std::max(0.8 * marked, tolerance)) break;
@@ -102,7 +103,7 @@ struct ConvexNewton {
       epsilon = std::clamp(std::min(left, residual), least, coarse);
     }
     if (!(now.best.residual <= tolerance)) return false;
-    now.work.hand_over(now.problem, [](const auto& c) { return c.best; });
+    now.work.hand_over(now.problem, now.work.best);
     return is_done(now, now.problem.measure());
   }
 
@@ -114,7 +115,7 @@ struct ConvexNewton {
     now.report.measure = measure;
     if (now.report.measure.residual < now.best.residual) {
       now.best = now.report.measure;
-      now.work.keep(now.problem);
+      now.work.keep();
     }
     if (!(now.report.measure.residual <= tolerance)) return false;
     now.report.status = Status::converged;
@@ -139,7 +140,7 @@ struct ConvexNewton {
       now.work.mark(now.problem);
       epsilon = std::max(0.03 * epsilon, 1e-7);
     }
-    now.work.hand_over(now.problem, [](const auto& c) { return c.before; });
+    now.work.hand_over(now.problem, now.work.before);
     now.work.restart(now.problem, keeps_slips);
     return false;
   }

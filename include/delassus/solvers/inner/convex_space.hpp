@@ -13,17 +13,16 @@
 
 namespace delassus::inner {
 
-template <int R>
-struct ConvexItem : NewtonItem<R> {
-  Vec<R> before;       ///< λ that a polish began with
-  Vec<R> total, step;  ///< impulses of which y and δ are the velocities: y = G `total`, δ = G `step`
-  double slip;         ///< |u_t| that the problem is given
-  bool is_exact;       ///< S and λ(u) are those of the law as it is, with the slip that u has
+/// The laws with the slip of their friction rows given, by constraint, or as they are.
+template <class T>
+struct LawsOfSlips {
+  Array<double> slip;     ///< |u_t| that the problem is given
+  bool is_exact = false;  ///< S and λ(u) are those of the law as it is, with the slip that u has
 
-  template <int p, class Problem>
-  Mat<R, R> slope_at(const Problem& problem, Local<R>& local) const {
-    if (is_exact) return problem.book().template tangent<p>(this->item, local);
-    return problem.book().template convex_tangent<p>(this->item, local, slip);
+  void tangent(const NewtonConstraint<T>& c, const double* w, const double* d, double* lambda, double* slope) const {
+    const PoolView<T>& pool = *c.span->pool;
+    if (is_exact) pool.tangent(pool, c.item, w, d, lambda, slope);
+    else pool.convex_tangent(pool, c.item, w, d, slip[std::size_t(c.number)], lambda, slope);
   }
 };
 
@@ -31,33 +30,33 @@ struct ConvexItem : NewtonItem<R> {
 /// velocities of the bodies are the minimum of a convex function; its proximal point around λ̂ is that of
 ///
 ///   Φ(y) = ½ yᵀ A y + Σ ½ |λ_i(u_i)|²_{R + ε w},   ∇Φ = A F,   F(y) = y − G (λ(u) − λ̂),   u = d + W λ̂ + H y.
-template <class Rows>
-class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
-  using Base = BodySpace<Rows, WholeSystem<ConvexItem, Rows>>;
-  using T = typename Rows::Scalar;
+template <class T, int width>
+class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
+  using Base = BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>>;
+  using Constraint = typename Base::Constraint;
+  using Base::constraints_, Base::laws, Base::error, Base::move, Base::slope, Base::square_of;
 
  public:
+  using Base::best, Base::centre, Base::lambda, Base::velocity, Base::most_rows;
   using Base::evaluate, Base::hand_over;
 
-  template <class Problem>
-  bool gather(Problem& problem) {
-    if (!Base::gather(problem)) return false;
-    each(problem, [&](auto p, auto& c, auto&) {
-      c.slip = slip_of<Problem, p>(c.velocity);
-      c.is_exact = false;
-    });
-    begin(problem, false);
+  bool gather(Island<T>& island) {
+    if (!Base::gather(island)) return false;
+    laws.slip.resize(constraints_.size());
+    laws.is_exact = false;
+    for (auto* rows : {&before, &total_, &step_}) rows->assign(lambda.size(), 0.0);
+    begin(false);
     return true;
   }
 
   /// One proximal point, as sharp as rounding lets it be.
-  int descend(auto& problem, double epsilon) {
-    double size = evaluate(problem, epsilon, 0);
-    const double rounding = reach(problem, epsilon);
+  int descend(Island<T>& island, double epsilon) {
+    double size = evaluate(island, epsilon, 0);
+    const double rounding = reach(epsilon);
     for (int k = 0; k < 100; ++k) {
-      if (!(size > 4 * rounding) || !std::isfinite(size) || !find_direction(problem)) return k;
-      advance(problem, search_line(problem, epsilon));
-      const double next = evaluate(problem, epsilon, 0);
+      if (!(size > 4 * rounding) || !std::isfinite(size) || !find_direction(island)) return k;
+      advance(search_line(island, epsilon));
+      const double next = evaluate(island, epsilon, 0);
       if (next > 0.5 * size && size < 1e4 * rounding) return k;
       size = next;
     }
@@ -65,136 +64,141 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
   }
   /// The same for the laws as they are: no convex function leads the way, the steps are halved until F
   /// falls.
-  int polish(auto& problem, double epsilon) {
-    each(problem, [](auto, auto& c, auto&) { c.is_exact = true; });
-    double size = evaluate(problem, epsilon, 0);
-    const double rounding = reach(problem, epsilon);
+  int polish(Island<T>& island, double epsilon) {
+    laws.is_exact = true;
+    double size = evaluate(island, epsilon, 0);
+    const double rounding = reach(epsilon);
     int k = 0;
     for (; k < 30 && size > 4 * rounding && std::isfinite(size); ++k) {
-      if (!find_direction(problem)) break;
-      const double before = size;
-      advance(problem, halve_step(size, 12, [&](double t) { return evaluate(problem, epsilon, t); }));
-      if (size > 0.99 * before) break;
+      if (!find_direction(island)) break;
+      const double start = size;
+      advance(halve_step(size, 12, [&](double t) { return evaluate(island, epsilon, t); }));
+      if (size > 0.99 * start) break;
     }
-    each(problem, [](auto, auto& c, auto&) { c.is_exact = false; });
+    laws.is_exact = false;
     return k;
   }
   /// Where points of contact are redundant and their gaps do not fit, λ drifts along a line that leaves the
   /// bodies alone, the same way at each proximal point, until a contact opens: goes `factor` times that way
   /// at once.
-  void extrapolate(auto& problem, double factor) {
-    each(problem, [&](auto p, auto& c, auto&) {
-      Vec<Rows::template rows_of<p>, T> next = (c.lambda + factor * (c.lambda - c.centre)).template cast<T>();
-      problem.book().template clamp<p>(c.item, next);
-      problem.template assign<p>(c.item, next);
-    });
-    restart(problem);
+  void extrapolate(Island<T>& island, double factor) {
+    T next[most_rows];
+    for (const Constraint& c : constraints_) {
+      for (int k = 0; k < c.rows; ++k) next[k] = T(lambda[c.at + k] + factor * (lambda[c.at + k] - centre[c.at + k]));
+      island.clamp(*c.span, c.item, next);
+      island.assign(*c.span, c.item, next);
+    }
+    restart(island);
   }
   /// Begins anew from the λ that the rows have, with its slips unless those stay.
-  void restart(auto& problem, bool keeps_slips = false) {
-    Base::restart(problem);
-    begin(problem, keeps_slips);
+  void restart(Island<T>& island, bool keeps_slips = false) {
+    Base::restart(island);
+    begin(keeps_slips);
   }
   /// λ̂ ← λ(u), s ← |u_t| unless the slips stay.
-  void recentre(auto& problem, bool keeps_slips = false) {
-    Base::recentre(problem);
-    begin(problem, keeps_slips);
+  void recentre(bool keeps_slips = false) {
+    Base::recentre();
+    begin(keeps_slips);
   }
   /// λ ← 0; the slips stay.
-  void forget(auto& problem) {
-    hand_over(problem, [](const auto& c) { return (0 * c.lambda).eval(); });
-    restart(problem, true);
+  void forget(Island<T>& island) {
+    island.clear();
+    restart(island, true);
   }
   /// What the proximal point leaves of the convex problem, √Σ |ε w (λ − λ̂)|²/w against √Σ |u|²/w.
-  double distance(auto& problem, double epsilon) {
+  double distance(double epsilon) const {
     double left = 0, whole = 0;
-    each(problem, [&](auto, auto& c, auto&) {
-      left += c.weight * (c.lambda - c.centre).squaredNorm();
-      whole += c.velocity.squaredNorm() / c.weight;
-    });
+    for (const Constraint& c : constraints_) {
+      double square = 0;
+      for (Index k = c.at; k < c.at + c.rows; ++k) square += (lambda[k] - centre[k]) * (lambda[k] - centre[k]);
+      left += c.weight * square;
+      whole += square_of(&velocity[c.at], c.rows) / c.weight;
+    }
     return epsilon * std::sqrt(left / whole);
   }
 
   /// How far the slips of the rows' λ are from those given, √Σ (|u_t| − s)²/w against √Σ |u|²/w.
-  template <class Problem>
-  double slip_change(Problem& problem) {
+  double slip_change(Island<T>& island) const {
     double change = 0, whole = 0;
-    each(problem, [&](auto p, auto& c, auto&) {
-      const Vec<Rows::template rows_of<p>> u = problem.template local<p>(c.item).d.template cast<double>();
-      const double slip = slip_of<Problem, p>(u);
-      change += (slip - c.slip) * (slip - c.slip) / c.weight;
-      whole += u.squaredNorm() / c.weight;
-    });
+    T numbers[most_rows];
+    double u[most_rows];
+    for (const Constraint& c : constraints_) {
+      island.velocity(*c.span, c.item, numbers);
+      for (int k = 0; k < c.rows; ++k) u[k] = double(numbers[k]);
+      const double apart = slip_of(c, u) - laws.slip[std::size_t(c.number)];
+      change += apart * apart / c.weight;
+      whole += square_of(u, c.rows) / c.weight;
+    }
     return std::sqrt(change / whole);
   }
 
   /// Of λ(u), by W itself.
-  Measure measure(auto& problem) {
-    hand_over(problem, [](const auto& c) { return c.lambda; });
-    return problem.measure();
+  Measure measure(Island<T>& island) {
+    hand_over(island, lambda);
+    return island.measure();
   }
-  void mark(auto& problem) {
-    each(problem, [&](auto p, auto& c, auto&) {
-      c.before = problem.rows().template pool<p>().lambda[c.item].template cast<double>();
-    });
+  void mark(const Island<T>& island) {
+    for (const Constraint& c : constraints_)
+      for (int k = 0; k < c.rows; ++k) before[c.at + k] = double(island.impulse(*c.span, c.item)[k]);
   }
+
+  Array<double> before;  ///< by row: λ that a polish began with
 
  private:
-  using Base::each, Base::advance;
-
-  template <class Problem>
-  void begin(Problem& problem, bool keeps_slips) {
-    each(problem, [&](auto p, auto& c, auto&) {
-      c.total.setZero();
-      if (!keeps_slips) c.slip = slip_of<Problem, p>(c.velocity);
-    });
+  void begin(bool keeps_slips) {
+    total_.assign(total_.size(), 0.0);
+    if (keeps_slips) return;
+    for (const Constraint& c : constraints_) laws.slip[std::size_t(c.number)] = slip_of(c, &velocity[c.at]);
   }
 
   /// What rounding leaves of |F|: of u, which ε magnifies, and of λ.
-  double reach(auto& problem, double epsilon) {
-    double velocity = 0, impulse = 0;
-    each(problem, [&](auto, auto& c, auto&) {
-      velocity += c.velocity.squaredNorm() / c.weight;
-      impulse += c.centre.squaredNorm() * c.weight;
-    });
-    return std::numeric_limits<double>::epsilon() * (std::sqrt(velocity) / epsilon + std::sqrt(impulse));
+  double reach(double epsilon) const {
+    double speeds = 0, impulses = 0;
+    for (const Constraint& c : constraints_) {
+      speeds += square_of(&velocity[c.at], c.rows) / c.weight;
+      impulses += square_of(&centre[c.at], c.rows) * c.weight;
+    }
+    return std::numeric_limits<double>::epsilon() * (std::sqrt(speeds) / epsilon + std::sqrt(impulses));
   }
 
-  template <class Problem, int p, int R>
-  static double slip_of(const Vec<R>& u) {
-    constexpr auto kinds = Problem::BookType::template kinds<p>();
+  static double slip_of(const Constraint& c, const double* u) {
+    const RowKind* kinds = Island<T>::kinds(*c.span);
     double square = 0;
-    for (int k = 0; k < R; ++k)
+    for (int k = 0; k < c.rows; ++k)
       if (kinds[k] == RowKind::friction) square += u[k] * u[k];
     return std::sqrt(square);
   }
 
   /// J δ = −F, and the impulses of δ: G step = δ with step = −(total − λ + λ̂) − S H δ.
-  bool find_direction(auto& problem) {
-    if (!Base::find_direction(problem)) return false;
-    each(problem,
-         [](auto, auto& c, auto&) { c.step = c.lambda - c.centre - c.total - c.slope * c.move; });
+  bool find_direction(Island<T>& island) {
+    if (!Base::find_direction(island)) return false;
+    double Sm[most_rows];
+    for (const Constraint& c : constraints_) {
+      std::fill(Sm, Sm + c.rows, 0.0);
+      add_product(c.rows, c.rows, 1, &slope[c.slope], &move[c.at], Sm);
+      for (int k = 0; k < c.rows; ++k) step_[c.at + k] = lambda[c.at + k] - centre[c.at + k] - total_[c.at + k] - Sm[k];
+    }
     return true;
   }
 
   /// dΦ/dt along δ at y + t δ: Σ step·H F.
-  double slope(auto& problem, double epsilon, double t) {
-    evaluate(problem, epsilon, t);
+  double slope_along(Island<T>& island, double epsilon, double t) {
+    evaluate(island, epsilon, t);
     double sum = 0;
-    each(problem, [&](auto, auto& c, auto&) { sum += c.step.dot(c.error); });
+    for (std::size_t k = 0; k < step_.size(); ++k) sum += step_[k] * error[k];
     return sum;
   }
 
   /// The t in (0, 1] where Φ is least along δ, to a tenth of its slope.
-  double search_line(auto& problem, double epsilon) {
-    const double start = slope(problem, epsilon, 0);
+  double search_line(Island<T>& island, double epsilon) {
+    const double start = slope_along(island, epsilon, 0);
     double low = 0, high = 1, at_low = start, t = 1;
-    double now = slope(problem, epsilon, 1), at_high = now;
+    double now = slope_along(island, epsilon, 1), at_high = now;
     if (!(now > 0.1 * std::abs(start))) return 1;
     for (int k = 0; k < 40; ++k) {
       t = low + (high - low) * std::clamp(at_low / (at_low - at_high), 0.05, 0.95);
       if (k % 3 == 2) t = 0.5 * (low + high);
-      now = slope(problem, epsilon, t);
+      now = slope_along(island, epsilon, t);
       if (std::abs(now) <= 0.1 * std::abs(start)) break;
       (now > 0 ? high : low) = t;
       (now > 0 ? at_high : at_low) = now;
@@ -202,10 +206,12 @@ class ConvexSpace : public BodySpace<Rows, WholeSystem<ConvexItem, Rows>> {
     return t;
   }
 
-  void advance(auto& problem, double t) {
-    Base::advance(problem, t);
-    each(problem, [&](auto, auto& c, auto&) { c.total += t * c.step; });
+  void advance(double t) {
+    Base::advance(t);
+    for (std::size_t k = 0; k < total_.size(); ++k) total_[k] += t * step_[k];
   }
+
+  Array<double> total_, step_;  ///< by row, impulses of which y and δ are the velocities: y = G `total`, δ = G `step`
 };
 
 }  // namespace delassus::inner

@@ -4,12 +4,11 @@
 #include <delassus/core/array.hpp>
 #include <delassus/linear/sparse_lu.hpp>
 #include <delassus/math/small_products.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/row_view.hpp>
 #include <delassus/solvers/inner/island_matrices.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace delassus::inner {
@@ -26,14 +25,11 @@ struct DirectSide {
 /// One constraint: its place, its sides, and what stands on W's diagonal beside H G.
 template <int w>
 struct DirectNode {
-  int pool, rows;
+  int pool, rows;  ///< pool: the number that `take` was given
   Index item, first, last;
   Vec<w> compliance;
   Vec<w> scale;  ///< |W_kk|, 1/kg; zero: nothing answers to the row
 };
-
-template <class Rows>
-class DirectSystem;
 
 /// The equations of the bilateral constraints b, with a velocity y for each hub, a block that more than
 /// `most` of them hold:
@@ -46,12 +42,12 @@ class DirectSystem;
 /// metric of A, so every order of elimination has pivots. ε makes dependent rows solvable: where they agree,
 /// their share of δ is the smallest; its own error goes by repetition. Source: [Vanderbei1995] for the order,
 /// [Carpentier2021] for ε and repetition.
-template <class T, int... widths, int... R>
-class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
+///
+/// w: the most rows of a constraint, width: the most velocities of a block.
+template <int w_, int width_>
+class DirectSystem {
  public:
-  using Rows = RowSystem<T, Widths<widths...>, R...>;
-  static constexpr int pools = int(sizeof...(R));
-  static constexpr int w = std::max({R...}), width = std::max({1, widths...});
+  static constexpr int w = w_, width = width_;
   static constexpr int most = 5;                     ///< bilateral constraints of a block that is no hub
   static constexpr int parts = (width + w - 1) / w;  ///< nodes of the matrix that a hub takes
   using Row = Vec<w>;
@@ -60,48 +56,47 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   using Side = DirectSide<w, width>;
 
   void begin() {
-    static_assert(sizeof...(widths) > 0,
-                  "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
-                  "solve it by AcceleratedGaussSeidel");
-    for (const auto& [s, b] : blocks_) number_[s][b] = -1;
+    for (const auto& [s, b] : blocks_) number(s, b) = -1;
     blocks_.clear();
     nodes_.clear();
     sides_.clear();
     bilateral_ = 0;
   }
 
-  /// Takes item i of pool p as the next constraint; the bilateral ones come first. False where the set's A
+  /// Takes item i of a pool as the next constraint; the bilateral ones come first. False where a set's A
   /// couples blocks.
-  template <int p>
-  bool take(const Rows& rows, Index i, bool is_bilateral) {
-    constexpr int r = Rows::template rows_of<p>;
-    const auto& pool = rows.template pool<p>();
-    Node node{p, r, i, Index(sides_.size()), 0, zero<Row>(), zero<Row>()};
-    bool is_alone = true;
-    for_each_index<Rows::set_count>([&](auto s) {
-      constexpr int narrow = Rows::template width_of<s>;
-      const auto& set = std::get<s>(pool.sets);
-      if (set.offset[i + 1] > set.offset[i] && set.G.size() != set.H.size()) is_alone = false;
-      if (!is_alone) return;
+  template <class T>
+  bool take(const RowView<T>& rows, Index i, bool is_bilateral, int pool) {
+    const int r = rows.rows;
+    Node node{pool, r, i, Index(sides_.size()), 0, zero<Row>(), zero<Row>()};
+    for (int s = 0; s < rows.sets; ++s) {
+      const SetBlocksView<T>& set = rows.set[s];
+      if (!set.has_entries(i)) continue;
+      if (!set.G) return false;
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) {
-        if (is_zero(set.G[e])) continue;
+        const std::ptrdiff_t at = std::ptrdiff_t(r * set.width) * e;
+        const T *H = set.H + at, *G = set.G + at;
+        bool answers = false;
+        for (int k = 0; k < r * set.width; ++k) answers = answers || G[k] != T(0);
+        if (!answers) continue;
         Side& side = sides_.emplace_back();
         side.node = Index(nodes_.size());
-        side.block = number(s, set.block[e]);
-        if constexpr (r < w || narrow < width) set_all(side.H, 0.0), set_all(side.G, 0.0);
-        for (int k = 0; k < narrow; ++k)
-          for (int j = 0; j < r; ++j) side.H(j, k) = double(set.H[e](j, k)), side.G(k, j) = double(set.G[e](k, j));
+        side.block = place_of(s, rows.sets, set.block[e]);
+        set_all(side.H, 0.0), set_all(side.G, 0.0);
+        for (int k = 0; k < set.width; ++k)
+          for (int j = 0; j < r; ++j) side.H(j, k) = double(H[j + r * k]), side.G(k, j) = double(G[k + set.width * j]);
       }
-    });
+    }
     node.last = Index(sides_.size());
     measure(node);
     for (int k = 0; k < r; ++k) {
-      node.compliance[k] = double(pool.compliance[i][k]) + double(pool.relative_compliance[i][k]) * node.scale[k];
+      const std::ptrdiff_t row = std::ptrdiff_t(r) * i + k;
+      node.compliance[k] = double(rows.compliance[row]) + double(rows.relative_compliance[row]) * node.scale[k];
       node.scale[k] = std::abs(node.scale[k]) + node.compliance[k];
     }
     nodes_.push_back(node);
     if (is_bilateral) ++bilateral_;
-    return is_alone;
+    return true;
   }
 
   /// Lists sides by block and brings the analysis of graph `which` up to date.
@@ -133,18 +128,19 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
     return A.factor();
   }
 
-  /// The right side ← −velocity(p, item), where something answers. Returns √Σ u²/W_kk, the size of it.
+  /// The right side ← −u, where something answers; velocity(node, u) sets u. Returns √Σ u²/W_kk, the size of it.
   double load(const auto& velocity) {
     clear();
     double square = 0;
-    each([&](auto p, Index k) {
-      const auto u = velocity(p, nodes_[k].item);
+    Row u;
+    for (Index k = 0; k < bilateral_; ++k) {
+      velocity(nodes_[k], u);
       for (int r = 0; r < nodes_[k].rows; ++r) {
         if (!(nodes_[k].scale[r] > 0)) continue;
-        x_[k][r] = -double(u[r]);
-        square += double(u[r]) * double(u[r]) / nodes_[k].scale[r];
+        x_[k][r] = -u[r];
+        square += u[r] * u[r] / nodes_[k].scale[r];
       }
-    });
+    }
     return std::sqrt(square);
   }
   void clear() {
@@ -174,23 +170,17 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   const Side& side(Index e) const { return sides_[e]; }
   bool is_held(Index block) const { return held_[block] > 0; }
 
-  /// f(p, k) for the bilateral constraints, p their pool as a constant.
-  void each(auto&& f) const {
-    for_each_index<pools>([&](auto p) {
-      for (Index k = 0; k < bilateral_; ++k)
-        if (nodes_[k].pool == p) f(p, k);
-    });
-  }
-
  private:
-  Index number(int s, Index b) {
-    auto& number = number_[s];
-    if (Index(number.size()) <= b) number.resize(b + 1, -1);
-    if (number[b] < 0) {
-      number[b] = Index(blocks_.size());
+  Index& number(int s, Index b) { return number_[std::size_t(b) * std::size_t(sets_) + std::size_t(s)]; }
+  Index place_of(int s, int sets, Index b) {
+    sets_ = sets;
+    if (const std::size_t room = (std::size_t(b) + 1) * std::size_t(sets); number_.size() < room) number_.resize(room, -1);
+    Index& place = number(s, b);
+    if (place < 0) {
+      place = Index(blocks_.size());
       blocks_.emplace_back(s, b);
     }
-    return number[b];
+    return place;
   }
 
   /// scale ← the diagonal of Σ H G over the node's own sides.
@@ -241,8 +231,9 @@ class DirectSystem<RowSystem<T, Widths<widths...>, R...>> {
   }
 
   Index bilateral_ = 0, size_ = 0;
-  std::array<Array<Index>, sizeof...(widths)> number_;  ///< of a block of a set here, or −1
-  Array<std::pair<int, Index>> blocks_;                 ///< (set, block)
+  int sets_ = 0;
+  Array<Index> number_;                  ///< of a block of a set here, or −1
+  Array<std::pair<int, Index>> blocks_;  ///< (set, block)
   Array<Node> nodes_;
   Array<Side> sides_;
   Array<Index> start_, order_, next_, held_, hub_;

@@ -1,12 +1,10 @@
 /// One step as long as a million sweeps, where λ drifts along impulses that move nothing.
 #pragma once
 
-#include <delassus/core/index.hpp>
-#include <delassus/math/linear.hpp>
-#include <delassus/rows/impulses.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <cmath>
-#include <tuple>
 
 namespace delassus::inner {
 
@@ -20,17 +18,24 @@ struct SlowDirection {
 };
 
 /// Plain sweeps, `before` being λ before them, z = λ − `before`.
-[[gnu::noinline]] SlowDirection find_slow_direction(auto& problem, auto& before) {
-  problem.save(before);
+template <class T>
+[[gnu::noinline]] SlowDirection find_slow_direction(Island<T>& island, Array<T>& before) {
+  island.save(before);
   double moved = 0, square = 0, size = 0;
-  for (int k = 0; k < drift_sweeps; ++k) moved = problem.sweep();
-  problem.each([&](auto p, Index i) {
-    const double root = problem.template root_of_weight<p>(i);
-    const auto& lambda = problem.rows().template pool<p>().lambda[i];
-    const auto z = lambda - std::get<p>(before.pools)[i];
-    square += root * root * double(z.squaredNorm());
-    size += root * root * double(lambda.squaredNorm());
-  });
+  for (int k = 0; k < drift_sweeps; ++k) moved = island.sweep();
+  const T* at = before.data();
+  for (const Span<T>& span : island)
+    for (const Index i : span) {
+      const double root = island.root_of_weight(span, i);
+      const T* lambda = island.impulse(span, i);
+      double way = 0, impulse = 0;
+      for (int k = 0; k < span.pool->rows; ++k) {
+        const double x = double(lambda[k]), z = double(lambda[k] - *at++);
+        way += z * z, impulse += x * x;
+      }
+      square += root * root * way;
+      size += root * root * impulse;
+    }
   const double length = std::sqrt(square), even = drift_sweeps * std::sqrt(moved);
   return {std::abs(length - even) < 0.02 * even ? length : 0, std::sqrt(size)};
 }
@@ -38,23 +43,27 @@ struct SlowDirection {
 /// The largest β < `most` with λ + β z in the cones of all laws but for a small share of β |z|, which is how
 /// near an impulse that slides follows its cone; zero where no law ends the way, or one ends it here.
 /// `length` is √Σ w_i |z_i|².
-template <class Problem, class Impulses>
-double reach(const Problem& problem, const Impulses& before, double length, double most) {
-  using T = typename Problem::T;
+template <class T>
+double reach(const Island<T>& island, const Array<T>& before, double length, double most) {
   constexpr double share = 1e-4;
   double beta = most;
-  problem.each([&](auto p, Index i) {
-    if constexpr (Problem::BookType::template clamps<p>()) {
-      const auto lambda = problem.rows().template pool<p>().lambda[i];
-      const auto z = (lambda - std::get<p>(before.pools)[i]).eval();
-      const double root = problem.template root_of_weight<p>(i);
+  const T* at = before.data();
+  for (const Span<T>& span : island) {
+    const int R = span.pool->rows;
+    for (const Index i : span) {
+      const T *lambda = island.impulse(span, i), *start = at;
+      at += R;
+      if (!span.pool->table->clamp) continue;
+      const double root = island.root_of_weight(span, i);
       const auto is_outside = [&](double t) {
-        const auto there = (lambda + T(t) * z).eval();
-        auto inside = there;
-        problem.book().template clamp<p>(i, inside);
-        return !(root * double((there - inside).norm()) <= share * t * length);
+        T there[Island<T>::most_rows], inside[Island<T>::most_rows];
+        for (int k = 0; k < R; ++k) there[k] = inside[k] = lambda[k] + T(t) * (lambda[k] - start[k]);
+        island.clamp(span, i, inside);
+        double square = 0;
+        for (int k = 0; k < R; ++k) square += double(there[k] - inside[k]) * double(there[k] - inside[k]);
+        return !(root * std::sqrt(square) <= share * t * length);
       };
-      if (!(beta > 1) || !is_outside(beta)) return;
+      if (!(beta > 1) || !is_outside(beta)) continue;
       double low = 1, high = beta;
       if (is_outside(low)) low = high = 0;
       while (high > (1 + share) * low) {
@@ -63,7 +72,7 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
       }
       beta = low;
     }
-  });
+  }
   return beta < most ? beta : 0;
 }
 
@@ -81,7 +90,8 @@ double reach(const Problem& problem, const Impulses& before, double length, doub
 /// where sweeps have stalled, after `find_slow_direction`, which gives `way`. True where λ has gone so, and settled: from
 /// there momentum goes on. What that would reach by itself within `patience` sweeps, which is patience²/4
 /// plain ones, is left to it.
-[[gnu::noinline]] bool extrapolate_to_cone_boundary(auto& problem, auto& monitor, auto& before, SlowDirection way, int patience) {
+template <class T>
+[[gnu::noinline]] bool extrapolate_to_cone_boundary(Island<T>& problem, auto& monitor, Array<T>& before, SlowDirection way, int patience) {
   constexpr int settling = 40, in_a_row = 8;
   double far = 0.25 * patience * patience / drift_sweeps;
   bool has_leapt = false;

@@ -7,7 +7,7 @@
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
 #include <delassus/solvers/inner/halve_step.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -26,14 +26,15 @@ struct NewtonInImpulses {
       sweeps;  ///< before the first factorization; their tolerance is that of all
   int max_factorizations = 100;
 
+  static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
   struct Workspace {
-    ContactSpace<Rows> space;
-    Impulses<Rows> best;
+    ContactSpace<typename Rows::Scalar> space;
+    Array<typename Rows::Scalar> best;
     typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
-    void reset(const Rows& rows) {
+    void reset(Index rows) {
       sweeps.reset(rows);
-      best.resize_like(rows);
+      best.reserve(std::size_t(rows));
     }
   };
 
@@ -41,7 +42,8 @@ struct NewtonInImpulses {
   /// each: n³/3, some three products for the matrix, and those of the halved steps.
   static double cost_in_sweeps(int rows) { return rows / 3.0 + 10; }
 
-  SolveReport solve(auto& problem, auto& work) const {
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
     SolveReport report = sweeps.solve(problem, work.sweeps);
     if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
     if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem)) {
@@ -57,7 +59,8 @@ struct NewtonInImpulses {
   }
 
  private:
-  void descend(auto& problem, auto& work, SolveReport& report) const {
+  template <class T, class Space>
+  void descend(Island<T>& problem, Space& work, SolveReport& report) const {
     auto& space = work.space;
     const int rows = problem.row_count();
     double epsilon = 1e-4, last = Criterion::sum(report.measure);
@@ -82,7 +85,8 @@ struct NewtonInImpulses {
   }
 
   /// Newton's method around one λ̂, until |F| has fallen by a hundred or does not fall; how far it fell.
-  double approach(auto& problem, auto& space, double epsilon, SolveReport& report) const {
+  template <class T>
+  double approach(Island<T>& problem, ContactSpace<T>& space, double epsilon, SolveReport& report) const {
     const double work = cost_in_sweeps(problem.row_count()), first = space.evaluate(epsilon);
     double size = first;
     for (int step = 0; step < 12 && size > 1e-2 * first && report.factorizations < max_factorizations;

@@ -1,28 +1,25 @@
 /// Newton's method in the velocities of the bodies, as a stage in a chain of sweeps.
 #pragma once
 
-#include <delassus/rows/impulses.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
 #include <delassus/solvers/inner/proximal_point.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
 namespace delassus::inner {
 
-/// Rows that act on bodies; those of a friction problem from a file have W alone.
-template <class Rows>
-inline constexpr bool knows_bodies = Rows::set_count > 0;
-
-/// What the stage keeps: the island, and λ from before the sweeps.
-template <class Rows>
+/// What the stage keeps: the island, and λ from before the sweeps. `width` velocities a block of bodies at most.
+template <class T, int width>
 struct NewtonSpace {
-  BodySpace<Rows> body;
-  Impulses<Rows> start;
-  void resize_like(const Rows& rows) { start.resize_like(rows); }
+  BodySpace<T, NewtonSystem<T, width>, LawsAsTheyAre<T>> body;
+  Array<T> start;
+  void reserve(std::size_t rows) { start.reserve(rows); }
 };
 
 /// Opens when the sweeps so far have cost what it is likely to, and at their pace will cost as much again:
@@ -33,13 +30,10 @@ struct NewtonSpace {
 /// before the sweeps: they leave it where each step of Newton's method changes which rows carry, and ten
 /// boxes cost 29 factorizations in place of two. Warm they have helped, and λ from before them is for the
 /// second opening. From the sweeps' λ ε begins large, and grows where it stalls.
-template <class Criterion, class Problem, class ConvergenceMonitor>
+template <class Criterion, class T, class ConvergenceMonitor, class Space>
 class NewtonStage {
  public:
-  using Space = NewtonSpace<typename Problem::RowsType>;
-  using Body = BodySpace<typename Problem::RowsType>;
-
-  NewtonStage(const auto& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space)
+  NewtonStage(const auto& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space)
       : limits_{.tolerance = chain.tolerance,
                 .scale_tolerance = chain.scale_tolerance,
                 .all_verified = chain.all_verified},
@@ -58,7 +52,7 @@ class NewtonStage {
     monitor_.back_to_best();
     monitor_.name("newton");
     const double before = Criterion::sum(monitor_.best());
-    ProximalPoint<Criterion, SolveLimits, Problem, Body> point(limits_, problem_, space_.body);
+    ProximalPoint<Criterion, SolveLimits, T, decltype(space_.body)> point(limits_, problem_, space_.body);
     point.sweeps = monitor_.sweeps();
     point.work = around * cost_;
     const double allowed = 100 * std::max(energy(), space_.body.energy_of_stopping(problem_));
@@ -68,7 +62,7 @@ class NewtonStage {
     else
       point.epsilon = epsilon_;
     if (space_.body.restart(problem_)) {
-      space_.body.keep(problem_);
+      space_.body.keep();
       point.begin();
       const int share = std::max(2 * likely, int(monitor_.sweeps() / cost_));
       double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(monitor_.best()));
@@ -123,16 +117,20 @@ class NewtonStage {
   /// give the bodies energy.
   double energy() const {
     double sum = 0;
-    problem_.each([&](auto p, Index i) {
-      const double root = problem_.template root_of_weight<p>(i);
-      sum += root * root * double(problem_.rows().template pool<p>().lambda[i].squaredNorm());
-    });
+    for (const Span<T>& span : problem_)
+      for (const Index i : span) {
+        const double root = problem_.root_of_weight(span, i);
+        const T* lambda = problem_.impulse(span, i);
+        double square = 0;
+        for (int k = 0; k < span.pool->rows; ++k) square += double(lambda[k]) * double(lambda[k]);
+        sum += root * root * square;
+      }
     return sum;
   }
   void open_after(double sweeps) { opening_ = sweeps < never ? std::max(least, int(sweeps)) : never; }
 
   SolveLimits limits_;  ///< of the proximal point iteration in one opening: factorizations
-  Problem& problem_;
+  Island<T>& problem_;
   ConvergenceMonitor& monitor_;
   Space& space_;
   double cost_ = 0;  ///< of a factorization, in sweeps
@@ -147,16 +145,17 @@ namespace delassus {
 
 /// A chain that sweeps and no more.
 struct SweepsAlone {
-  template <class Rows>
+  static constexpr Needs needs = Needs::sweeps;
+  template <class T, int width>
   struct Space {
-    void resize_like(const Rows&) {}
+    void reserve(std::size_t) {}
   };
   struct Stage {
     static constexpr bool opens() { return false; }
     static void run() {}
   };
-  template <class Criterion, class Chain, class Problem, class ConvergenceMonitor, class Body>
-  static Stage stage(const Chain&, Problem&, ConvergenceMonitor&, Body&) {
+  template <class Criterion, class Space>
+  static Stage stage(const auto&, auto&, auto&, Space&) {
     return {};
   }
 };
@@ -164,13 +163,13 @@ struct SweepsAlone {
 /// A chain that turns to Newton's method in the velocities of the bodies where a problem has any and stops on
 /// a measured error.
 struct ThenNewton {
-  template <class Rows>
-  using Space =
-      std::conditional_t<inner::knows_bodies<Rows>, inner::NewtonSpace<Rows>, SweepsAlone::Space<Rows>>;
-  template <class Criterion, class Chain, class Problem, class ConvergenceMonitor, class Space>
-  static auto stage(const Chain& chain, Problem& problem, ConvergenceMonitor& monitor, Space& space) {
-    if constexpr (Criterion::needs_measure && inner::knows_bodies<typename Problem::RowsType>)
-      return inner::NewtonStage<Criterion, Problem, ConvergenceMonitor>(chain, problem, monitor, space);
+  static constexpr Needs needs = Needs::tangents;
+  template <class T, int width>
+  using Space = std::conditional_t<(width > 0), inner::NewtonSpace<T, width>, SweepsAlone::Space<T, width>>;
+  template <class Criterion, class Space, class T, class ConvergenceMonitor>
+  static auto stage(const auto& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space) {
+    if constexpr (Criterion::needs_measure && requires { space.body; })
+      return inner::NewtonStage<Criterion, T, ConvergenceMonitor, Space>(chain, problem, monitor, space);
     else
       return SweepsAlone::Stage{};
   }

@@ -4,145 +4,164 @@
 #include <delassus/core/array.hpp>
 #include <delassus/linear/block_lu.hpp>
 #include <delassus/math/small_products.hpp>
-#include <delassus/rows/local.hpp>
-#include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/inner/island_matrices.hpp>
-#include <delassus/solvers/inner/newton_item.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <tuple>
+#include <cstddef>
 #include <utility>
 
 namespace delassus::inner {
 
-template <template <int> class Item, class Rows>
-class NewtonSystem;
+/// Asked between the pieces of what is long and no sweep.
+template <class T>
+struct CutOff {
+  const Island<T>& island;
+  bool operator()(Index work) const { return island.is_cut_off(int(work)); }
+};
 
-/// One `Item<R>` a constraint, with its H and G on each block that moves, and
+/// A constraint of an island in the equations of Newton's method.
+template <class T>
+struct NewtonConstraint {
+  const Span<T>* span;
+  Index item;         ///< its number in the pool
+  Index first, last;  ///< its sides
+  Index at, slope;    ///< where its rows begin among those of the island, and its rows × rows numbers
+  int rows;
+  double weight;  ///< w = tr(W_ii)/rows
+  Index number;   ///< among the constraints
+};
+
+/// Constraints with H and G = A⁻¹ Hᵀ on each block that moves, narrower sets filled up with zeros, and
 ///
-///   J = 1 + G S H,   S = −∂λ/∂u the `slope` of the items.
+///   J = 1 + G S H,   S = −∂λ/∂u the slopes of the constraints.
 ///
 /// A⁻¹ J is the matrix of the bodies with a stiff spring in every constraint; without A⁻¹ the system matrix A
-/// itself is not needed.
-template <template <int> class Item, class T, int... w, int... R>
-class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
+/// itself is not needed. Everything is double, whatever the rows are. A list `by row` has a number for each row of the island.
+template <class T, int width_>
+class NewtonSystem {
  public:
-  using Rows = RowSystem<T, Widths<w...>, R...>;
-  static constexpr int pools = Rows::pool_count;
-  static constexpr int width = std::max({1, w...});
-  using Velocities = Array<Vec<width>>;  ///< one a block, narrower sets filled up with zeros
-  using Never = typename BlockLu<width, double>::Never;
+  static constexpr int width = width_;
+  using Constraint = NewtonConstraint<T>;
+  using Velocity = Vec<width>;
+  using Velocities = Array<Velocity>;  ///< one a block
 
   /// Takes the island over with its present λ as λ̂ and best; false where Newton's method cannot act: a
   /// law without a tangent, a set whose A couples blocks, or rows that nothing answers to.
-  bool gather(auto& problem) {
-    static_assert(sizeof...(w) > 0,
-                  "delassus: Newton's method needs the bodies of a problem, and this one, as a "
-                  "FrictionProblem, has W alone; "
-                  "solve it by AcceleratedGaussSeidel");
-    if (!has_tangents(problem) || !knows_answers(problem)) return false;
-    number_blocks(problem);
-    begin(blocks_.size());
+  bool gather(const Island<T>& island) {
+    if (!has_tangents(island) || !knows_answers(island)) return false;
+    number_blocks(island);
+    begin(island, blocks_.size());
     bool is_sound = true;
-    problem.each([&](auto p, Index i) { is_sound &= !problem.is_cut_off(1) && take<p>(problem, i); });
-    return is_sound && finish(problem.island());
+    for (const Span<T>& span : island)
+      for (const Index i : span) is_sound &= !island.is_cut_off(1) && take(span, i);
+    return is_sound && finish(island.island());
   }
 
   std::size_t blocks() const { return unit_.size(); }
+  const Array<Constraint>& constraints() const { return constraints_; }
 
-  /// f(p, item, sides of pool p) for every constraint.
-  void each(auto&& f) {
-    for_each_index<pools>([&](auto p) {
-      for (auto& c : std::get<p>(items_)) f(p, c, std::get<p>(sides_));
-    });
-  }
-
-  /// The same until `ends(n)`, asked after the work of n products of blocks of bodies, says so.
-  void each_until(auto&& ends, auto&& f) {
-    for_each_index<pools>([&](auto p) {
-      for (auto& c : std::get<p>(items_)) {
-        if (ends(1)) return;
-        f(p, c, std::get<p>(sides_));
-      }
-    });
-  }
-
-  /// Factors J; false when it is singular to working precision, or it ends before that.
-  template <class Ends = Never>
-  bool factor(Ends&& ends = {}) {
+  /// Factors J; false when it is singular to working precision, or the island's time ends before that.
+  bool factor(const Island<T>& island) {
+    const CutOff<T> ends{island};
     auto& J = *matrix_;
     J.set_identity(ends);
-    each_until(ends, [&](auto, auto& c, auto& sides) {
-      if (is_zero(c.slope)) return;
-      for (Index s = c.first; s < c.last; ++s) {
-        if (is_zero(sides[s].H)) continue;  // of a `WholeSystem` all but one
-        auto SH = zero<std::remove_cvref_t<decltype(sides[s].H)>>();
-        add_product(c.slope, sides[s].H, SH);
-        for (Index t = c.first; t < c.last; ++t)
-          add_product(sides[t].G, SH, J.at(sides[t].block, sides[s].block));
-      }
-    });
+    for (const Constraint& c : constraints_) {
+      if (ends(1)) break;
+      if (is_zero(&slope[c.slope], c.rows * c.rows)) continue;
+      if (c.rows == 3) add_stiffness(c, 3, J);
+      else add_stiffness(c, c.rows, J);
+    }
     return J.factor(ends);
   }
   /// What one factorization, with the evaluations that go with it, costs beside a sweep, counted in products
   /// of a 3 × 3 block with a vector: by instructions one of 6 × 6 blocks is 36 of them, and a constraint,
   /// gathered and measured too, 200.
   double cost_in_sweeps() {
-    double constraints = 0, entries = 0;
-    Array<Index>& on_block = count_;
-    on_block.assign(blocks(), 0);
-    each([&](auto, auto& c, auto& sides) {
-      for (Index s = c.first; s < c.last; ++s) ++on_block[sides[s].block];
-      ++constraints;
-    });
-    for (const double n : on_block) entries += n * n;
-    const double of_block = width * width * width / 6.0;
+    double entries = 0;
+    count_.assign(blocks(), 0);
+    for (const Side& side : sides_) ++count_[side.block];
+    for (const double n : count_) entries += n * n;
+    const double of_block = width * width * width / 6.0, constraints = double(constraints_.size());
     return (of_block * matrix_->products() + 200 * constraints) / (entries + 5 * constraints);
   }
   /// Σ w_i P², P = Σ m max|d|, the sum over the bodies: whatever rests on a contact, no more momentum goes
   /// through it when all come to rest, but for what wedges add. m is the largest mass by which a body
   /// answers; at a contact that is rows/tr(H G).
-  double energy_of_stopping(auto& problem) {
+  double energy_of_stopping(const Island<T>& island) {
     double weights = 0, fastest = 0, mass = 0;
     mass_.assign(blocks(), 0.0);
-    const auto ends = [&](int work) { return problem.is_cut_off(work); };
-    each_until(ends, [&](auto p, auto& c, auto& sides) {
-      constexpr int r = Rows::template rows_of<p>;
+    for (const Constraint& c : constraints_) {
+      if (island.is_cut_off(1)) break;
       weights += c.weight;
-      fastest = std::max(fastest, double(squared_norm(problem.rows().template pool<p>().d[c.item])));
+      const T* d = Island<T>::free_of_impulses(*c.span, c.item);
+      T square = d[0] * d[0];
+      for (int k = 1; k < c.rows; ++k) square += d[k] * d[k];
+      fastest = std::max(fastest, double(square));
       for (Index s = c.first; s < c.last; ++s) {
         double trace = 0;
-        for (int k = 0; k < r; ++k)
-          for (int j = 0; j < width; ++j) trace += sides[s].H(k, j) * sides[s].G(j, k);
-        if (trace > 0) mass_[sides[s].block] = std::max(mass_[sides[s].block], r / trace);
+        for (int k = 0; k < c.rows; ++k)
+          for (int j = 0; j < width; ++j) trace += H(s)[k + c.rows * j] * G(s)[j + width * k];
+        if (trace > 0) mass_[sides_[s].block] = std::max(mass_[sides_[s].block], c.rows / trace);
       }
-    });
+    }
     for (const double m : mass_) mass += m;
     return weights * mass * mass * fastest;
   }
   bool is_negative() const { return matrix_->is_negative(); }  ///< det J < 0
   /// x ← J⁻¹ x.
-  template <class Ends = Never>
-  void solve(Velocities& x, Ends&& ends = {}) const {
-    matrix_->solve(x, ends);
+  void solve(Velocities& x, const Island<T>& island) const { matrix_->solve(x, CutOff<T>{island}); }
+
+  /// u += Σ H x over the sides of a constraint, and x += Σ s G λ.
+  void add_rates(const Constraint& c, const Velocities& x, double* u) const {
+    for (Index s = c.first; s < c.last; ++s) {
+      const double *y = x[sides_[s].block].data(), *h = H(s);
+      if (c.rows == 3) {
+        double sum[3] = {u[0], u[1], u[2]};
+        add_product(3, width, 1, h, y, sum);
+        for (int k = 0; k < 3; ++k) u[k] = sum[k];
+      } else {
+        add_product(c.rows, width, 1, h, y, u);
+      }
+    }
   }
+  void add_answers(const Constraint& c, const double* impulse, double share, Velocities& x) const {
+    for (Index s = c.first; s < c.last; ++s) {
+      double* y = x[sides_[s].block].data();
+      if (c.rows == 3) add_answer(3, G(s), impulse, share, y);
+      else add_answer(c.rows, G(s), impulse, share, y);
+    }
+  }
+
+  Array<double> compliance;        ///< by row: on W's diagonal, beside H A⁻¹ Hᵀ
+  Array<double> best;              ///< by row: λ of the smallest measured error
+  Array<double> centre;            ///< by row: λ̂
+  Array<double> lambda;            ///< by row: λ(u)
+  Array<double> velocity;          ///< by row: u = d + W λ̂ + H y
+  Array<double> slope;             ///< S, rows × rows a constraint
+
+  static constexpr int most_rows = Island<T>::most_rows;
 
  protected:
-  template <class Problem>
-  static bool has_tangents(const Problem& problem) {
-    bool has = true;
-    problem.each([&](auto p, Index) {
-      if (!has_tangent<typename Problem::BookType, p, Rows::template rows_of<p>>) has = false;
-    });
-    return has;
+  struct Side {
+    Index block, at;  ///< at: where its H and G begin
+  };
+
+  static bool has_tangents(const Island<T>& island) {
+    for (const Span<T>& span : island)
+      if (!span.pool->tangent) return false;
+    return true;
   }
 
-  void begin(std::size_t blocks) {
-    for_each_index<pools>([&](auto p) { std::get<p>(items_).clear(), std::get<p>(sides_).clear(); });
-    pairs_.clear();
-    for (auto* sums : {&unit_, &moved_}) sums->assign(blocks, zero<Vec<width>>());
+  void begin(const Island<T>& island, std::size_t count) {
+    constraints_.clear(), sides_.clear(), pairs_.clear();
+    numbers_ = 0;
+    for (auto* sums : {&unit_, &moved_}) sums->assign(count, zero<Velocity>());
+    for (auto* list : {&compliance, &best, &centre, &lambda, &velocity}) list->assign(std::size_t(island.row_count()), 0.0);
+    std::size_t squares = 0;
+    for (const Span<T>& span : island) squares += std::size_t(span.pool->rows * span.pool->rows) * std::size_t(span.count);
+    slope.assign(squares, 0.0);
   }
   bool finish(Index island) {
     balance();
@@ -152,104 +171,166 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
     return true;
   }
 
-  template <int r>
-  static Item<r> item_of(const Local<r, T>& local, Index item, Index first) {
-    Item<r> c{};
-    c.item = item;
-    c.first = first;
-    c.weight = double(trace(local.W)) / r;
-    c.best = c.centre = c.lambda = local.lambda.template cast<double>();
-    c.velocity = local.d.template cast<double>();
-    for (Vec<r>* x : {&c.compliance, &c.error, &c.move}) set_all(*x, 0.0);
-    return c;
-  }
-  /// Whether it has a weight.
-  template <int r>
-  static bool add(Item<r>& c, Array<Item<r>>& items, Index last) {
-    c.last = last;
-    items.push_back(c);
-    return c.weight > 0 && std::isfinite(c.weight);
-  }
-  /// What `side` of a constraint with 1/w = `over` adds to the sums.
-  template <int r>
-  void add_to_balance(const NewtonSide<r, width>& side, double over) {
-    const auto b = std::size_t(side.block);
-    for (int k = 0; k < width; ++k) {
-      double unit = 0, moved = 0;
-      for (int j = 0; j < r; ++j) unit += side.H(j, k) * side.H(j, k), moved += side.G(k, j) * side.G(k, j);
-      unit_[b][k] += over * unit;
-      moved_[b][k] += over * moved;
+  /// The next constraint, without sides yet.
+  Constraint& add(const Span<T>& span, Index i) {
+    const int R = span.pool->rows;
+    Constraint c{&span, i, Index(sides_.size()), Index(sides_.size()), 0, 0, R, span.pool->weight(i), Index(constraints_.size())};
+    if (!constraints_.empty()) {
+      const Constraint& last = constraints_.back();
+      c.at = last.at + last.rows;
+      c.slope = last.slope + last.rows * last.rows;
     }
+    T u[most_rows];
+    Island<T>::velocity(span, i, u);
+    const T* impulse = Island<T>::impulse(span, i);
+    for (int k = 0; k < R; ++k) {
+      best[c.at + k] = centre[c.at + k] = lambda[c.at + k] = double(impulse[k]);
+      velocity[c.at + k] = double(u[k]);
+    }
+    return constraints_.emplace_back(c);
+  }
+  /// Room for another side of the last constraint; its numbers are what they were.
+  Side& add_side(int rows, Index block) {
+    const Index at = numbers_;
+    numbers_ += rows * width;
+    for (auto* list : {&H_, &G_})
+      if (list->size() < std::size_t(numbers_)) list->resize(2 * std::size_t(numbers_));
+    ++constraints_.back().last;
+    return sides_.emplace_back(Side{block, at});
+  }
+  static bool is_sound(const Constraint& c) { return c.weight > 0 && std::isfinite(c.weight); }
+
+  const double* H(Index side) const { return &H_[sides_[side].at]; }
+  const double* G(Index side) const { return &G_[sides_[side].at]; }
+  double* H(Index side) { return &H_[sides_[side].at]; }
+  double* G(Index side) { return &G_[sides_[side].at]; }
+
+  /// What a side of a constraint with 1/w = `over` adds to the sums.
+  void add_to_balance(Index side, int rows, double over) {
+    double *unit = unit_[sides_[side].block].data(), *moved = moved_[sides_[side].block].data();
+    if (rows == 3) add_squares(3, H(side), G(side), over, unit, moved);
+    else add_squares(rows, H(side), G(side), over, unit, moved);
+  }
+  static bool is_zero(const double* x, int count) {
+    for (int k = 0; k < count; ++k)
+      if (x[k] != 0) return false;
+    return true;
   }
 
-  std::tuple<Array<Item<R>>...> items_;
-  std::tuple<Array<NewtonSide<R, width>>...> sides_;
+  Array<Constraint> constraints_;
+  Array<Side> sides_;
+  Array<double> H_, G_;
+  Index numbers_ = 0;  ///< of H_ and of G_ that are in use
   Array<std::pair<Index, Index>> pairs_;  ///< of blocks that a constraint joins
 
  private:
-  /// Whether each block answers to its impulses alone, by G.
-  static bool knows_answers(const auto& problem) {
-    bool knows = true;
-    problem.each([&](auto p, Index i) {
-      const auto& pool = problem.rows().template pool<p>();
-      for_each_index<Rows::set_count>([&](auto s) {
-        const auto& set = std::get<s>(pool.sets);
-        if (set.offset[i + 1] > set.offset[i] && set.G.size() != set.H.size()) knows = false;
-      });
-    });
-    return knows;
-  }
-
-  /// f(s, e) for every entry of item i on a block that moves: where A⁻¹ = 0, G is zero.
-  static void each_side(const auto& pool, Index i, auto&& f) {
-    for_each_index<Rows::set_count>([&](auto s) {
-      const auto& set = std::get<s>(pool.sets);
-      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
-        if (!is_zero(set.G[e])) f(s, e);
-    });
-  }
-
-  void number_blocks(const auto& problem) {
-    for (const auto& [s, b] : blocks_) number_[s][b] = -1;
-    blocks_.clear();
-    problem.each([&](auto p, Index i) {
-      const auto& pool = problem.rows().template pool<p>();
-      each_side(pool, i, [&](auto s, Index e) {
-        const Index b = std::get<s>(pool.sets).block[e];
-        auto& number = number_[s];
-        if (Index(number.size()) <= b) number.resize(b + 1, -1);
-        if (number[b] >= 0) return;
-        number[b] = 0;
-        blocks_.emplace_back(s, b);
-      });
-    });
-    std::sort(blocks_.begin(), blocks_.end());
-    for (std::size_t k = 0; k < blocks_.size(); ++k) number_[blocks_[k].first][blocks_[k].second] = Index(k);
-  }
-
-  template <int p, class Problem>
-  bool take(const Problem& problem, Index i) {
-    constexpr int r = Rows::template rows_of<p>;
-    const auto& pool = problem.rows().template pool<p>();
-    const Local<r, T> local = problem.template local<p>(i);
-    auto& sides = std::get<p>(sides_);
-    Item<r> c = item_of(local, i, Index(sides.size()));
-    for (int k = 0; k < r; ++k) {  // W_kk = (H A⁻¹ Hᵀ)_kk (1 + relative_compliance) + compliance
-      const double whole = double(local.W(k, k)), relative_compliance = double(pool.relative_compliance[i][k]);
-      c.compliance[k] = (whole * relative_compliance + double(pool.compliance[i][k])) / (1 + relative_compliance);
+  // Three rows, the contacts', are written with a constant.
+  [[gnu::always_inline]] static void add_squares(int rows, const double* H, const double* G, double over, double* unit, double* moved) {
+    for (int k = 0; k < width; ++k) {
+      double of_H = 0, of_G = 0;
+      for (int j = 0; j < rows; ++j) of_H += H[j + rows * k] * H[j + rows * k], of_G += G[k + width * j] * G[k + width * j];
+      unit[k] += over * of_H;
+      moved[k] += over * of_G;
     }
-    each_side(pool, i, [&](auto s, Index e) {
-      const auto& set = std::get<s>(pool.sets);
-      constexpr int narrow = Rows::template width_of<s>;
-      NewtonSide<r, width> side{number_[s][set.block[e]], zero<Mat<r, width>>(), zero<Mat<width, r>>()};
-      for (int k = 0; k < narrow; ++k)
-        for (int j = 0; j < r; ++j) side.H(j, k) = double(set.H[e](j, k)), side.G(k, j) = double(set.G[e](k, j));
-      for (Index t = c.first; t < Index(sides.size()); ++t)
-        if (sides[t].block != side.block) pairs_.push_back(std::minmax({sides[t].block, side.block}));
-      add_to_balance(side, 1 / c.weight);
-      sides.push_back(side);
-    });
-    return add(c, std::get<p>(items_), Index(sides.size()));
+  }
+  [[gnu::always_inline]] static void scale(int rows, const double* of_H, const double* of_G, double* H, double* G) {
+    for (int k = 0; k < width; ++k)
+      for (int j = 0; j < rows; ++j) H[j + rows * k] *= of_H[k], G[k + width * j] *= of_G[k];
+  }
+  [[gnu::always_inline]] static void add_answer(int rows, const double* G, const double* impulse, double share, double* y) {
+    double sum[width];
+    for (int j = 0; j < width; ++j) sum[j] = y[j];
+    for (int k = 0; k < rows; ++k) {
+      const double by = share * impulse[k];
+      for (int j = 0; j < width; ++j) sum[j] += G[width * k + j] * by;
+    }
+    for (int j = 0; j < width; ++j) y[j] = sum[j];
+  }
+  /// J += G S H.
+  [[gnu::always_inline]] void add_stiffness(const Constraint& c, int rows, BlockLu<width, double>& J) const {
+    double SH[most_rows * width];
+    for (Index s = c.first; s < c.last; ++s) {
+      if (is_zero(H(s), rows * width)) continue;  // of a `WholeSystem` all but one
+      for (int k = 0; k < rows * width; ++k) SH[k] = 0;
+      add_product(rows, rows, width, &slope[c.slope], H(s), SH);
+      for (Index t = c.first; t < c.last; ++t)
+        add_product(width, rows, width, G(t), SH, J.at(sides_[t].block, sides_[s].block).data());
+    }
+  }
+  /// Whether each block answers to its impulses alone, by G.
+  static bool knows_answers(const Island<T>& island) {
+    for (const Span<T>& span : island)
+      for (const Index i : span)
+        for (int s = 0; s < span.pool->sets; ++s)
+          if (span.pool->set[s].has_entries(i) && !span.pool->set[s].G) return false;
+    return true;
+  }
+  /// Whether entry e is on a block that moves: where A⁻¹ = 0, G is zero.
+  static bool answers(const SetBlocksView<T>& set, int rows, Index e) {
+    const T* G = set.G + std::ptrdiff_t(rows * set.width) * e;
+    for (int k = 0; k < rows * set.width; ++k)
+      if (G[k] != T(0)) return true;
+    return false;
+  }
+
+  Index& number(int set, Index block) { return number_[std::size_t(block) * std::size_t(sets_) + std::size_t(set)]; }
+
+  void number_blocks(const Island<T>& island) {
+    for (const auto& [s, b] : blocks_) number(s, b) = -1;
+    blocks_.clear();
+    for (const Span<T>& span : island) {
+      sets_ = span.pool->sets;
+      for (const Index i : span)
+        for (int s = 0; s < sets_; ++s) {
+          const SetBlocksView<T>& set = span.pool->set[s];
+          for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) {
+            if (!answers(set, span.pool->rows, e)) continue;
+            const Index b = set.block[e];
+            if (const std::size_t room = (std::size_t(b) + 1) * std::size_t(sets_); number_.size() < room) number_.resize(room, -1);
+            if (number(s, b) >= 0) continue;
+            number(s, b) = 0;
+            blocks_.emplace_back(s, b);
+          }
+        }
+    }
+    std::sort(blocks_.begin(), blocks_.end());
+    for (std::size_t k = 0; k < blocks_.size(); ++k) number(blocks_[k].first, blocks_[k].second) = Index(k);
+  }
+
+  bool take(const Span<T>& span, Index i) {
+    const PoolView<T>& pool = *span.pool;
+    const int R = pool.rows;
+    const Constraint c = add(span, i);
+    const T* own = pool.own_block(i);
+    for (int k = 0; k < R; ++k) {  // W_kk = (H A⁻¹ Hᵀ)_kk (1 + relative_compliance) + compliance
+      const std::ptrdiff_t row = std::ptrdiff_t(R) * i + k;
+      const double whole = double(own[k * (R + 1)]), relative_compliance = double(pool.relative_compliance[row]);
+      compliance[c.at + k] = (whole * relative_compliance + double(pool.compliance[row])) / (1 + relative_compliance);
+    }
+    for (int s = 0; s < pool.sets; ++s) {
+      const SetBlocksView<T>& set = pool.set[s];
+      for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) {
+        if (!answers(set, R, e)) continue;
+        const Side& side = add_side(R, number(s, set.block[e]));
+        copy_side(set, R, e, &H_[side.at], &G_[side.at]);
+        const Index last = Index(sides_.size()) - 1;
+        for (Index t = c.first; t < last; ++t)
+          if (sides_[t].block != side.block) pairs_.push_back(std::minmax({sides_[t].block, side.block}));
+        add_to_balance(last, R, 1 / c.weight);
+      }
+    }
+    return is_sound(c);
+  }
+
+  static void copy_side(const SetBlocksView<T>& set, int R, Index e, double* to_H, double* to_G) {
+    const T *H = set.H + std::ptrdiff_t(R * set.width) * e, *G = set.G + std::ptrdiff_t(R * set.width) * e;
+    if (set.width == width) {
+      for (int k = 0; k < R * width; ++k) to_H[k] = double(H[k]), to_G[k] = double(G[k]);
+    } else {
+      for (int k = 0; k < R * width; ++k) to_H[k] = to_G[k] = 0;
+      for (int k = 0; k < set.width; ++k)
+        for (int j = 0; j < R; ++j) to_H[j + R * k] = double(H[j + R * k]), to_G[k + width * j] = double(G[k + set.width * j]);
+    }
   }
 
   /// Unknown k of a block in units of 1/√A_kk, A_kk ≈ |H_k|/|G_k| over its rows: of J's entries, which are in
@@ -264,17 +345,17 @@ class NewtonSystem<Item, RowSystem<T, Widths<w...>, R...>> {
         unit_[b][k] = std::ldexp(1.0, power);
         moved_[b][k] = std::ldexp(1.0, -power);
       }
-    for_each_index<pools>([&](auto p) {
-      for (auto& side : std::get<p>(sides_)) {
-        const auto b = std::size_t(side.block);
-        for (int k = 0; k < width; ++k)
-          for (int j = 0; j < Rows::template rows_of<p>; ++j) side.H(j, k) *= moved_[b][k], side.G(k, j) *= unit_[b][k];
+    for (const Constraint& c : constraints_)
+      for (Index s = c.first; s < c.last; ++s) {
+        const double *unit = unit_[sides_[s].block].data(), *moved = moved_[sides_[s].block].data();
+        if (c.rows == 3) scale(3, moved, unit, H(s), G(s));
+        else scale(c.rows, moved, unit, H(s), G(s));
       }
-    });
   }
 
-  std::array<Array<Index>, sizeof...(w)> number_;  ///< of a block of a set here, or −1
-  Array<std::pair<int, Index>> blocks_;            ///< (set, block), ascending
+  int sets_ = 0;
+  Array<Index> number_;                  ///< of a block of a set here, or −1
+  Array<std::pair<int, Index>> blocks_;  ///< (set, block), ascending
   IslandMatrices<BlockLu<width, double>> matrices_;
   BlockLu<width, double>* matrix_ = nullptr;
   Array<Index> count_;  ///< of sides on each block

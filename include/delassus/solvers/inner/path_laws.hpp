@@ -2,11 +2,10 @@
 #pragma once
 
 #include <delassus/rows/row_kind.hpp>
-#include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/inner/path_item.hpp>
 #include <delassus/solvers/inner/path_systems.hpp>
 #include <delassus/solvers/inner/rows_alone.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,160 +14,158 @@ namespace delassus::inner {
 
 /// The constraints of an island with their unknowns x, r(x, τ) and the two directions that `PathNewton` goes
 /// in.
-template <class Rows>
+template <class T, class System>
 class PathLaws {
-  using System = PathSystem<Rows>;
-  using T = typename Rows::Scalar;
+  using Constraint = NewtonConstraint<T>;
 
  public:
+  using Rows = PathRows<double>;
+
   /// Begins at x = 0; false where a law has no such form, or Newton's method cannot act.
-  template <class Problem>
-  bool gather(Problem& problem) {
+  bool gather(Island<T>& island) {
     bool is_known = true;
-    problem.each(
-        [&](auto p, Index) { is_known = is_known && (is_cone<Problem, p> || has_rows_alone<Problem, p>()); });
-    if (!is_known || !system_.gather(problem)) return false;
-    rows_ = problem.row_count();
+    for (const Span<T>& span : island)
+      is_known = is_known && (span.pool->table->friction || has_rows_alone(island.kinds(span), span.pool->rows));
+    if (!is_known || !system_.gather(island)) return false;
+    count_ = island.row_count();
+    rows.resize(std::size_t(count_), system_.slope.size());
+    weight_.resize(system_.constraints().size());
+    for (const Constraint& c : system_.constraints()) {
+      const int R = c.rows;
+      const PoolView<T>& pool = *c.span->pool;
+      const T nothing[Island<T>::most_rows] = {};
+      island.assign(*c.span, c.item, nothing);
+      const T* own = pool.own_block(c.item);
+      double& weight = weight_[std::size_t(c.number)];
+      weight = 0;
+      for (int k = 0; k < R; ++k) {
+        double& shape = rows.shape[c.at + k];
+        shape = is_cone(c) && k > 0 ? pool.table->friction(pool, c.item) : 1;
+        weight += double(own[k * (R + 1)]) * shape * shape / R;
+      }
+      is_known = is_known && weight > 0;
+      for (int k = 0; k < R; ++k) rows.scale[c.at + k] = rows.shape[c.at + k] / weight;
+    }
     double square = 0;
-    each([&](auto p, auto& c) {
-      constexpr int R = Rows::template rows_of<p>;
-      problem.template assign<p>(c.item, Vec<R, T>::Zero());
-      c.shape.setOnes();
-      if constexpr (is_cone<Problem, p>)
-        for (int k = 1; k < R; ++k) c.shape[k] = problem.book().template friction<p>(c.item);
-      const auto W = problem.template local<p>(c.item).W;
-      c.weight = 0;
-      for (int k = 0; k < R; ++k) c.weight += double(W(k, k)) * c.shape[k] * c.shape[k] / R;
-      is_known = is_known && c.weight > 0;
-      c.scale = c.shape / c.weight;
-      for (auto* v : {&c.x, &c.direction, &c.tangent}) v->setZero();
-    });
-    each([&](auto p, auto& c) {
-      const auto d = problem.template local<p>(c.item).d;
-      for (int k = 0; k < d.size(); ++k) square += std::pow(c.shape[k] * double(d[k]), 2);
-    });
-    scale_ = std::sqrt(square / rows_);
+    T d[Island<T>::most_rows];
+    for (const Constraint& c : system_.constraints()) {
+      island.velocity(*c.span, c.item, d);
+      for (int k = 0; k < c.rows; ++k) square += std::pow(rows.shape[c.at + k] * double(d[k]), 2);
+    }
+    scale_ = std::sqrt(square / count_);
     return is_known && scale_ > 0 && std::isfinite(scale_);
   }
 
   /// The root of the mean square of d: with τ its square, all rows are at once.
   double scale() const { return scale_; }
-  int rows() const { return rows_; }
+  int row_count() const { return count_; }
   /// The largest velocity that an impulse of the last evaluation stands for, a, or `scale`: what r is rounded
   /// by.
   double reach() const { return reach_; }
   bool is_negative() const { return system_.is_negative(); }
 
-  /// |r| at x + t δ + s dx/ds; λ is handed over to the problem.
-  template <class Problem>
-  double evaluate(Problem& problem, double tau, double t = 0, double s = 0) {
+  /// |r| at x + t δ + s dx/ds; λ is handed over to the island.
+  double evaluate(Island<T>& island, double tau, double t = 0, double s = 0) {
     reach_ = scale_;
-    each([&](auto p, auto& c) {
-      constexpr int R = Rows::template rows_of<p>;
-      c.ahead = c.x + t * c.direction + s * c.tangent;
-      smooth<is_cone<Problem, p>>(c, Problem::BookType::template kinds<p>(), tau, System::largest_ratio);
-      reach_ = std::max(reach_, c.a.cwiseAbs().maxCoeff());
-      problem.template assign<p>(c.item, Vec<R, T>(c.scale.cwiseProduct(c.a).template cast<T>()));
-    });
+    T numbers[Island<T>::most_rows];
+    for (const Constraint& c : system_.constraints()) {
+      for (Index k = c.at; k < c.at + c.rows; ++k) rows.ahead[k] = rows.x[k] + t * rows.direction[k] + s * rows.tangent[k];
+      smooth(is_cone(c), c.rows, island.kinds(*c.span), &rows.ahead[c.at], tau, System::largest_ratio, &rows.a[c.at], &rows.z[c.at],
+             &rows.E[c.slope], &rows.inverse[c.slope]);
+      for (int k = 0; k < c.rows; ++k) {
+        reach_ = std::max(reach_, std::abs(rows.a[c.at + k]));
+        numbers[k] = T(rows.scale[c.at + k] * rows.a[c.at + k]);
+      }
+      island.assign(*c.span, c.item, numbers);
+    }
     double square = 0;
-    each([&](auto p, auto& c) {
-      const auto u = problem.template local<p>(c.item).d;
-      for (int k = 0; k < u.size(); ++k) c.residual[k] = c.z[k] - c.shape[k] * double(u[k]);
-      if constexpr (is_cone<Problem, p>) c.residual[0] -= lag(c, tau);
-      square += c.residual.squaredNorm();
-    });
+    for (const Constraint& c : system_.constraints()) {
+      island.velocity(*c.span, c.item, numbers);
+      for (int k = 0; k < c.rows; ++k)
+        rows.residual[c.at + k] = rows.z[c.at + k] - rows.shape[c.at + k] * double(numbers[k]);
+      if (is_cone(c)) rows.residual[c.at] -= lag(c, tau);
+      for (int k = 0; k < c.rows; ++k) square += rows.residual[c.at + k] * rows.residual[c.at + k];
+    }
     return std::sqrt(square);
   }
   /// x ← where the last evaluation was.
-  void advance() {
-    each([](auto, auto& c) { c.x = c.ahead; });
-  }
+  void advance() { rows.x = rows.ahead; }
 
   /// Factors −∂r/∂x where the last evaluation was; false when it is singular.
-  template <class Problem>
-  bool factor(double tau) {
-    each([&](auto p, auto& c) {
-      constexpr int R = Rows::template rows_of<p>;
-      c.B.setIdentity();
-      if constexpr (is_cone<Problem, p>)
-        for (int k = 1; k < R; ++k) c.B(0, k) = -c.z[k] / slip(c, tau);
-    });
-    return system_.factor();
+  bool factor(const Island<T>& island, double tau) {
+    for (const Constraint& c : system_.constraints()) {
+      double* B = &rows.B[c.slope];
+      for (int k = 0; k < c.rows * c.rows; ++k) B[k] = k % (c.rows + 1) == 0 ? 1 : 0;
+      for (int k = 1; k < c.rows && is_cone(c); ++k) B[c.rows * k] = -rows.z[c.at + k] / slip(c, tau);
+    }
+    return system_.factor(island, rows, weight_);
   }
 
-  /// Leaves (−∂r/∂x)⁻¹ r in `lambda`.
-  void find_direction() {
-    each([](auto, auto& c) { c.side = c.residual; });
-    system_.solve();
+  /// (−∂r/∂x)⁻¹ r, by row.
+  const Array<double>& find_direction(const Island<T>& island) {
+    rows.side = rows.residual;
+    system_.solve(island, rows);
+    return system_.lambda;
   }
   /// rate ← (−∂r/∂x)⁻¹ ∂r/∂log τ: what x does along the path as log τ grows.
-  template <class Problem>
-  void find_rate(double tau) {
+  void find_rate(const Island<T>& island, double tau) {
     // In the algebra ∂a/∂log τ = ∂z/∂log τ = τ (a + z)⁻¹, since a ∘ z = τ and a − z = x.
-    each([&](auto p, auto& c) {
-      const Vec<Rows::template rows_of<p>> change = growth<Problem, p>(c, tau);
-      c.error = c.scale.cwiseProduct(change);  // ∂λ/∂log τ
-      c.side = change;
-      if constexpr (is_cone<Problem, p>) {
-        const double s = slip(c, tau);
-        for (int k = 1; k < c.side.size(); ++k) c.side[0] -= c.z[k] / s * change[k];
-        c.side[0] += 0.5 * std::sqrt(tau) * lag(c, tau) / s;
-      }
-    });
-    system_.answer();
-    each([](auto, auto& c) { c.side -= c.shape.cwiseProduct(c.velocity); });
-    system_.solve();
-    each([](auto, auto& c) { c.rate = c.lambda; });
+    for (const Constraint& c : system_.constraints()) {
+      double* change = &rows.side[c.at];
+      find_growth(c, tau, change);
+      for (int k = 0; k < c.rows; ++k) rows.error[c.at + k] = rows.scale[c.at + k] * change[k];  // ∂λ/∂log τ
+      if (!is_cone(c)) continue;
+      const double s = slip(c, tau);
+      for (int k = 1; k < c.rows; ++k) change[0] -= rows.z[c.at + k] / s * change[k];
+      change[0] += 0.5 * std::sqrt(tau) * lag(c, tau) / s;
+    }
+    system_.answer(rows);
+    for (int k = 0; k < count_; ++k) rows.side[k] -= rows.shape[k] * system_.velocity[k];
+    system_.solve(island, rows);
+    rows.rate = system_.lambda;
   }
 
-  /// Σ of the two at every constraint, f(c) and g(c), in the lengths of the path: each beside |x_i|² + 4 τ.
-  double product(double tau, const auto& f, const auto& g) {
+  /// Σ f g of two directions, by row, in the lengths of the path: at each constraint beside |x_i|² + 4 τ.
+  double product(double tau, const Array<double>& f, const Array<double>& g) const {
     double sum = 0;
-    each([&](auto, auto& c) { sum += f(c).dot(g(c)) / (c.x.squaredNorm() + 4 * tau); });
-    return sum / rows_;
+    for (const Constraint& c : system_.constraints()) {
+      double dot = 0, square = 0;
+      for (Index k = c.at; k < c.at + c.rows; ++k) dot += f[k] * g[k], square += rows.x[k] * rows.x[k];
+      sum += dot / (square + 4 * tau);
+    }
+    return sum / count_;
   }
-  /// f(constraint) for all.
-  void each_item(auto&& f) {
-    each([&](auto, auto& c) { f(c); });
-  }
+
+  Rows rows;
 
  private:
-  template <class Problem, int p>
-  static constexpr bool is_cone = Problem::BookType::template has_cone<p>();
-
-  void each(auto&& f) {
-    system_.each(f);
-  }
+  static bool is_cone(const Constraint& c) { return c.span->pool->table->friction; }
 
   /// √(|z_t|² + τ).
-  static double slip(const auto& c, double tau) {
-    return std::hypot(c.z[1], c.z[2], std::sqrt(tau));
-  }
+  double slip(const Constraint& c, double tau) const { return std::hypot(rows.z[c.at + 1], rows.z[c.at + 2], std::sqrt(tau)); }
 
   /// √(|z_t|² + τ) − √τ, without their difference.
-  static double lag(const auto& c, double tau) {
-    return (c.z[1] * c.z[1] + c.z[2] * c.z[2]) / (slip(c, tau) + std::sqrt(tau));
+  double lag(const Constraint& c, double tau) const {
+    const double* z = &rows.z[c.at];
+    return (z[1] * z[1] + z[2] * z[2]) / (slip(c, tau) + std::sqrt(tau));
   }
 
-  /// τ (a + z)⁻¹.
-  template <class Problem, int p, class Item>
-  static auto growth(const Item& c, double tau) {
-    constexpr int R = Rows::template rows_of<p>;
-    Vec<R> out = c.a + c.z;
-    if constexpr (is_cone<Problem, p>) {
+  /// out ← τ (a + z)⁻¹.
+  void find_growth(const Constraint& c, double tau, double* out) const {
+    for (int k = 0; k < c.rows; ++k) out[k] = rows.a[c.at + k] + rows.z[c.at + k];
+    if (is_cone(c)) {
       const double length = std::hypot(out[1], out[2]), determinant = (out[0] - length) * (out[0] + length);
-      out *= tau / determinant;
-      for (int k = 1; k < R; ++k) out[k] = -out[k];
+      for (int k = 0; k < c.rows; ++k) out[k] *= k == 0 ? tau / determinant : -tau / determinant;
     } else {
-      constexpr auto kinds = Problem::BookType::template kinds<p>();
-      for (int k = 0; k < R; ++k) out[k] = kinds[std::size_t(k)] == RowKind::equality ? 0 : tau / out[k];
+      const RowKind* kinds = Island<T>::kinds(*c.span);
+      for (int k = 0; k < c.rows; ++k) out[k] = kinds[k] == RowKind::equality ? 0 : tau / out[k];
     }
-    return out;
   }
 
   System system_;
+  Array<double> weight_;  ///< tr(P W_ii P)/rows, a constraint
   double scale_ = 0, reach_ = 0;
-  int rows_ = 0;
+  int count_ = 0;
 };
 
 }  // namespace delassus::inner

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/solvers/inner/halve_step.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -13,16 +14,16 @@ namespace delassus::inner {
 /// Outside λ̂ ← λ(u) while ε shrinks, inside Newton's method on F of `Body`, a `BodySpace` that holds the
 /// island, each step halved until the rows see less of F. `Solver` has the tolerance and how many
 /// factorizations are allowed; the smallest measured error is kept in `Body`. See `ProximalNewton`.
-template <class Criterion, class Solver, class Problem, class Body>
+template <class Criterion, class Solver, class T, class Body>
 class ProximalPoint {
  public:
-  ProximalPoint(const Solver& solver, Problem& problem, Body& body)
+  ProximalPoint(const Solver& solver, Island<T>& problem, Body& body)
       : solver_(solver), problem_(problem), body_(body), rows_(problem.row_count()) {}
 
   /// Around the λ that was gathered.
   Measure begin() {
     measure = best_ = body_.measure(problem_);
-    least_ = centre_ = body_.error();
+    least_ = centre_ = body_.last_error();
     if (epsilon == 0) epsilon = measure.residual > 1e-2 ? 1e-5 : 1e-7;  // a warm start needs no care
     return measure;
   }
@@ -34,26 +35,26 @@ class ProximalPoint {
       const bool is_well = descend();
       note();
       if (is_done(measure)) return true;
-      if (!is_well || !(body_.error() < 1.5 * centre_)) {
+      if (!is_well || !(body_.last_error() < 1.5 * centre_)) {
         epsilon = std::min(20 * epsilon, 1.0);
         return false;
       }
-      body_.recentre(problem_);
+      body_.recentre();
       shrink(factorizations - before);
-      centre_ = body_.error();
+      centre_ = body_.last_error();
     }
     return false;
   }
 
   /// The rows take λ(u); the measure by W itself tells whether it is one.
   bool is_met() {
-    body_.hand_over(problem_, [](const auto& c) { return c.lambda; });
+    body_.hand_over(problem_, body_.lambda);
     measure = problem_.measure();
     return is_done(measure);
   }
   /// The rows take the λ of the smallest measured error.
   void restore_best() {
-    body_.hand_over(problem_, [](const auto& c) { return c.best; });
+    body_.hand_over(problem_, body_.best);
   }
 
   /// Begins anew from the λ that the rows have; false when nothing can be begun from there.
@@ -61,7 +62,7 @@ class ProximalPoint {
     if (!body_.restart(problem_)) return false;
     measure = body_.measure(problem_);
     note();
-    centre_ = body_.error();
+    centre_ = body_.last_error();
     return true;
   }
 
@@ -72,7 +73,7 @@ class ProximalPoint {
     return !is_late_;
   }
   bool is_late() const { return is_late_; }
-  Problem& problem() const { return problem_; }
+  Island<T>& problem() const { return problem_; }
   int rows() const { return rows_; }
   bool is_done(const Measure& m) const {
     return inner::is_done<Criterion>(solver_, m, rows_);
@@ -88,17 +89,16 @@ class ProximalPoint {
   bool descend() {
     ++rounds_;
     double size = body_.evaluate(problem_, epsilon, 0);
-    body_.close_what_touches(problem_, epsilon, body_.error());
+    body_.close_what_touches(problem_, epsilon, body_.last_error());
     const double first = size;
     for (int step = 0; step < 8 && has_time(); ++step) {
       if (!(size > 0)) break;
       if (!body_.find_direction(problem_)) return false;
       ++factorizations;
       const double before = size;
-      body_.advance(problem_, halve_step(size, 14, [&](double t) { return body_.evaluate(problem_, epsilon, t); }));
+      body_.advance(halve_step(size, 14, [&](double t) { return body_.evaluate(problem_, epsilon, t); }));
       measure = body_.measure(problem_);
-      if (problem_.tells_forces())
-        body_.hand_over(problem_, [](const auto& c) { return c.lambda; });
+      if (problem_.tells_forces()) body_.hand_over(problem_, body_.lambda);
       problem_.notify(sweeps + factorizations, measure);
       if (is_done(measure) || size < 1e-4 * first) break;
       if (!(size <= 0.99 * before)) return false;
@@ -111,22 +111,22 @@ class ProximalPoint {
   /// come nearer, impulses go through what is light to what is heavy, and by 1/(1 + ε r) of their way, r the
   /// ratio of the masses: the error goes by ε/(1/r + ε) a time, and ε is made for 2e-4 of it.
   void shrink(int spent) {
-    is_slow_ = is_slow_ || (spent == 1 && body_.error() > 0.5 * centre_);
+    is_slow_ = is_slow_ || (spent == 1 && body_.last_error() > 0.5 * centre_);
     if (is_slow_)
-      epsilon = std::clamp(2e-4 * centre_ / std::max(body_.error(), 1e-300) * epsilon, 1e-12, epsilon);
+      epsilon = std::clamp(2e-4 * centre_ / std::max(body_.last_error(), 1e-300) * epsilon, 1e-12, epsilon);
     else
       epsilon = std::max(0.01 * epsilon, 1e-10);
   }
 
   void note() {
-    if (!(body_.error() < least_)) return;
-    least_ = body_.error();
+    if (!(body_.last_error() < least_)) return;
+    least_ = body_.last_error();
     best_ = measure;
-    body_.keep(problem_);
+    body_.keep();
   }
 
   const Solver& solver_;
-  Problem& problem_;
+  Island<T>& problem_;
   Body& body_;
   int rows_;
   Measure best_{};

@@ -3,29 +3,25 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
+#include <delassus/solvers/inner/rows_alone.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <algorithm>
-#include <array>
-#include <span>
-#include <tuple>
+#include <cstddef>
 #include <vector>
 
 namespace delassus::inner {
 
 /// S = W_cc − W_cb W_bb⁻¹ W_bc over the constraints c that are not bilateral, dense, and u = d + S λ kept as
-/// sweeps change λ: to a solver it is a compliance, and its own list of items.
-template <class Rows>
+/// sweeps change λ: their island, with S in the place of W.
+template <class T, class System>
 class SchurComplement {
-  using System = DirectSystem<Rows>;
   static constexpr int w = System::w;
 
  public:
-  using T = typename Rows::Scalar;
-
-  /// Takes the constraints of `system` behind its bilateral ones, with the velocities that `problem` has for
+  /// Takes the constraints of `system` behind its bilateral ones, with the velocities that `whole` has for
   /// them.
-  void build(System& system, const auto& problem) {
-    for (auto& items : items_) items.clear();
+  Island<T> build(System& system, const Island<T>& whole) {
     const Index first = system.bilateral();
     size_ = w * (system.count() - first);
     S_.assign(std::size_t(size_) * size_, 0);
@@ -38,49 +34,68 @@ class SchurComplement {
         own = std::max(own, least * system.node(j).scale[k]);
       }
     }
-    for_each_index<System::pools>([&](auto p) {
-      constexpr int r = Rows::template rows_of<p>;
-      auto& place = place_[p];
-      for (Index j = first; j < system.count(); ++j) {
-        const auto& node = system.node(j);
-        if (node.pool != p) continue;
-        items_[p].push_back(node.item);
-        if (Index(place.size()) <= node.item) place.resize(node.item + 1);
-        place[node.item] = w * (j - first);
-        const Vec<r, T> u = problem.template local<p>(node.item).d;
-        for (int k = 0; k < r; ++k) u_[place[node.item] + k] = double(u[k]);
-      }
-    });
-  }
-
-  std::span<const Index> items(int p, Index) const { return items_[p]; }
-
-  template <int p>
-  Mat<Rows::template rows_of<p>, Rows::template rows_of<p>, T> diagonal(Index i) const {
-    constexpr int r = Rows::template rows_of<p>;
-    Mat<r, r, T> own;
-    const Index at = place_[p][i];
-    for (int c = 0; c < r; ++c)
-      for (int k = 0; k < r; ++k) own(k, c) = T(column(at + c)[at + k]);
-    return own;
-  }
-  template <int p>
-  Vec<Rows::template rows_of<p>, T> residual(const Rows&, Index i) const {
-    Vec<Rows::template rows_of<p>, T> u;
-    for (int k = 0; k < Rows::template rows_of<p>; ++k) u[k] = T(u_[place_[p][i] + k]);
-    return u;
-  }
-  template <int p>
-  void commit(const Rows&, Index i, const Vec<Rows::template rows_of<p>, T>& change) {
-    for (int c = 0; c < Rows::template rows_of<p>; ++c) {
-      const double by = double(change[c]);
-      if (by == 0) continue;
-      const double* s = column(place_[p][i] + c);
-      for (Index k = 0; k < size_; ++k) u_[k] += by * s[k];
-    }
+    return show(whole);
   }
 
  private:
+  /// The constraints that were taken, in their order: whole spans of the island, since a law's rows are all equalities or
+  /// none is swept without the others.
+  Island<T> show(const Island<T>& whole) {
+    pools_.clear(), spans_.clear(), first_.clear();
+    std::size_t items = 0, squares = 0;
+    for (const Span<T>& span : whole) {
+      if (are_equalities(Island<T>::kinds(span), span.pool->rows)) continue;
+      first_.push_back(Index(items));
+      items += std::size_t(span.pool->items);
+      squares += std::size_t(span.pool->rows * span.pool->rows) * std::size_t(span.pool->items);
+      pools_.push_back(*span.pool);
+      spans_.push_back(span);
+    }
+    place_.resize(items);
+    diagonal_.resize(squares);
+    T* diagonal = diagonal_.data();
+    Index at = 0;
+    T u[Island<T>::most_rows];
+    for (std::size_t n = 0; n < spans_.size(); ++n) {
+      PoolView<T>& pool = pools_[n];
+      const int R = pool.rows;
+      for (const Index i : spans_[n]) {
+        place_[std::size_t(first_[n] + i)] = at;
+        Island<T>::velocity(spans_[n], i, u);  // by W
+        for (int c = 0; c < R; ++c) {
+          u_[at + c] = double(u[c]);
+          for (int k = 0; k < R; ++k) diagonal[std::ptrdiff_t(R * R) * i + k + R * c] = T(column(at + c)[at + k]);
+        }
+        at += w;
+      }
+      pool.pool = int(n);
+      pool.diagonal = pool.own_diagonal = diagonal;
+      pool.form = FormOfW::functions;
+      pool.functions = {this, nullptr, residual, changed};
+      diagonal += std::ptrdiff_t(R * R) * pool.items;
+    }
+    for (std::size_t n = 0; n < spans_.size(); ++n) {
+      spans_[n].pool = &pools_[n];
+      pools_[n].table->prepare(spans_[n], whole.h());
+    }
+    return whole.part(spans_.data(), int(spans_.size()));
+  }
+  static void residual(const FunctionsOfW<T>& of, int pool, Index i, T* u) {
+    const auto& own = *static_cast<const SchurComplement*>(of.W);
+    const Index at = own.place_[std::size_t(own.first_[std::size_t(pool)] + i)];
+    for (int k = 0; k < own.pools_[std::size_t(pool)].rows; ++k) u[k] = T(own.u_[at + k]);
+  }
+  static void changed(const FunctionsOfW<T>& of, int pool, Index i, const T* change) {
+    auto& own = *static_cast<SchurComplement*>(of.W);
+    const Index at = own.place_[std::size_t(own.first_[std::size_t(pool)] + i)];
+    for (int c = 0; c < own.pools_[std::size_t(pool)].rows; ++c) {
+      const double by = double(change[c]);
+      if (by == 0) continue;
+      const double* s = own.column(at + c);
+      for (Index k = 0; k < own.size_; ++k) own.u_[k] += by * s[k];
+    }
+  }
+
   double* column(Index c) { return &S_[std::size_t(c) * size_]; }
   const double* column(Index c) const { return &S_[std::size_t(c) * size_]; }
 
@@ -134,7 +149,10 @@ class SchurComplement {
 
   Index size_ = 0;
   Array<double> S_, u_;  ///< by columns; w entries a constraint
-  std::array<Array<Index>, System::pools> items_, place_;
+  Array<PoolView<T>> pools_;
+  Array<Span<T>> spans_;
+  Array<Index> first_, place_;  ///< the first place of a pool; of an item its first row in S
+  Array<T> diagonal_;
   std::vector<typename System::Twist> velocity_;
 };
 

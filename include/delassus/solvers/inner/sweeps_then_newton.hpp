@@ -27,22 +27,20 @@ struct SweepsThenNewton {
   template <class Rows>
   struct Workspace {
     typename Newton::template Workspace<Rows> newton;
-    Impulses<Rows> best;
+    Array<typename Rows::Scalar> best;
     /// What Newton's method needs is made where it acts.
-    void reset(const Rows& rows) { newton.sweeps.reset(rows); }
+    void reset(Index rows) { newton.sweeps.reset(rows); }
   };
 
-  template <class Problem, class Workspace>
-  SolveReport solve(Problem& problem, Workspace& work) const {
-    if constexpr (has_contacts<Problem>(std::make_integer_sequence<int, Problem::pools>()))
-      if (const int most = factorizations(problem); most > 0) return solve(problem, work, most);
-    return sweeps.solve(problem, work.newton.sweeps);
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work) const {
+    const int most = factorizations(problem);
+    return most > 0 ? solve(problem, work, most) : sweeps.solve(problem, work.newton.sweeps);
   }
 
  private:
-  SolveReport solve(auto& problem, auto& work, int factorizations) const {
-    work.newton.best.resize_like(problem.rows());
-    work.best.resize_like(problem.rows());
+  template <class T, class Space>
+  SolveReport solve(Island<T>& problem, Space& work, int factorizations) const {
     SolveReport report = newton(first, factorizations).solve(problem, work.newton);
     const auto goes_on = [&] { return report.status == Status::max_iterations && !problem.is_out_of_time(); };
     if (report.factorizations > 0 && goes_on()) {
@@ -70,13 +68,14 @@ struct SweepsThenNewton {
   }
 
   /// That one run of Newton's method may make; none where it cannot act.
-  template <class Problem>
-  int factorizations(const Problem& problem) const {
-    bool is_known = sweeps.max_iterations > first;
-    problem.each([&](auto p, Index) {
-      is_known = is_known && ContactSpace<typename Problem::RowsType>::template knows<Problem, p>();
-    });
-    if (!is_known) return 0;
+  template <class T>
+  int factorizations(const Island<T>& problem) const {
+    bool is_known = sweeps.max_iterations > first, has_contacts = false;
+    for (const Span<T>& span : problem) {
+      is_known = is_known && ContactSpace<T>::knows(*span.pool);
+      has_contacts = has_contacts || span.pool->table->friction;
+    }
+    if (!is_known || !has_contacts) return 0;
     const double rest = sweeps.max_iterations - first;
     return std::min(100, int(0.5 * rest / Newton::cost_in_sweeps(problem.row_count())));
   }
@@ -85,11 +84,6 @@ struct SweepsThenNewton {
     solver.sweeps.max_iterations = swept;
     solver.sweeps.min_iterations = std::min(sweeps.min_iterations, swept);
     return solver;
-  }
-
-  template <class Problem, int... p>
-  static constexpr bool has_contacts(std::integer_sequence<int, p...>) {
-    return (Problem::BookType::template has_cone<p>() || ...);
   }
 };
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 
 namespace delassus::inner {
 
@@ -16,80 +15,77 @@ namespace delassus::inner {
 ///   J = 1 + W S.
 ///
 /// That is dense: n² blocks, and n³ products of them in each factorization.
-template <template <int> class Item, class Rows>
-class WholeSystem : public NewtonSystem<Item, Rows> {
-  using Base = NewtonSystem<Item, Rows>;
-  using T = typename Rows::Scalar;
-  using Base::items_, Base::pairs_, Base::sides_;
+template <class T, int width_>
+class WholeSystem : public NewtonSystem<T, width_> {
+  using Base = NewtonSystem<T, width_>;
+  using Base::constraints_, Base::pairs_, Base::sides_, Base::most_rows;
 
  public:
-  using typename Base::Velocities;
+  using typename Base::Constraint, typename Base::Velocities;
   using Base::width;
   static constexpr Index most = 400;  ///< constraints
 
   /// False where Newton's method cannot act, or where blocks are coupled and there are more constraints than `most`
   /// or one with more rows than a block.
-  bool gather(auto& problem) {
-    return Base::gather(problem) || gather_rows(problem);
+  bool gather(Island<T>& island) {
+    return Base::gather(island) || gather_rows(island);
   }
 
  private:
-  bool gather_rows(auto& problem) {
+  bool gather_rows(Island<T>& island) {
     Index count = 0;
-    bool fits = Base::has_tangents(problem);
-    problem.each([&](auto p, Index) {
-      ++count;
-      fits = fits && Rows::template rows_of<p> <= width;
-    });
+    bool fits = Base::has_tangents(island);
+    for (const Span<T>& span : island) {
+      count += span.count;
+      fits = fits && span.pool->rows <= width;
+    }
     if (!fits || count > most) return false;
-    this->begin(std::size_t(count));
-    Velocities before(std::size_t(count), Velocities::value_type::Zero());
-    each_velocity(problem, [&](Index j, int k, double u) { before[std::size_t(j)][k] = u; });
+    this->begin(island, std::size_t(count));
+    Velocities before(std::size_t(count), zero<Vec<width>>());
+    each_velocity(island, [&](Index j, int k, double u) { before[std::size_t(j)][k] = u; });
     bool is_sound = true;
-    Index block = 0;
-    problem.each([&](auto p, Index i) { is_sound &= take<p>(problem, i, block++, before); });
-    return is_sound && this->finish(problem.island());
+    for (const Span<T>& span : island)
+      for (const Index i : span) is_sound &= take(island, span, i, before);
+    return is_sound && this->finish(island.island());
   }
 
   /// f(j, k, u_k) for row k of the j-th constraint of the island.
-  static void each_velocity(const auto& problem, auto&& f) {
+  static void each_velocity(const Island<T>& island, auto&& f) {
     Index j = 0;
-    problem.each([&](auto p, Index i) {
-      const auto u = problem.template local<p>(i).d;
-      for (int k = 0; k < int(u.size()); ++k) f(j, k, double(u[k]));
-      ++j;
-    });
+    T u[most_rows];
+    for (const Span<T>& span : island)
+      for (const Index i : span) {
+        island.velocity(span, i, u);
+        for (int k = 0; k < span.pool->rows; ++k) f(j, k, double(u[k]));
+        ++j;
+      }
   }
 
   /// W e_k = w (u(λ + e_k/w) − u(λ)).
-  template <int p, class Problem>
-  bool take(Problem& problem, Index i, Index block, const Velocities& before) {
-    constexpr int r = Rows::template rows_of<p>;
-    if constexpr (r <= width) {
-      auto& sides = std::get<p>(sides_);
-      const Index count = Index(before.size()), first = Index(sides.size());
-      Item<r> c = Base::item_of(problem.template local<p>(i), i, first);
-      sides.resize(std::size_t(first + count), {0, Mat<r, width>::Zero(), Mat<width, r>::Zero()});
-      sides[first + block].H.template leftCols<r>().setIdentity();
-      const Vec<r, T> lambda = problem.rows().template pool<p>().lambda[i];
-      for (int k = 0; k < r; ++k) {
-        Vec<r, T> pushed = lambda;
-        pushed[k] += T(1 / c.weight);
-        problem.template assign<p>(i, pushed);
-        each_velocity(problem, [&](Index j, int l, double u) {
-          sides[first + j].G(l, k) = c.weight * (u - before[std::size_t(j)][l]);
-        });
-        problem.template assign<p>(i, lambda);
-      }
-      for (Index j = 0; j < count; ++j) {
-        sides[first + j].block = j;
-        if (j != block) pairs_.push_back(std::minmax(j, block));
-        this->add_to_balance(sides[first + j], 1 / c.weight);
-      }
-      return Base::add(c, std::get<p>(items_), first + count);
-    } else {
-      return false;
+  bool take(Island<T>& island, const Span<T>& span, Index i, const Velocities& before) {
+    const Index block = Index(constraints_.size()), count = Index(before.size());
+    const Constraint c = this->add(span, i);
+    const int R = c.rows;
+    for (Index j = 0; j < count; ++j) this->add_side(R, j);
+    for (Index j = 0; j < count; ++j)
+      for (int k = 0; k < R * width; ++k) this->H(c.first + j)[k] = this->G(c.first + j)[k] = 0;
+    for (int k = 0; k < R; ++k) this->H(c.first + block)[k + R * k] = 1;
+    T lambda[most_rows], pushed[most_rows];
+    for (int k = 0; k < R; ++k) lambda[k] = pushed[k] = island.impulse(span, i)[k];
+    for (int k = 0; k < R; ++k) {
+      pushed[k] = lambda[k] + T(1 / c.weight);
+      island.assign(span, i, pushed);
+      pushed[k] = lambda[k];
+      each_velocity(island, [&](Index j, int l, double u) {
+        this->G(c.first + j)[l + width * k] = c.weight * (u - before[std::size_t(j)][l]);
+      });
+      island.assign(span, i, lambda);
     }
+    for (Index j = 0; j < count; ++j) {
+      if (j != block) pairs_.push_back(std::minmax(j, block));
+      this->add_to_balance(c.first + j, R, 1 / c.weight);
+    }
+    return Base::is_sound(c);
   }
 };
 

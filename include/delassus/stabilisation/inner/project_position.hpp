@@ -6,78 +6,12 @@
 #include <delassus/rows/impulses.hpp>
 #include <delassus/rows/rate.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/stabilisation/inner/position_laws.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/row_types.hpp>
 #include <delassus/step/solve.hpp>
 
 namespace delassus {
-
-/// The laws of the position problem: equalities stay equalities, bounds stay bounds, friction rows are locked at zero.
-/// One projected Gauss-Seidel pass over the rows of each block.
-template <class Constraints, class T>
-class PositionLawSet;
-template <class... Laws, class T>
-class PositionLawSet<Constraints<Laws...>, T> {
- public:
-  template <int p, int R>
-  void project(Index, Local<R, T>& c) const {
-    for (int k = 0; k < R; ++k) {
-      const T before = c.lambda[k];
-      c.lambda[k] = bound<p>(k, before - c.d[k] / c.W(k, k));
-      c.d += c.W.col(k) * (c.lambda[k] - before);
-    }
-  }
-  template <int p, int R>
-  Vec<R, T> natural_map(Index, const Local<R, T>& c, T scale) const {
-    Vec<R, T> out;
-    for (int k = 0; k < R; ++k) out[k] = scale * c.lambda[k] - bound<p>(k, scale * c.lambda[k] - c.d[k]);
-    return out;
-  }
-  template <int p>
-  static constexpr auto kinds() {
-    return row_kinds<std::tuple_element_t<p, std::tuple<Laws...>>>();
-  }
-  /// No law is a round cone here, and each bounds what it is given.
-  template <int p>
-  static constexpr bool has_cone() {
-    return false;
-  }
-  template <int p>
-  static constexpr T friction(Index) {
-    return 0;
-  }
-  template <int p>
-  static constexpr bool clamps() {
-    return true;
-  }
-  /// Row by row: the slope of a bound is 1/W_kk where it lets through, 0 where it holds.
-  template <int p, int R, class N>
-  Mat<R, R, N> tangent(Index, Local<R, N>& c) const {
-    Mat<R, R, N> slope = Mat<R, R, N>::Zero();
-    for (int k = 0; k < R; ++k) {
-      const N free = c.lambda[k] - c.d[k] / c.W(k, k);
-      c.lambda[k] = bound<p>(k, free);
-      if (c.lambda[k] == free) slope(k, k) = N(1) / c.W(k, k);
-    }
-    return slope;
-  }
-  template <int p, int R>
-  void clamp(Index, Vec<R, T>& lambda) const {
-    for (int k = 0; k < R; ++k) lambda[k] = bound<p>(k, lambda[k]);
-  }
-
- private:
-  template <int p, class N>
-  static N bound(int k, N x) {
-    switch (kinds<p>()[k]) {
-      case RowKind::equality: return x;
-      case RowKind::lower: return std::max(N(0), x);
-      case RowKind::upper: return std::min(N(0), x);
-      case RowKind::friction: return N(0);
-    }
-    return x;
-  }
-};
 
 /// d of the position problem: u⁺ + push(φ), close(φ) of a joint: the velocity the row has plus the rate its violation asks
 /// for; an open contact only must not close. With `at_end`, the rows where the bodies are at the end of the step, equalities
@@ -171,7 +105,8 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   exchange();
   make_position_bias(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
   step.W.reset(rows);
-  PositionLawSet<typename Step::Laws, typename Step::Scalar> book;
+  inner::PositionLaws<typename Step::Laws, typename Step::Scalar, inner::needs_of<std::remove_cvref_t<decltype(step.solver())>>> book;
+  book.show(step.W, rows);
   NoObserver nobody;
   Status worst = Status::converged;
   constexpr double far = 0.05;  // of the largest velocity that closes a gap

@@ -1,12 +1,11 @@
-/// An island whose sweeps end when the time does.
+/// The time that a solve has, what it costs, and when work is let go for it.
 #pragma once
 
-#include <delassus/solvers/inner/watch.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace delassus::inner {
 
@@ -33,62 +32,55 @@ class Attempts {
 
 /// What setting all impulses costs, in sweeps: copying them takes up to 0.07, telling W of it up to 0.41 where that is
 /// work (of a thousand to three thousand boxes, `AssembledCompliance` and `MatrixFreeCompliance`).
-template <class Operator>
-inline constexpr double load_share = 0.07;
-template <class Operator>
-  requires(!requires { requires Operator::commit_is_free; })
-inline constexpr double load_share<Operator> = 0.41;
+inline constexpr double load_share_of_blocks = 0.07, load_share_otherwise = 0.41;
 
-/// Looks at the clock after each sweep and inside long ones, sets the best measured impulses aside, and lets
-/// go what is half done at the deadline, less the time that loading those takes: from then on every operation is over at once, no measure is better
-/// than the best, and a solver comes to its end by the way it has. What λ is then does not matter, the best
-/// is loaded in the end. Before the first measure after `min_iterations` sweeps nothing is let go.
-template <class Problem, Clock C, class Best>
-class TimedProblem : public Problem {
-  using Groups = WatchedGroups<typename Problem::GroupsType, Watch<C>>;
-  using Watched = decltype(std::declval<const Problem&>().with(
-      std::declval<typename Problem::OperatorType&>(), std::declval<const Groups&>()));
-
+/// Looks at a clock after each sweep and inside long ones, and lets go what is half done at the deadline, less the time that
+/// loading the best measured impulses takes: from then on every operation of the island is over at once, no measure is better
+/// than the best, and a solver comes to its end by the way it has. What λ is then does not matter, the best is loaded in the
+/// end. Before the first measure after `min_iterations` sweeps nothing is let go.
+template <class T>
+class SolveTimer {
  public:
-  TimedProblem(const Problem& problem, const C& clock, double deadline, Best& best, bool may_attempt)
-      : Problem(problem),
-        watch_(clock, deadline),
-        groups_(problem.groups(), watch_),
-        watched_(problem.with(problem.compliance(), groups_)),
-        best_(best),
-        may_attempt_(may_attempt) {}
-  TimedProblem(const TimedProblem&) = delete;
-  TimedProblem& operator=(const TimedProblem&) = delete;
+  using Now = double (*)(const void* clock);
+
+  /// `share`: what loading the best costs, in sweeps.
+  SolveTimer(const void* clock, Now now, double deadline, Array<T>& best, bool may_attempt, double share)
+      : clock_(clock), ask_(now), deadline_(deadline), share_(share), best_(best), may_attempt_(may_attempt) {}
+  SolveTimer(const SolveTimer&) = delete;
+  SolveTimer& operator=(const SolveTimer&) = delete;
+
+  /// Items between two looks at the clock, or products of two blocks of bodies: some 5 µs. A look takes 25 ns.
+  static constexpr int stride = 64;
 
   /// Asked after every sweep.
   bool is_out_of_time() {
-    const double now = watch_.look();
+    const double now = look();
     if (is_sweep_) {
       (is_measured_ ? measured_ : plain_).add(now - last_);
-      watch_.keep(load_share<typename Problem::OperatorType> * pace());
+      kept_ = share_ * pace();
     }
     is_measured_ = false;
     last_ = now;
     is_sweep_ = has_due_sweeps_ = true;
-    return watch_.is_late();
+    return is_late_;
   }
   /// Whether another sweep and its measure could end too late: what is not measured then is lost. A fourth is
   /// for what their times vary by.
   bool is_measure_due() const {
     const double both = measured_.count > 0 ? measured_.mean() : 2 * plain_.mean();
-    return both > 0 && last_ + 1.25 * both >= watch_.end();
+    return both > 0 && last_ + 1.25 * both >= end();
   }
   /// Whether what takes as long as so many sweeps would end before the deadline, and a measure after it;
   /// where it is asked again for the same, it took as long as the longest time between. One that is not begun
   /// does not make the solve late: shorter work may still be done.
   bool has_time_for(double sweeps) {
-    const double now = watch_.look();
+    const double now = look();
     longest_ = is_sweep_ || sweeps != asked_for_ ? 0 : std::max(longest_, now - asked_);
     is_sweep_ = false;
     asked_for_ = sweeps;
     asked_ = now;
     const double needed = std::max(1.25 * longest_ + 2 * pace(), sweeps * pace());
-    return !watch_.is_late() && now + needed < watch_.end();
+    return !is_late_ && now + needed < end();
   }
   /// The same for what may come to nothing, and what came of it.
   bool may_attempt(double sweeps) { return may_attempt_ && has_time_for(sweeps); }
@@ -98,53 +90,48 @@ class TimedProblem : public Problem {
   }
   bool has_attempted() const { return has_attempted_; }
   bool was_of_use() const { return was_of_use_; }
-  /// Asked between the pieces of what is long and no sweep.
-  bool is_cut_off(int work) { return watch_.cuts_off_after(work); }
   /// From here on λ is the answer, whatever its measure, and all work is done to its end.
   void must_complete() {
     must_complete_ = true;
-    watch_.let_go(false);
+    may_let_go_ = false;
   }
 
-  template <bool tells_change = false, class... Curvature>
-  double sweep(double relaxation = 1, Curvature&&... curvature) {
-    return watched_.template sweep<tells_change>(relaxation, curvature...);
+  /// Whether what is begun now, or half done, is let go.
+  bool lets_go() {
+    if (is_late_ && may_let_go_) has_let_go_ = true;
+    return is_late_ && may_let_go_;
   }
-  double project_once(const Best& x, double& curvature) { return watched_.project_once(x, curvature); }
-  void extrapolate(Best& before, double beta) { watched_.extrapolate(before, beta); }
-  double last_change() const { return watched_.last_change(); }
-  double worst_change() const { return watched_.worst_change(); }
+  bool has_let_go() const { return has_let_go_; }
+  /// The same after a look.
+  bool cuts_off() {
+    if (may_let_go_) look();
+    return lets_go();
+  }
+  /// The same after so much work, and a look where that makes a stride with what came before.
+  bool cuts_off_after(int work) {
+    if (!may_let_go_) return false;
+    if (lets_go()) return true;
+    since_ += work;
+    if (since_ < stride) return false;
+    since_ = 0;
+    return cuts_off();
+  }
 
-  Measure measure() {
-    const Measure m = watched_.measure();
+  /// What counts of a measure; `save` keeps the island's impulses where they are the best.
+  template <class Island>
+  Measure judge(const Measure& m, Island& island) {
     is_measured_ = true;
-    if (watch_.lets_go()) return least_;
+    if (lets_go()) return least_;
     if (m.residual < least_.residual) {
       least_ = m;
-      Problem::save(best_);
+      island.save_now(best_);
     }
-    watch_.let_go(has_due_sweeps_ && !must_complete_ && least_.residual < infinity);
+    may_let_go_ = has_due_sweeps_ && !must_complete_ && least_.residual < infinity;
     return m;
   }
-  void notify(int sweeps, const Measure& m) {
-    if (!watch_.lets_go()) Problem::notify(sweeps, m);
-  }
-  void save(Best& to) {
-    if (!watch_.lets_go()) Problem::save(to);
-  }
-  void load(const Best& from) {
-    if (!watch_.lets_go()) Problem::load(from);
-  }
-
-  bool was_late() const { return watch_.is_late(); }
-  /// Whether λ is unfit for use.
-  bool has_let_go() const { return watch_.has_let_go(); }
-  /// λ ← the best measured.
-  const Measure& restore_best() {
-    Problem::load(best_);
-    return least_;
-  }
   const Measure& least() const { return least_; }
+  const Array<T>& best() const { return best_; }
+  bool was_late() const { return is_late_; }
 
  private:
   struct Times {
@@ -155,13 +142,24 @@ class TimedProblem : public Problem {
   };
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
+  /// The time, s; when it is up nobody need look again.
+  double look() {
+    if (is_late_) return now_;
+    now_ = ask_(clock_);
+    is_late_ = now_ >= end();
+    return now_;
+  }
+  /// When work has to end, s: before the deadline, by what comes after it.
+  double end() const { return deadline_ - kept_; }
   /// Of sweeps, some of them measured.
   double pace() const { return Times{measured_.sum + plain_.sum, measured_.count + plain_.count}.mean(); }
 
-  Watch<C> watch_;
-  Groups groups_;
-  Watched watched_;
-  Best& best_;
+  const void* clock_;
+  Now ask_;
+  double deadline_, share_, kept_ = 0, now_ = 0;
+  int since_ = 0;  ///< work
+  bool is_late_ = false, may_let_go_ = false, has_let_go_ = false;
+  Array<T>& best_;
   bool may_attempt_, has_attempted_ = false, was_of_use_ = false;
   Measure least_{.residual = infinity};
   bool is_sweep_ = false;        ///< there was nothing else since the last look

@@ -1,0 +1,43 @@
+/// The rows of a pool as a view of them.
+#pragma once
+
+#include <delassus/core/index.hpp>
+#include <delassus/rows/pool_rows.hpp>
+#include <delassus/rows/row_view.hpp>
+
+#include <tuple>
+
+namespace delassus::inner {
+
+/// The numbers of a list of small matrices.
+template <class M>
+[[gnu::always_inline]] inline auto* numbers_of(Array<M>& list) {
+  return reinterpret_cast<typename M::Scalar*>(list.data());
+}
+template <class M>
+[[gnu::always_inline]] inline const auto* numbers_of(const Array<M>& list) {
+  return reinterpret_cast<const typename M::Scalar*>(list.data());
+}
+
+template <int R, int w, class T>
+void show_set(const SetBlocks<R, w, T>& blocks, SetBlocksView<T>& view) {
+  const bool has_G = blocks.G.size() == blocks.H.size();
+  view = {blocks.offset.data(), blocks.block.data(), numbers_of(blocks.H), has_G ? numbers_of(blocks.G) : nullptr, nullptr, w};
+}
+
+/// All of `view` but W and the law. `sets` has room for one view a body set, and stays where it is.
+template <int R, class T, int... w>
+void show_rows(PoolRows<R, T, w...>& rows, int pool, RowView<T>& view, SetBlocksView<T>* sets) {
+  view.pool = pool;
+  view.rows = R;
+  view.items = rows.items();
+  view.lambda = numbers_of(rows.lambda);
+  view.d = numbers_of(rows.d);
+  view.compliance = numbers_of(rows.compliance);
+  view.relative_compliance = numbers_of(rows.relative_compliance);
+  view.set = sets;
+  view.sets = int(sizeof...(w));
+  std::apply([&](const auto&... s) { (show_set(s, *sets++), ...); }, rows.sets);
+}
+
+}  // namespace delassus::inner

@@ -1,0 +1,263 @@
+/// The loops of one law over spans of its items: what stands in its `LawTable`.
+#pragma once
+
+#include <delassus/constraints/law.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/rows/free_velocity.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/law_table.hpp>
+#include <delassus/solvers/measure.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace delassus::inner {
+
+/// A law with the items and the memory of a pool.
+template <class Law, class T>
+struct LawItems {
+  using Item = typename Law::Item;
+  using Memory = memory_of_t<Law, T>;
+  static constexpr int R = Law::rows;
+
+  const Law& law;
+  const Item* items;
+  const Index* places;
+  Memory* memory;
+
+  [[gnu::always_inline]] explicit LawItems(const PoolView<T>& pool)
+      : law(*static_cast<const Law*>(pool.law)),
+        items(static_cast<const Item*>(pool.law_items)),
+        places(pool.places),
+        memory(static_cast<Memory*>(pool.memory)) {}
+
+  [[gnu::always_inline]] const Item& item(Index i) const {
+    if constexpr (ContactLaw<Law>) return items[i];
+    else return items[places ? places[i] : i];
+  }
+  /// λ that meets the law at free velocity b.
+  [[gnu::always_inline]] Vec<R, T> solve_local(Index i, const T* own, const Vec<R, T>& b, Memory& m, const Vec<R, T>& lambda) const {
+    (void)own, (void)lambda;
+    if constexpr (requires { law.solve_local(item(i), b, m); }) {
+      return law.solve_local(item(i), b, m);
+    } else if constexpr (requires(Local<R, T>& c) { law.relax(c); }) {
+      Local<R, T> c{load_square<R>(own), b, lambda};
+      c.d += c.W * lambda;
+      law.relax(c);
+      return c.lambda;
+    } else {
+      Local<R, T> c{load_square<R>(own), b, lambda};
+      c.d += c.W * lambda;
+      inner::project(law, item(i), c, m);
+      return c.lambda;
+    }
+  }
+  static constexpr bool clamps = requires(const Law& of, const Item& one, Vec<R, T>& x, const Memory& m) { of.clamp(one, x, m); } ||
+                                 requires(const Law& of, const Item& one, Vec<R, T>& x) { of.clamp(one, x); };
+  [[gnu::always_inline]] void clamp(Index i, Vec<R, T>& lambda) const {
+    if constexpr (requires { law.clamp(item(i), lambda, memory[i]); }) law.clamp(item(i), lambda, memory[i]);
+    else if constexpr (clamps) law.clamp(item(i), lambda);
+  }
+  /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
+  [[gnu::always_inline]] Vec<R, T> natural_map(Index i, const T* own, const Vec<R, T>& lambda, const Vec<R, T>& u, T scale) const {
+    if constexpr (requires { law.natural_map(item(i), lambda, u, scale); }) {
+      return law.natural_map(item(i), lambda, u, scale);
+    } else {
+      const Mat<R, R, T> W = load_square<R>(own);
+      Memory m = memory[i];
+      const Vec<R, T> change = lambda - solve_local(i, own, u - W * lambda, m, lambda);
+      return (scale * T(R) / trace(W)) * (W * change);
+    }
+  }
+};
+
+/// Whether a law is a round cone: a normal row and two of friction, with a coefficient.
+template <class Law>
+constexpr bool is_round_cone() {
+  constexpr auto kinds = row_kinds<Law>();
+  if constexpr (kinds.size() != 3 || !requires(const typename Law::Item& item) { item.parameters.friction; })
+    return false;
+  else
+    return kinds[0] == RowKind::lower && kinds[1] == RowKind::friction && kinds[2] == RowKind::friction;
+}
+
+// What a visit does is inlined by order: whether compilers do it by themselves depends on what else a program holds, and one
+// call a visit costs a fifth of a sweep.
+template <class Law, class T>
+struct LawLoops {
+  using Items = LawItems<Law, T>;
+  static constexpr int R = Law::rows;
+  static constexpr auto kinds = row_kinds<Law>();
+
+  static void prepare(const Span<T>& span, double h) {
+    const Items of(*span.pool);
+    for (Index k = 0; k < span.count; ++k) {
+      const Index i = span.items ? span.items[k] : k;
+      const Mat<R, R, T> own = load_square<R>(span.pool->own_block(i));
+      if constexpr (requires { of.law.prepare(of.item(i), own, h, of.memory[i]); })
+        of.law.prepare(of.item(i), own, h, of.memory[i]);
+      else inner::prepare(of.law, own, of.memory[i]);
+    }
+  }
+
+  static void sweep(const Span<T>& span, Sweep<T>& sums) {
+    const PoolView<T>& pool = *span.pool;
+    const Items of(pool);
+    Sweep<T> here = sums;
+    const bool relaxes = here.relaxation != T(1);
+    for (Index k = 0; k < span.count; ++k) {
+      const Index i = span.items[k];
+      const Vec<R, T> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
+      if constexpr (is_round_cone<Law>())  // without impulse, and it goes on opening, of which its normal row tells
+        if (is_zero(lambda) && pool.is_matrix() && free_normal_velocity(pool, i) >= T(0)) continue;
+      const T* own = block_of(pool, i);
+      Vec<R, T> next = of.solve_local(i, own, free_velocity<R>(pool, i), of.memory[i], lambda);
+      if (relaxes) {
+        next = lambda + here.relaxation * (next - lambda);
+        of.clamp(i, next);
+      }
+      accept(pool, i, k, lambda, next, own, here);
+    }
+    sums = here;
+  }
+
+  static void project_once(const Span<T>& span, Sweep<T>& sums) {
+    const PoolView<T>& pool = *span.pool;
+    const Items of(pool);
+    Sweep<T> here = sums;
+    for (Index k = 0; k < span.count; ++k) {
+      const Index i = span.items[k];
+      const Vec<R, T> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
+      const T* own = block_of(pool, i);
+      const T s = norm(load_square<R>(own));
+      const Vec<R, T> next = lambda - of.natural_map(i, own, lambda, inner::velocity<R>(pool, i), s) / s;
+      accept(pool, i, k, lambda, next, own, here);
+    }
+    sums = here;
+  }
+
+  static void measure(const Span<T>& span, MeasureSums& sums) {
+    const PoolView<T>& pool = *span.pool;
+    const Items of(pool);
+    MeasureSums here = sums;
+    for (Index k = 0; k < span.count; ++k) {
+      const Index i = span.items[k];
+      const T* own = block_of(pool, i);
+      add(of, i, own, weight_of(own), inner::velocity<R>(pool, i), load<R>(pool.lambda + std::ptrdiff_t(R) * i),
+          load<R>(pool.d + std::ptrdiff_t(R) * i), here);
+    }
+    sums = here;
+  }
+
+  static void extrapolate(const Span<T>& span, T* before, T beta) {
+    const PoolView<T>& pool = *span.pool;
+    const Items of(pool);
+    for (Index k = 0; k < span.count; ++k, before += R) {
+      const Index i = span.items[k];
+      T* const at = pool.lambda + std::ptrdiff_t(R) * i;
+      const Vec<R, T> here = load<R>(at), last = load<R>(before);
+      if (here == last) continue;  // an open contact, most of all
+      Vec<R, T> next = here + beta * (here - last);
+      store(here, before);
+      of.clamp(i, next);
+      store(next, at);
+      impulse_changed<R>(pool, i, Vec<R, T>(next - here));
+    }
+  }
+
+  static void clamp(const PoolView<T>& pool, Index i, T* lambda) {
+    Vec<R, T> x = load<R>(lambda);
+    Items(pool).clamp(i, x);
+    store(x, lambda);
+  }
+  static void changed(const PoolView<T>& pool, Index i, const T* change) {
+    impulse_changed<R>(pool, i, load<R>(change));
+  }
+  static void velocity(const PoolView<T>& pool, Index i, T* u) { store(inner::velocity<R>(pool, i), u); }
+  static void add_share(const PoolView<T>& pool, Index i, T w, const T* u, const T* lambda, MeasureSums& sums) {
+    const Mat<R, R, T> own = diagonal_of<R>(w);
+    add(Items(pool), i, own.data(), w, load<R>(u), load<R>(lambda), load<R>(pool.d + std::ptrdiff_t(R) * i), sums);
+  }
+  static double friction(const PoolView<T>& pool, Index i) { return double(Items(pool).item(i).parameters.friction); }
+
+  static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
+    const Items of(pool);
+    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
+    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
+    Mat<R, R> S;
+    if constexpr (requires { of.law.tangent(of.item(i), c); }) S = of.law.tangent(of.item(i), c);
+    else S = of.law.tangent(of.item(i), c, of.memory[i]);
+    for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+    store(c.lambda, lambda);
+  }
+  static void convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
+                             double* slope) {
+    const Items of(pool);
+    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
+    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
+    if constexpr (requires { of.law.convex_tangent(of.item(i), c, slip); }) {
+      const Mat<R, R> S = of.law.convex_tangent(of.item(i), c, slip);
+      for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+      store(c.lambda, lambda);
+    } else {
+      tangent(pool, i, w, d, lambda, slope);
+    }
+  }
+
+  static constexpr LawTable<T> make_table() {
+    LawTable<T> out{kinds.data(), prepare, sweep, project_once, measure, extrapolate, nullptr, changed, velocity, add_share, nullptr};
+    if constexpr (Items::clamps) out.clamp = clamp;
+    if constexpr (is_round_cone<Law>()) out.friction = friction;
+    return out;
+  }
+  static constexpr LawTable<T> table = make_table();
+
+ private:
+  [[gnu::always_inline]] static const T* block_of(const PoolView<T>& pool, Index i) { return pool.diagonal + std::ptrdiff_t(R * R) * i; }
+  [[gnu::always_inline]] static T weight_of(const T* own) {
+    T sum = own[0];
+    for (int k = 1; k < R; ++k) sum += own[k * (R + 1)];
+    return sum * (T(1) / T(R));
+  }
+
+  /// λ_i ← next, the k-th of its span.
+  [[gnu::always_inline]] static void accept(const PoolView<T>& pool, Index i, Index k, const Vec<R, T>& lambda, const Vec<R, T>& next,
+                                            const T* own, Sweep<T>& sums) {
+    const Vec<R, T> change = next - lambda;
+    store(next, pool.lambda + std::ptrdiff_t(R) * i);
+    impulse_changed<R>(pool, i, change);
+    const T weight = weight_of(own), square = squared_norm(change);
+    sums.energy += weight * square;
+    if (sums.x) sums.along += weight * dot(change, Vec<R, T>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
+    if (sums.tells_change) {
+      const T share = weight * std::sqrt(square);
+      sums.displacement += share;
+      sums.most = std::max(sums.most, share);
+    }
+  }
+
+  /// |F_i(w)|² and |F_i(1)|² of `Measure`, at once where the law knows them so, and what else it sums.
+  [[gnu::always_inline]] static void add(const Items& of, Index i, const T* own, T weight, const Vec<R, T>& u, const Vec<R, T>& lambda,
+                                         const Vec<R, T>& d, MeasureSums& sums) {
+    Vec<2, T> squares;
+    if constexpr (requires { of.law.natural_squares(of.item(i), lambda, u, weight); }) {
+      squares = of.law.natural_squares(of.item(i), lambda, u, weight);
+    } else {
+      squares[0] = squared_norm(of.natural_map(i, own, lambda, u, weight));
+      squares[1] = squared_norm(of.natural_map(i, own, lambda, u, T(1)));
+    }
+    const double square = double(squares[0]), size = double(squared_norm(lambda));
+    sums.residual += square;
+    sums.worst = std::max(sums.worst, square);
+    sums.siconos += double(squares[1]);
+    sums.d += double(squared_norm(d));
+    sums.u += double(squared_norm(u));
+    sums.lambda += size;
+    sums.reach = std::max(sums.reach, double(weight * weight) * size);
+  }
+};
+
+}  // namespace delassus::inner
