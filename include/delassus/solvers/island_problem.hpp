@@ -257,14 +257,11 @@ class IslandProblem {
   /// The impulse that meets the law of item i while the others stand still.
   template <int p>
   [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
-    constexpr int R = Rows::template rows_of<p>;
-    if constexpr (requires { requires Book::template meets<p>(); W_.template free_velocity<p>(rows_, i); }) {
-      return book_.template solve_local<p>(i, W_.template free_velocity<p>(rows_, i));
-    } else {
-      Local<R, T> c{W_.template diagonal<p>(i), W_.template residual<p>(rows_, i), lambda};
-      book_.template project<p>(i, c);
-      return c.lambda;
-    }
+    const auto& own = W_.template diagonal<p>(i);
+    if constexpr (requires { W_.template free_velocity<p>(rows_, i); })
+      return book_.template solve_local<p>(i, own, W_.template free_velocity<p>(rows_, i));
+    else
+      return book_.template solve_local<p>(i, own, Local<Rows::template rows_of<p>, T>{own, W_.template residual<p>(rows_, i), lambda}.free_velocity());
   }
 
   /// Sums over the visits of a sweep: Σ w |Δλ|², Σ w Δλ·see, Σ w |Δλ| and the largest w |Δλ|.

@@ -55,23 +55,11 @@ class LawSet<Constraints<Laws...>, T> {
     else inner::prepare(pool.law, own_block, memory[i]);
   }
 
+  /// λ that meets the law of item i, whose own block is W and whose velocity without it is b.
   template <int p, int R>
-  void project(Index i, Local<R, T>& c) {
+  Vec<R, T> solve_local(Index i, const Mat<R, R, T>& W, const Vec<R, T>& b) {
     const auto& pool = constraints_->template pool<p>();
-    inner::project(pool.law, pool.item(i), c, std::get<p>(memory_)[i]);
-  }
-
-  /// Whether the law of pool p answers to the free velocity alone.
-  template <int p>
-  static constexpr bool meets() {
-    return requires(Pool<p> pool, const Vec<Law<p>::rows, T>& b, Memory<p>& memory) {
-      { pool.law.solve_local(pool.item(0), b, memory) } -> std::same_as<Vec<Law<p>::rows, T>>;
-    };
-  }
-  template <int p, int R>
-  Vec<R, T> solve_local(Index i, const Vec<R, T>& b) {
-    const auto& pool = constraints_->template pool<p>();
-    return pool.law.solve_local(pool.item(i), b, std::get<p>(memory_)[i]);
+    return inner::solve_local(pool.law, pool.item(i), W, b, std::get<p>(memory_)[i]);
   }
 
   /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
@@ -81,10 +69,8 @@ class LawSet<Constraints<Laws...>, T> {
     if constexpr (requires { pool.law.natural_map(pool.item(i), c.lambda, c.d, scale); }) {
       return pool.law.natural_map(pool.item(i), c.lambda, c.d, scale);
     } else {
-      Local<R, T> trial = c;
       auto memory = std::get<p>(memory_)[i];
-      inner::project(pool.law, pool.item(i), trial, memory);
-      const Vec<R, T> change = c.lambda - trial.lambda;
+      const Vec<R, T> change = c.lambda - inner::solve_local(pool.law, pool.item(i), c.W, c.free_velocity(), memory);
       return (scale * T(R) / trace(c.W)) * (c.W * change);
     }
   }

@@ -14,18 +14,26 @@ namespace delassus {
 
 /// The laws of the position problem: equalities stay equalities, bounds stay bounds, friction rows are locked at zero.
 /// One projected Gauss-Seidel pass over the rows of each block.
-template <class Constraints, class T>
+template <class Constraints, class Rows>
 class PositionLawSet;
-template <class... Laws, class T>
-class PositionLawSet<Constraints<Laws...>, T> {
+template <class... Laws, class Rows>
+class PositionLawSet<Constraints<Laws...>, Rows> {
+  using T = typename Rows::Scalar;
+
  public:
+  explicit PositionLawSet(const Rows& rows) : rows_(rows) {}
+
+  /// From the λ that the rows have.
   template <int p, int R>
-  void project(Index, Local<R, T>& c) const {
+  Vec<R, T> solve_local(Index i, const Mat<R, R, T>& W, const Vec<R, T>& b) const {
+    Vec<R, T> lambda = rows_.template pool<p>().lambda[i];
+    Vec<R, T> d = b + W * lambda;
     for (int k = 0; k < R; ++k) {
-      const T before = c.lambda[k];
-      c.lambda[k] = bound<p>(k, before - c.d[k] / c.W(k, k));
-      c.d += c.W.col(k) * (c.lambda[k] - before);
+      const T before = lambda[k];
+      lambda[k] = bound<p>(k, before - d[k] / W(k, k));
+      d += W.col(k) * (lambda[k] - before);
     }
+    return lambda;
   }
   template <int p, int R>
   Vec<R, T> natural_map(Index, const Local<R, T>& c, T scale) const {
@@ -77,6 +85,8 @@ class PositionLawSet<Constraints<Laws...>, T> {
     }
     return x;
   }
+
+  const Rows& rows_;
 };
 
 /// d of the position problem: u⁺ + push(φ), close(φ) of a joint: the velocity the row has plus the rate its violation asks
@@ -171,7 +181,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   exchange();
   make_position_bias(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
   step.W.reset(rows);
-  PositionLawSet<typename Step::Laws, typename Step::Scalar> book;
+  PositionLawSet<typename Step::Laws, typename Step::Rows> book(rows);
   NoObserver nobody;
   Status worst = Status::converged;
   constexpr double far = 0.05;  // of the largest velocity that closes a gap
