@@ -17,8 +17,8 @@ struct Adhesive {
   void check() const { DELASSUS_EXPECT(force >= 0 && h > 0, "Adhesive: force must be >= 0 and h > 0"); }
   Parameters parameters() const { return {h * force}; }
 
-  void project(const Parameters& p, Local<1>& c) const {
-    c.lambda[0] = std::max(-p.impulse, c.lambda[0] - c.d[0] / c.W(0, 0));
+  Vec<1> solve_local(const Parameters& p, const Mat<1, 1>& W, const Vec<1>& b) const {
+    return Vec<1>(std::max(-p.impulse, -b[0] / W(0, 0)));
   }
   void clamp(const Parameters& p, Vec<1>& lambda) const { lambda[0] = std::max(-p.impulse, lambda[0]); }
   Vec<1> natural_map(const Parameters& p, const Vec<1>& lambda, const Vec<1>& u, double scale) const {

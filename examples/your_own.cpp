@@ -18,7 +18,7 @@ struct Rope {
     row.end(item.b, xb).along(0, -e);
     row.phi(0, (xa - xb).norm() - item.length);
   }
-  void project(const Item&, Local<1>& c) const { c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0)); }
+  Vec<1> solve_local(const Item&, const Mat<1, 1>& W, const Vec<1>& b) const { return Vec<1>(std::min(0.0, -b[0] / W(0, 0))); }
 };
 
 /// Symplectic Euler with a drag: forces lose `rate` of the momentum per second.

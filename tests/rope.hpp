@@ -20,7 +20,7 @@ struct Rope {
     row.end(item.b, b).along(0, -e);
     row.phi(0, (a - b).norm() - item.length);
   }
-  void project(const Item&, delassus::Local<1>& c) const {
-    c.lambda[0] = std::min(0.0, c.lambda[0] - c.d[0] / c.W(0, 0));
+  delassus::Vec<1> solve_local(const Item&, const delassus::Mat<1, 1>& W, const delassus::Vec<1>& b) const {
+    return delassus::Vec<1>(std::min(0.0, -b[0] / W(0, 0)));
   }
 };

@@ -29,9 +29,7 @@ Vec3 solve_contact(const Mat3& W, const Vec3& b, double friction) {
   const Coulomb law;
   Coulomb::Memory<double> memory;
   law.prepare(W, memory);
-  Local<3> c{W, b, Vec3::Zero()};
-  law.project({friction}, c, memory);
-  return c.lambda;
+  return law.solve_local({friction}, W, b, memory);
 }
 
 /// Every solution of the law, by another road than the library's: no multiplier α, no elimination. In a slip along the
@@ -117,10 +115,9 @@ TEST_CASE("the multiplier remembered from the last visit changes no result") {
     law.prepare(W, memory);
     for (int visit = 0; visit < 5; ++visit) {
       const Vec3 b = draw.vector(1);
-      Local<3> c{W, b, Vec3::Zero()};
-      law.project({0.4}, c, memory);
+      const Vec3 lambda = law.solve_local({0.4}, W, b, memory);
       // Both meet the same law to 1e-12; where it has one solution (mu = 0.4, mild blocks) they agree to cond times that.
-      REQUIRE((c.lambda - solve_contact(W, b, 0.4)).norm() <= 1e-10 * (1 + c.lambda.norm()));
+      REQUIRE((lambda - solve_contact(W, b, 0.4)).norm() <= 1e-10 * (1 + lambda.norm()));
     }
   }
 }
@@ -184,9 +181,7 @@ TEST_CASE("in single precision the law holds to single precision") {
     const double friction = draw(0, 2);
     Coulomb::Memory<float> memory;
     law.prepare(W, memory);
-    Local<3, float> c{W, b, Vec<3, float>::Zero()};
-    law.project({friction}, c, memory);
-    const Vec3 lambda = c.lambda.cast<double>(), u = W.cast<double>() * lambda + b.cast<double>();
+    const Vec3 lambda = law.solve_local({friction}, W, b, memory).cast<double>(), u = W.cast<double>() * lambda + b.cast<double>();
     const Vec3 error = coulomb_natural_map<double>(lambda, u, friction, W.cast<double>().trace() / 3);
     // The bound of double precision times 2^29, the ratio of the two roundings.
     REQUIRE(error.norm() <= 5e-4 * std::max(double(b.norm()), double(W.norm()) * lambda.norm()));

@@ -50,9 +50,10 @@ struct RopeOverPins {
     memory.impulses.clear();
   }
   template <class T>
-  void project(const Item&, Local<1, T>& c, Memory<T>& memory) const {
-    c.lambda[0] = std::min(T(0), c.lambda[0] - c.d[0] / c.W(0, 0));
-    memory.impulses.push_back(c.lambda[0]);
+  Vec<1, T> solve_local(const Item&, const Mat<1, 1, T>& W, const Vec<1, T>& b, Memory<T>& memory) const {
+    const Vec<1, T> lambda(std::min(T(0), -b[0] / W(0, 0)));
+    memory.impulses.push_back(lambda[0]);
+    return lambda;
   }
 };
 

@@ -111,7 +111,7 @@ TEST_CASE("one visit of rolling friction meets its law, whatever holds, slips, r
     if (k % 13 == 0) p.rolling = 1e9 / unit;  // what never rolls, unless its own moment lifts it
     RollingCoulomb::Memory<double> memory;
     law.prepare(W, memory);
-    const Vec<6> lambda = law.solve_local(p, b, memory);
+    const Vec<6> lambda = law.solve_local(p, W, b, memory);
     const Vec<6> u = W * lambda + b;
     // In one unit of turns, as the law itself weighs them.
     Vec<6> x = lambda, v = u;
@@ -150,9 +150,10 @@ TEST_CASE("without moments, or for what cannot turn, rolling friction is Coulomb
     RollingCoulomb::Memory<double> memory;
     Coulomb::Memory<double> other;
     law.prepare(W, memory);
-    Coulomb{}.prepare(Mat3(W.topLeftCorner<3, 3>()), other);
-    const Vec<6> lambda = law.solve_local({0.4, turns ? 0.0 : 0.1, turns ? 0.0 : 0.1}, b, memory);
-    const Vec3 alone = Coulomb{}.solve_local(Coulomb::Parameters{0.4}, Vec3(b.head<3>()), other);
+    const Mat3 moving = W.topLeftCorner<3, 3>();
+    Coulomb{}.prepare(moving, other);
+    const Vec<6> lambda = law.solve_local({0.4, turns ? 0.0 : 0.1, turns ? 0.0 : 0.1}, W, b, memory);
+    const Vec3 alone = Coulomb{}.solve_local(Coulomb::Parameters{0.4}, moving, Vec3(b.head<3>()), other);
     REQUIRE((lambda.head<3>() - alone).norm() <= 1e-12 * (1 + alone.norm()));
     REQUIRE(lambda.tail<3>().norm() == 0);
   }

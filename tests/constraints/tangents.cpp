@@ -77,7 +77,7 @@ TEST_CASE("the tangent of rolling friction is the slope of its impulse, which is
     auto c = problem<6>(b, Vec<6>::Zero());
     RollingCoulomb::Memory<double> memory;
     law.prepare(c.W, memory);
-    const Vec<6> visited = law.solve_local(p, b, memory);
+    const Vec<6> visited = law.solve_local(p, c.W, b, memory);
     law.tangent(p, c);
     REQUIRE((c.lambda - visited).norm() <= 1e-12 * b.norm() / 0.2);
     closed += c.lambda[0] > 0;

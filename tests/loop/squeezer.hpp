@@ -25,7 +25,7 @@ struct Moment {
     row.phi(0, -item.moment / stiffness);
     row.soft(0, stiffness, 0);
   }
-  void project(const Item&, Local<1>& c) const { c.lambda[0] -= c.d[0] / c.W(0, 0); }
+  Vec<1> solve_local(const Item&, const Mat<1, 1>& W, const Vec<1>& b) const { return Vec<1>(-b[0] / W(0, 0)); }
 };
 
 /// The angles of the mechanism, rad. Source: [HairerWanner1996], chapter VII.7.

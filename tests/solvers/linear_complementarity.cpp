@@ -26,8 +26,8 @@ struct GivenBound : Frictionless {
     Parameters parameters{};
   };
   template <class T>
-  void project(const Item& item, Local<1, T>& c) const {
-    Frictionless::project(item.parameters, c);
+  Vec<1, T> solve_local(const Item& item, const Mat<1, 1, T>& W, const Vec<1, T>& b) const {
+    return Frictionless::solve_local(item.parameters, W, b);
   }
   template <class T>
   Vec<1, T> natural_map(const Item& item, const Vec<1, T>& lambda, const Vec<1, T>& u, T scale) const {

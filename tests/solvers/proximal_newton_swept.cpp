@@ -18,9 +18,7 @@ struct Floor {
     row.end(item.a, x).along(0, Vec3::UnitZ());
     row.phi(0, x.z());
   }
-  void project(const Item&, Local<1>& c) const {
-    c.lambda[0] = std::max(0.0, c.lambda[0] - c.d[0] / c.W(0, 0));
-  }
+  Vec<1> solve_local(const Item&, const Mat<1, 1>& W, const Vec<1>& b) const { return Vec<1>(std::max(0.0, -b[0] / W(0, 0))); }
 };
 
 }  // namespace

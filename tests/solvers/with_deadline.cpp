@@ -19,8 +19,8 @@ long calls = 0;  ///< of a `CountedCoulomb`
 /// Coulomb's law, which counts what is asked of it.
 struct CountedCoulomb : Coulomb {
   template <class T>
-  Vec<3, T> solve_local(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
-    return ++calls, Coulomb::solve_local(p, b, memory);
+  Vec<3, T> solve_local(const Parameters& p, const Mat<3, 3, T>& W, const Vec<3, T>& b, Memory<T>& memory) const {
+    return ++calls, Coulomb::solve_local(p, W, b, memory);
   }
   template <class T>
   Vec<2, T> natural_squares(const Parameters& p, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {

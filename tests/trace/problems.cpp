@@ -124,8 +124,8 @@ long calls = 0;  ///< of `CountedContact`
 /// Coulomb's law, which counts how often it is asked: the clock of the deadline.
 struct CountedContact : GivenContact {
   template <class T>
-  Vec<3, T> solve_local(const Item& item, const Vec<3, T>& b, Memory<T>& memory) const {
-    return ++calls, GivenContact::solve_local(item, b, memory);
+  Vec<3, T> solve_local(const Item& item, const Mat<3, 3, T>& W, const Vec<3, T>& b, Memory<T>& memory) const {
+    return ++calls, GivenContact::solve_local(item, W, b, memory);
   }
 };
 struct ItemClock {

@@ -1,6 +1,7 @@
 /// What a constraint law is.
 #pragma once
 
+#include <delassus/constraints/contact/wrapped_law.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -11,15 +12,18 @@
 namespace delassus {
 
 /// A law has `rows` and `Item`, a type of its own by which the loop finds the law; linearize(item, world, row) writes H and φ; and
-/// project(item, Local<rows>&) replaces local.lambda by one that meets the law.
+///
+///   Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b) const
+///
+/// returns the impulse λ (N·s) that meets the law of the item alone: W is its own block of H A⁻¹ Hᵀ (1/kg), b = u − W λ what its rows
+/// would do without it (m/s), so that their velocity becomes u = W λ + b. The present λ is no argument.
 ///
 /// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then has
 /// prepare(W, memory), or prepare(item, W, h, memory) where a cap on the force makes one on the impulse, and
-/// project(item, local, memory). Other refinements: `bilateral` (all rows equalities), `kinds` (one RowKind a row),
+/// solve_local(item, W, b, memory). Other refinements: `bilateral` (all rows equalities), `kinds` (one RowKind a row),
 /// natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) or clamp(item, λ, memory) (into its cone), speed(item)
 /// (what its rows' velocity shall be, m/s), follow(item, world) (once a step, for what an item remembers of its pose),
-/// λ = solve_local(item, b, memory), what `project` does, from the free velocity b = u − W λ alone, and tangent(item, local) (for
-/// Newton's method).
+/// and tangent(item, local) (for Newton's method).
 template <class L>
 concept ConstraintLaw = requires {
   typename L::Item;                                   // what the user adds, or collision detection fills
@@ -29,15 +33,7 @@ concept ConstraintLaw = requires {
 template <class L>
 concept RemembersBetweenSweeps = requires { typename L::template Memory<double>; };
 
-template <class L>
-concept Projects = requires(const L law, const typename L::Item item, Local<L::rows>& local) {
-  { law.project(item, local) } -> std::same_as<void>;
-} || requires(const L law, const typename L::Item item, Local<L::rows>& local,
-              typename L::template Memory<double>& memory) {
-  { law.project(item, local, memory) } -> std::same_as<void>;
-};
-
-/// tangent(item, local) is `project` for a W that is diagonal, friction rows alike, and without memory: it
+/// tangent(item, local) is `solve_local` for a W that is diagonal, friction rows alike, and without memory: it
 /// replaces local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element
 /// of the generalised derivative will do where there are several. An island with a law that has none is
 /// swept. A law whose cap on the impulse is in its memory has tangent(item, local, memory).
@@ -114,11 +110,33 @@ template <class L, class W, class M>
 void prepare(const L& law, const W& own_block, M& memory) {
   if constexpr (requires { law.prepare(own_block, memory); }) law.prepare(own_block, memory);
 }
-template <class L, class Item, class C, class M>
-void project(const L& law, const Item& item, C& local, M& memory) {
-  if constexpr (requires { law.project(item, local, memory); }) law.project(item, local, memory);
-  else law.project(item, local);
+template <class L, class Given, int R, class T, class M>
+[[gnu::always_inline]] inline Vec<R, T> solve_local(const L& law, const Given& given, const Mat<R, R, T>& W, const Vec<R, T>& b,
+                                                    M& memory) {
+  if constexpr (RemembersBetweenSweeps<L>) return law.solve_local(given, W, b, memory);
+  else return law.solve_local(given, W, b);
 }
+
+/// A law with solve_local, from its own block W (1/kg) and its velocity b without it (m/s); `Given` is its item, or what a contact
+/// hands to the law inside.
+template <class L, class Given, class T>
+concept SolvesLocally =
+    (RemembersBetweenSweeps<L> && requires(const L& law, const Given& given, const Mat<L::rows, L::rows, T>& W,
+                                           const Vec<L::rows, T>& b, memory_of_t<L, T>& memory) {
+      { law.solve_local(given, W, b, memory) } -> std::same_as<Vec<L::rows, T>>;
+    }) || (!RemembersBetweenSweeps<L> &&
+           requires(const L& law, const Given& given, const Mat<L::rows, L::rows, T>& W, const Vec<L::rows, T>& b) {
+             { law.solve_local(given, W, b) } -> std::same_as<Vec<L::rows, T>>;
+           });
+
+/// What solve_local was called before. A name that a class inherits twice is ambiguous, whatever overloads or templates it has.
+struct OldSolve {
+  int project, meet;
+};
+template <class L>
+struct BesideOldSolve : L, OldSolve {};
+template <class L>
+concept HasOldSolve = !(requires { &BesideOldSolve<L>::project; } && requires { &BesideOldSolve<L>::meet; });
 
 /// What `Contact` is put around: friction and the like, without items of its own.
 template <class L>
@@ -128,8 +146,28 @@ concept LawOfContact = requires { L::rows, L::kinds, typename L::Parameters{}; }
 template <class L>
 concept HollowLaw = IsHollow<L> || requires { requires IsHollow<typename L::no_contact_law>; };
 
-/// One sentence for the first thing a law lacks.
+/// What the law inside all wrappers is given: an item, and of a contact its parameters.
 template <class L>
+[[gnu::always_inline]] constexpr const auto& given(const typename L::Item& item) {
+  if constexpr (requires { typename L::wraps; }) return item.parameters;
+  else return item;
+}
+
+/// A law, or the one inside a contact, answers with its impulse.
+template <class L, class Given, class T>
+consteval bool law_solves() {
+  constexpr bool does = SolvesLocally<L, Given, T>, has_old = !does && HasOldSolve<L>;
+  static_assert(!has_old,
+                "delassus: a constraint law needs Vec<rows> solve_local(item, W, b) const in the place of project(item, local); see "
+                "docs/migration.md");
+  static_assert(does || has_old,
+                "delassus: a constraint law needs Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b) "
+                "const, in a contact with its Parameters as item, and with Memory<T>& behind b if it has a Memory; add it");
+  return does;
+}
+
+/// One sentence for the first thing a law lacks; T is the scalar of the rows.
+template <class L, class T>
 consteval bool law_is_sound() {
   constexpr bool is_filled = !HollowLaw<L>;
   static_assert(is_filled,
@@ -158,10 +196,8 @@ consteval bool law_is_sound() {
     static_assert(has_shape,
                   "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
   if constexpr (has_shape) {
-    constexpr bool projects = Projects<L>;
-    static_assert(projects,
-                  "delassus: a constraint law needs void project(const Item&, Local<rows>&) const; add it");
-    return projects && is_wrapped_once;
+    if constexpr (!is_wrapped_once) return false;
+    else return law_solves<innermost_t<L>, std::remove_cvref_t<decltype(given<L>(std::declval<const typename L::Item&>()))>, T>();
   } else {
     return false;
   }

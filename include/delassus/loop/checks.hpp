@@ -219,7 +219,7 @@ consteval bool constraints_are_sound() {
   constexpr std::type_identity<Laws> laws;
   if constexpr (Laws::pool_count == 0) {
     return true;
-  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L>(); })) {
+  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L, typename World::Scalar>(); })) {
     return false;
   } else if constexpr (!all_parts(laws, []<class L>() { return law_linearizes<L, World>(); })) {
     return false;

@@ -25,6 +25,12 @@ template <int R, class T>
   for (int k = 0; k < R * R; ++k) x.data()[k] = at[k];
   return x;
 }
+/// The same where it lies, if the type asks for no more than numbers have.
+template <int R, class T>
+[[gnu::always_inline]] inline decltype(auto) as_square(const T* at) {
+  if constexpr (alignof(Mat<R, R, T>) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__) return (*reinterpret_cast<const Mat<R, R, T>*>(at));
+  else return load_square<R>(at);
+}
 template <int R, class T>
 [[gnu::always_inline]] inline void store(const Vec<R, T>& x, T* at) {
   DELASSUS_UNROLL

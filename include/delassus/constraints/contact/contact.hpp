@@ -44,6 +44,7 @@ Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
 /// six rows goes on with (t₁, t₂, n) · (ω_B − ω_A).
 template <class Law = inner::Absent>
 struct Contact {
+  using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
   static constexpr bool is_contact = true;
@@ -92,14 +93,8 @@ struct Contact {
     inner::prepare(local(), W, memory);
   }
   template <class T>
-  void project(const Item& item, Local<rows, T>& c, Memory<T>& memory) const {
-    inner::project(local(), item.parameters, c, memory);
-  }
-  template <class T>
-  Vec<rows, T> solve_local(const Item& item, const Vec<rows, T>& b, Memory<T>& memory) const
-    requires requires { local().solve_local(item.parameters, b, memory); }
-  {
-    return local().solve_local(item.parameters, b, memory);
+  Vec<rows, T> solve_local(const Item& item, const Mat<rows, rows, T>& W, const Vec<rows, T>& b, Memory<T>& memory) const {
+    return inner::solve_local(local(), item.parameters, W, b, memory);
   }
   template <class T>
   Mat<rows, rows, T> tangent(const Item& item, Local<rows, T>& c) const

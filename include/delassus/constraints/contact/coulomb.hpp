@@ -67,14 +67,13 @@ struct Coulomb {
   }
 
   template <class T>
-  void project(const Parameters& p, Local<3, T>& c, Memory<T>& memory) const {
-    c.lambda = solve_local(p, c.free_velocity(), memory);
+  Vec<3, T> solve_local(const Parameters& p, const Mat<3, 3, T>&, const Vec<3, T>& b, Memory<T>& memory) const {
+    return impulse(T(p.friction), b, memory);
   }
-  /// λ from b = u − W λ, the velocity without this contact.
+  /// λ from b, the velocity without this contact, and what `prepare` made of W.
   template <class T>
-  Vec<3, T> solve_local(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) const {
+  static Vec<3, T> impulse(T mu, const Vec<3, T>& b, Memory<T>& memory) {
     if (b[0] >= -inner::negligible_approach<T>) return Vec<3, T>::Zero();
-    const T mu = T(p.friction);
     const Vec<3, T> stick = -(memory.inverse * b);
     const T limit = mu * stick[0];
     if (stick[0] >= T(0) && stick[1] * stick[1] + stick[2] * stick[2] <= limit * limit) return stick;

@@ -20,12 +20,12 @@ struct Frictionless {
   Parameters parameters() const { return {}; }
 
   template <class T>
-  void project(const Parameters&, Local<1, T>& c) const {
-    c.lambda[0] = std::max(T(0), c.lambda[0] - c.d[0] / c.W(0, 0));
+  Vec<1, T> solve_local(const Parameters&, const Mat<1, 1, T>& W, const Vec<1, T>& b) const {
+    return Vec<1, T>(std::max(T(0), -b[0] / W(0, 0)));
   }
   template <class T>
-  Mat<1, 1, T> tangent(const Parameters& p, Local<1, T>& c) const {
-    project(p, c);
+  Mat<1, 1, T> tangent(const Parameters&, Local<1, T>& c) const {
+    c.lambda[0] = std::max(T(0), c.lambda[0] - c.d[0] / c.W(0, 0));
     return Mat<1, 1, T>(c.lambda[0] > T(0) ? T(1) / c.W(0, 0) : T(0));
   }
   /// s λ − max(0, s λ − u).

@@ -39,22 +39,22 @@ struct Pyramid {
   static void set_friction(Parameters& p, double friction) { p.slope = friction; }
 
   template <class T>
-  void project(const Parameters& p, Local<3, T>& c) const {
-    const Vec<3, T> b = c.free_velocity();
-    c.lambda.setZero();
-    if (b[0] >= -inner::negligible_approach<T>) return;
+  Vec<3, T> solve_local(const Parameters& p, const Mat<3, 3, T>& W, const Vec<3, T>& b) const {
+    auto best = zero<Vec<3, T>>();
+    if (b[0] >= -inner::negligible_approach<T>) return best;
     constexpr int ways[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
     const T enough = T(64) * std::numeric_limits<T>::epsilon() * b.norm();
     T least = std::numeric_limits<T>::infinity();
     for (const auto& way : ways) {
-      const Vec<3, T> lambda = answer(c.W, b, way, T(p.slope));
-      const T off = miss(c.W, b, way, T(p.slope), lambda);
+      const Vec<3, T> lambda = answer(W, b, way, T(p.slope));
+      const T off = miss(W, b, way, T(p.slope), lambda);
       if (!(off < least)) continue;  // not a number where the equations have no solution
       least = off;
-      c.lambda = lambda;
+      best = lambda;
       if (off <= enough) break;
     }
-    clamp(p, c.lambda);
+    clamp(p, best);
+    return best;
   }
 
   /// F_n = min(s λ_n, u_n),  F_i = s λ_i − clip(s λ_i − u_i, ±μ s λ_n).

@@ -79,12 +79,7 @@ struct RollingCoulomb {
   }
 
   template <class T>
-  void project(const Parameters& p, Local<6, T>& c, Memory<T>& memory) const {
-    c.lambda = solve_local(p, c.free_velocity(), memory);
-  }
-  /// λ from b = u − W λ, the velocity without this contact.
-  template <class T>
-  Vec<6, T> solve_local(const Parameters& p, const Vec<6, T>& b, Memory<T>& memory) const {
+  Vec<6, T> solve_local(const Parameters& p, const Mat<6, 6, T>&, const Vec<6, T>& b, Memory<T>& memory) const {
     if (b[0] >= -inner::negligible_approach<T>) return memory.last = Vec<6, T>::Zero();
     const Cones<T> cones{T(p.friction), T(p.rolling) / memory.length, T(p.torsional) / memory.length};
     const Vec<6, T> scaled = measured_in(memory.length, b);
@@ -245,13 +240,12 @@ struct RollingCoulomb {
         if (j < from || j > to) sum += W(i, j) * lambda[j];
       return sum;
     };
-    const Vec<3, T> slide = Coulomb{}.solve_local(
-        {double(cones.slide)}, Vec<3, T>(free(0, 0, 2), free(1, 0, 2), free(2, 0, 2)), memory.slide);
+    const Vec<3, T> slide =
+        Coulomb::impulse(cones.slide, Vec<3, T>(free(0, 0, 2), free(1, 0, 2), free(2, 0, 2)), memory.slide);
     for (int i = 0; i < 3; ++i) lambda[i] = slide[i];
     // The roll is friction under a normal impulse that does not answer to it: b_n = −W_nn λ_n.
-    const Vec<3, T> roll = Coulomb{}.solve_local(
-        {double(cones.roll)}, Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)),
-        memory.roll);
+    const Vec<3, T> roll = Coulomb::impulse(
+        cones.roll, Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)), memory.roll);
     lambda[3] = roll[1], lambda[4] = roll[2];
     const T most = cones.spin * lambda[0];
     lambda[5] = W(5, 5) > T(0) ? std::clamp(-free(5, 5, 5) / W(5, 5), -most, most) : T(0);

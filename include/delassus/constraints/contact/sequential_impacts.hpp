@@ -44,19 +44,17 @@ class ImpactRows {
     const auto& pool = laws_.template pool<p>();
     const auto& item = pool.item(i_);
     using Law = std::remove_cvref_t<decltype(pool.law)>;
-    Local<R, T> c;
-    c.W.setZero();
-    c.lambda.setZero();
-    c.d = u;
-    c.d[0] += T(restitution_of(pool.law, item)) * u[0];
-    each([&](const auto& set, Index b, const auto& H) { c.W.noalias() += H * answer(set, b, H); });
+    auto W = zero<Mat<R, R, T>>();
+    Vec<R, T> free = u;
+    free[0] += T(restitution_of(pool.law, item)) * u[0];
+    each([&](const auto& set, Index b, const auto& H) { W.noalias() += H * answer(set, b, H); });
     typename Law::template Memory<T> memory{};
-    pool.law.prepare(c.W, memory);
-    pool.law.project(item, c, memory);
+    pool.law.prepare(W, memory);
+    const Vec<R, T> lambda = pool.law.solve_local(item, W, free, memory);
     each([&](auto& set, Index b, const auto& H) {
-      set.velocity()[b].noalias() += answer(set, b, H) * c.lambda;
+      set.velocity()[b].noalias() += answer(set, b, H) * lambda;
     });
-    return c.lambda;
+    return lambda;
   }
 
  private:

@@ -9,7 +9,8 @@
 
 namespace delassus {
 
-/// λ ← λ − W⁻¹ d. A block that is singular (a redundant row, an end without mass) is lifted by rounding's share.
+/// λ ← λ − W⁻¹ (b + W λ) from the λ of the last visit in this step, so that what rounding left of u = 0 at one visit goes at the
+/// next. A block that is singular (a redundant row, an end without mass) is lifted by rounding's share.
 template <int rows_>
 struct Bilateral {
   static constexpr int rows = rows_;
@@ -18,6 +19,7 @@ struct Bilateral {
   template <class T>
   struct Memory {
     Mat<rows, rows, T> inverse;
+    Vec<rows, T> last;  ///< λ of the last visit, N·s
   };
 
   template <class T>
@@ -26,10 +28,11 @@ struct Bilateral {
     Mat<rows, rows, T> lifted = W;
     add_diagonal(lifted, lift);
     memory.inverse = inverse_of_positive(lifted);
+    set_all(memory.last, T(0));
   }
   template <class Item, class T>
-  void project(const Item&, Local<rows, T>& c, Memory<T>& memory) const {
-    c.lambda -= memory.inverse * c.d;
+  Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b, Memory<T>& memory) const {
+    return memory.last -= memory.inverse * (b + W * memory.last);
   }
   template <class Item, class T>
   Mat<rows, rows, T> tangent(const Item&, Local<rows, T>& c) const {

@@ -12,7 +12,7 @@
 
 namespace delassus {
 
-/// λ = P(λ − d/W), P the projection on |λ| ≤ h F: u = 0 where the cap F (N or N·m) suffices, the whole cap
+/// λ = P(−b/W), P the projection on |λ| ≤ h F: u = 0 where the cap F (N or N·m) suffices, the whole cap
 /// against u where not. Exact at every visit. F = ∞ is no cap. The items say `max_force`.
 struct Bounded {
   static constexpr int rows = 1;
@@ -28,9 +28,10 @@ struct Bounded {
     memory.most = T(h * item.max_force);
   }
   template <class Item, class T>
-  void project(const Item& item, Local<1, T>& c, Memory<T>& memory) const {
-    if (c.W(0, 0) > T(0)) c.lambda[0] -= c.d[0] / c.W(0, 0);
-    clamp(item, c.lambda, memory);
+  Vec<1, T> solve_local(const Item& item, const Mat<1, 1, T>& W, const Vec<1, T>& b, Memory<T>& memory) const {
+    Vec<1, T> lambda(W(0, 0) > T(0) ? -b[0] / W(0, 0) : T(0));
+    clamp(item, lambda, memory);
+    return lambda;
   }
   template <class Item, class T>
   void clamp(const Item&, Vec<1, T>& lambda, const Memory<T>& memory) const {

@@ -65,13 +65,13 @@ struct Limit : OnAxis<Coordinate> {
   }
 
   template <class T>
-  void project(const Item&, Local<2, T>& c) const {
-    const Vec<2, T> b = c.free_velocity();
-    c.lambda.setZero();
-    if (b[0] < T(0) && c.W(0, 0) > T(0))
-      c.lambda[0] = -b[0] / c.W(0, 0);
-    else if (b[1] > T(0) && c.W(1, 1) > T(0))
-      c.lambda[1] = -b[1] / c.W(1, 1);
+  Vec<2, T> solve_local(const Item&, const Mat<2, 2, T>& W, const Vec<2, T>& b) const {
+    auto lambda = zero<Vec<2, T>>();
+    if (b[0] < T(0) && W(0, 0) > T(0))
+      lambda[0] = -b[0] / W(0, 0);
+    else if (b[1] > T(0) && W(1, 1) > T(0))
+      lambda[1] = -b[1] / W(1, 1);
+    return lambda;
   }
   /// The rows of a diagonal W are apart: each stops where it would let its bound be passed.
   template <class T>

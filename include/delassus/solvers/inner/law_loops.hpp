@@ -40,19 +40,13 @@ struct LawItems {
   }
   /// λ that meets the law at free velocity b.
   [[gnu::always_inline]] Vec<R, T> solve_local(Index i, const T* own, const Vec<R, T>& b, Memory& m, const Vec<R, T>& lambda) const {
-    (void)own, (void)lambda;
-    if constexpr (requires { law.solve_local(item(i), b, m); }) {
-      return law.solve_local(item(i), b, m);
-    } else if constexpr (requires(Local<R, T>& c) { law.relax(c); }) {
-      Local<R, T> c{load_square<R>(own), b, lambda};
-      c.d += c.W * lambda;
-      law.relax(c);
-      return c.lambda;
+    if constexpr (requires(Vec<R, T>& x) { law.relax(as_square<R>(own), b, x); }) {
+      Vec<R, T> next = lambda;
+      law.relax(as_square<R>(own), b, next);
+      return next;
     } else {
-      Local<R, T> c{load_square<R>(own), b, lambda};
-      c.d += c.W * lambda;
-      inner::project(law, item(i), c, m);
-      return c.lambda;
+      (void)lambda;
+      return inner::solve_local(law, item(i), as_square<R>(own), b, m);
     }
   }
   static constexpr bool clamps = requires(const Law& of, const Item& one, Vec<R, T>& x, const Memory& m) { of.clamp(one, x, m); } ||

@@ -20,13 +20,14 @@ struct PositionLaw {
   static constexpr bool is_contact = true;  // it has no items that a host adds
   struct Item {};
 
-  /// One projected Gauss-Seidel pass over the rows of a block.
+  /// One projected Gauss-Seidel pass over the rows of a block, from the λ that they have; b is their velocity without it.
   template <class T>
-  void relax(Local<rows, T>& c) const {
+  void relax(const Mat<rows, rows, T>& W, const Vec<rows, T>& b, Vec<rows, T>& lambda) const {
+    Vec<rows, T> u = b + W * lambda;
     for (int k = 0; k < rows; ++k) {
-      const T before = c.lambda[k];
-      c.lambda[k] = bound(k, before - c.d[k] / c.W(k, k));
-      for (int j = 0; j < rows; ++j) c.d[j] += c.W(j, k) * (c.lambda[k] - before);
+      const T before = lambda[k];
+      lambda[k] = bound(k, before - u[k] / W(k, k));
+      for (int j = 0; j < rows; ++j) u[j] += W(j, k) * (lambda[k] - before);
     }
   }
   template <class T>

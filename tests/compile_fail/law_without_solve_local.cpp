@@ -1,4 +1,4 @@
-// expect: delassus: a constraint law needs void project(const Item&, Local<rows>&) const; add it
+// expect: delassus: a constraint law needs Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b) const, in a contact with its Parameters as item, and with Memory<T>& behind b if it has a Memory; add it
 #include <delassus/delassus.hpp>
 
 using namespace delassus;
