@@ -56,7 +56,7 @@ class SwitchedOff {
     if (dormant_.group_of(s, block) >= 0 || !set.moves(block)) return;
     const Index group = dormant_.new_group();
     velocity_.resize(group + 1);
-    velocity_[group].setZero();
+    set_zero(velocity_[group]);
     velocity_[group].template head<Set::width>() = set.velocity()[block].template cast<double>();
     dormant_.add(set, s, block, group);
     set.set_fixed(block, true);

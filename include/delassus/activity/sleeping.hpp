@@ -105,14 +105,14 @@ class Sleepers {
   /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
   bool wake_touched(World& world, Laws& laws, const ContactCache& book, double h) {
     double gravity = 0;
-    world.each([&](const auto& set, auto) { gravity = std::max(gravity, Supports::gravity_of(set).norm()); });
+    world.each([&](const auto& set, auto) { gravity = std::max(gravity, norm(Supports::gravity_of(set))); });
     for (const ContactPoint& p : book.points) {
       const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
       const Index group = std::max(group_of(a), group_of(b));
       if (group < 0) continue;
-      const Vec3 va = a.velocity + a.angular_velocity.cross(p.point_a - a.pose.position);
-      const Vec3 vb = b.velocity + b.angular_velocity.cross(p.point_b - b.pose.position);
-      if (p.gap + h * (vb - va).dot(p.normal) <= h * h * gravity) call(group);
+      const Vec3 va = a.velocity + cross(a.angular_velocity, p.point_a - a.pose.position);
+      const Vec3 vb = b.velocity + cross(b.angular_velocity, p.point_b - b.pose.position);
+      if (p.gap + h * dot(vb - va, p.normal) <= h * h * gravity) call(group);
     }
     return answer(world, laws);
   }
@@ -135,7 +135,7 @@ class Sleepers {
     world.each([&](auto& set, auto s) {
       auto& quiet = quiet_[s];
       quiet.resize(set.blocks(), 0);
-      const double gravity = Supports::gravity_of(set).norm();
+      const double gravity = norm(Supports::gravity_of(set));
       bool may_sleep = true;
       if constexpr (requires { set.may_sleep(); }) may_sleep = set.may_sleep();
       for (const Index b : set.active()) {

@@ -27,8 +27,8 @@ Anchor anchor_at(const S& set, typename S::Handle body, const Vec3& point,
 /// Eigen's FromTwoVectors would bring its singular value decomposition: 250 MB of compiler memory.
 template <class Scalar = double>
 Quat frame_along(const std::type_identity_t<Vec<3, Scalar>>& axis) {
-  DELASSUS_EXPECT(is_finite(axis) && axis.norm() > 0, "frame_along: the axis must be finite and not zero");
-  const Vec<3, Scalar> e = axis / axis.norm();
+  DELASSUS_EXPECT(is_finite(axis) && norm(axis) > 0, "frame_along: the axis must be finite and not zero");
+  const Vec<3, Scalar> e = axis / norm(axis);
   const Scalar flat = e[0] * e[0] + e[1] * e[1];
   if (e[2] < 0 && flat < 1e-32) return Eigen::Quaternion<Scalar>(0, 1, 0, 0);
   return Eigen::Quaternion<Scalar>(e[2] < 0 ? flat / (1 - e[2]) : 1 + e[2], -e[1], e[0], 0).normalized();

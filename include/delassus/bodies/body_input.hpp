@@ -23,10 +23,10 @@ enum class Motion : std::uint8_t { dynamic, kinematic, fixed };
 /// The body's frame has its origin at the centre of mass. Of a dynamic body, give `mass` or `density`; the inertia
 /// comes from the shape unless `inertia` (about the centre of mass, body frame) is given.
 struct RigidBody {
-  Vec3 position = Vec3::Zero();
+  Vec3 position = zero<Vec3>();
   Quat orientation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 angular_velocity = Vec3::Zero();
+  Vec3 velocity = zero<Vec3>();
+  Vec3 angular_velocity = zero<Vec3>();
   std::optional<double> mass{};
   std::optional<double> density{};
   std::optional<Mat3> inertia{};
@@ -93,8 +93,8 @@ Quat check_state(const Body& body, const std::string& who) {
   DELASSUS_EXPECT(is_finite(body.position), who + ": position is not finite");
   DELASSUS_EXPECT(is_finite(body.velocity), who + ": velocity is not finite");
   DELASSUS_EXPECT(is_finite(body.angular_velocity), who + ": angular velocity is not finite");
-  const double norm = body.orientation.coeffs().norm();
-  DELASSUS_EXPECT(std::isfinite(norm) && norm > 1e-12,
+  const double length = norm(body.orientation.coeffs());
+  DELASSUS_EXPECT(std::isfinite(length) && length > 1e-12,
                   who + ": orientation is the zero quaternion or not finite; the identity is (1, 0, 0, 0)");
   return unit(body.orientation);
 }

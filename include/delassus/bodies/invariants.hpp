@@ -16,8 +16,8 @@ double kinetic_energy(const BasicRigidBodies<T>& set) {
   inner::each_moving(set, [&](Index b) {
     const Vec<6> v = set.velocity()[b].template cast<double>();
     const Vec3 rate = set.pose(b).rotation.transpose() * angular_part(v);
-    sum += 0.5 * double(set.mass(b)) * linear_part(v).squaredNorm() +
-           0.5 * rate.dot(Mat3(set.inertia(b).template cast<double>()) * rate);
+    sum += 0.5 * double(set.mass(b)) * squared_norm(linear_part(v)) +
+           0.5 * dot(rate, Mat3(set.inertia(b).template cast<double>()) * rate);
   });
   return sum;
 }
@@ -25,12 +25,12 @@ double kinetic_energy(const BasicRigidBodies<T>& set) {
 /// Σ x × m v + R I Rᵀ ω about the world's origin, kg·m²/s.
 template <class T>
 Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = zero<Vec3>();
   inner::each_moving(set, [&](Index b) {
     const Pose pose = set.pose(b);
     const Vec<6> v = set.velocity()[b].template cast<double>();
     const Vec3 rate = pose.rotation.transpose() * angular_part(v);
-    sum += pose.position.cross(inner::momentum_of(set, b)) +
+    sum += cross(pose.position, inner::momentum_of(set, b)) +
            pose.rotation * (Mat3(set.inertia(b).template cast<double>()) * rate);
   });
   return sum;

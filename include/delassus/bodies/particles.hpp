@@ -19,8 +19,8 @@ namespace delassus {
 
 /// A particle as it is added. SI units. `radius` > 0 (m) makes it a sphere for collision, without rotation.
 struct Particle {
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
+  Vec3 position = zero<Vec3>();
+  Vec3 velocity = zero<Vec3>();
   std::optional<double> mass{};
   double radius = 0;
   bool is_fixed = false;
@@ -64,12 +64,12 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   void add_spring(Handle a, Handle b, double stiffness, double damping = 0, std::optional<double> rest = {}) {
     const Index i = checked(a), j = checked(b);
     const double now = (x_[i] - x_[j]).template cast<double>().norm();
-    springs_.add({i, j, Vec3::Zero(), stiffness, damping, rest.value_or(now)}, who(i));
+    springs_.add({i, j, zero<Vec3>(), stiffness, damping, rest.value_or(now)}, who(i));
   }
   /// The same to a point of the world (m).
   void add_spring(Handle a, const Vec3& point, double stiffness, double damping = 0, std::optional<double> rest = {}) {
     const Index i = checked(a);
-    const double now = (x_[i].template cast<double>() - point).norm();
+    const double now = norm(x_[i].template cast<double>() - point);
     springs_.add({i, -1, point, stiffness, damping, rest.value_or(now)}, who(i));
   }
 
@@ -159,7 +159,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
         x[b] = moved;
         v[b] = next;
       }
-      load[b].setZero();
+      set_zero(load[b]);
     }
   };
   Blocks by_block(SystemScale scale = {}) {
@@ -184,7 +184,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
     for (const Index b : slots_.active()) {
       if (moves(b) && is_finite(v_next[b])) v_[b] = v_next[b];
       else if (moves(b)) quarantine_.leave(load_.data(), load_[b]);
-      load_[b].setZero();
+      set_zero(load_[b]);
     }
   }
 
@@ -229,7 +229,7 @@ typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& partic
     DELASSUS_EXPECT(inner::has_inverse<T>(mass), name + ": mass " + inner::without_inverse<T>(inner::text(mass), "kg"));
   }
   inner::expect_not_negative(name + ": radius", particle.radius);
-  const Index b = PointStorage::take(particle, particle.is_fixed ? Velocity(Velocity::Zero())
+  const Index b = PointStorage::take(particle, particle.is_fixed ? Velocity(zero<Velocity>())
                                                             : Velocity(particle.velocity.template cast<T>()));
   x_[b] = particle.position.template cast<T>();
   mass_[b] = particle.is_fixed ? T(0) : T(*particle.mass);

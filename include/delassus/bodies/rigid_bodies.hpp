@@ -51,7 +51,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   Handle add(const Body& body);
 
   /// Adds a body that never moves, or moves as the user says.
-  Handle add_fixed(const Shape& shape, const Vec3& position = Vec3::Zero(),
+  Handle add_fixed(const Shape& shape, const Vec3& position = zero<Vec3>(),
                    const Quat& orientation = Quat::Identity()) {
     return add({.position = position, .orientation = orientation, .shape = shape, .motion = Motion::fixed});
   }
@@ -68,17 +68,17 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   void apply_force(Handle body, const Vec3& force, const Vec3& point) {
     const Index b = checked(body);
     const Vec3 arm = point - position_of(b);
-    load_[b] += twist<T>(force.template cast<T>(), arm.cross(force).template cast<T>());
+    load_[b] += twist<T>(force.template cast<T>(), cross(arm, force).template cast<T>());
   }
   void apply_force(Handle body, const Vec3& force) {
-    load_[checked(body)] += twist<T>(force.template cast<T>(), Vec<3, T>::Zero());
+    load_[checked(body)] += twist<T>(force.template cast<T>(), zero<Vec<3, T>>());
   }
   /// Adds a torque (N·m) that acts during the next step only.
   void apply_torque(Handle body, const Vec3& torque) {
-    load_[checked(body)] += twist<T>(Vec<3, T>::Zero(), torque.template cast<T>());
+    load_[checked(body)] += twist<T>(zero<Vec<3, T>>(), torque.template cast<T>());
   }
 
-  void set_velocity(Handle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
+  void set_velocity(Handle body, const Vec3& velocity, const Vec3& angular_velocity = zero<Vec3>()) {
     const Index b = checked(body);
     check_velocity(velocity, angular_velocity, b);
     DELASSUS_EXPECT(motion_[b] != Motion::fixed, who(b) + ": a fixed body has no velocity; add it as a kinematic one");
@@ -156,10 +156,10 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   /// Row of H: direction · (v + ω × r) = (direction, r × direction) · (v, ω), r from the centre of mass to `point`.
   Velocity along(const Anchor& a, int, const Vec3& point, const Vec3& direction) const {
     const Vec3 arm = point - position_of(a.block);
-    return twist<T>(direction.template cast<T>(), arm.cross(direction).template cast<T>());
+    return twist<T>(direction.template cast<T>(), cross(arm, direction).template cast<T>());
   }
   Velocity about(const Anchor&, int, const Vec3& axis) const {
-    return twist<T>(Vec<3, T>::Zero(), axis.template cast<T>());
+    return twist<T>(zero<Vec<3, T>>(), axis.template cast<T>());
   }
   Vec3 point(const Anchor& a) const {
     return state_.x[a.block] +
@@ -250,8 +250,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
                     who(b) + ": angular velocity " + inner::beyond<T>(angular_velocity, "rad/s"));
   }
   void check_pose(const Vec3& position, const Quat& orientation, Index b) const {
-    const double norm = orientation.coeffs().norm();
-    DELASSUS_EXPECT(is_finite(position) && std::isfinite(norm) && norm > 1e-12, who(b) + ": pose is not finite");
+    const double length = norm(orientation.coeffs());
+    DELASSUS_EXPECT(is_finite(position) && std::isfinite(length) && length > 1e-12, who(b) + ": pose is not finite");
     DELASSUS_EXPECT(inner::fits<T>(position), who(b) + ": position " + inner::beyond<T>(position, "m"));
   }
   void set_mass(Index b) { state_.set_mass(b, motion_[b] == Motion::dynamic); }
@@ -299,7 +299,7 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
   if (is_dynamic) mass = inner::check_mass<T>(body, name);
 
   Velocity velocity = twist<T>(body.velocity.template cast<T>(), body.angular_velocity.template cast<T>());
-  if (body.motion == Motion::fixed) velocity.setZero();
+  if (body.motion == Motion::fixed) set_zero(velocity);
   const Index b = BodyStorage::take(body, velocity);
   const std::size_t n = std::size_t(slots_.size());
   state_.resize(n);

@@ -16,7 +16,7 @@ namespace delassus {
 /// Between blocks `a` and `b`, or `a` and `point` of the world when b < 0. N/m, N·s/m, m.
 struct Spring {
   Index a = -1, b = -1;
-  Vec3 point = Vec3::Zero();
+  Vec3 point = zero<Vec3>();
   double stiffness = 0, damping = 0, rest = 0;
 };
 
@@ -62,7 +62,7 @@ class Springs {
   double energy(std::span<const Velocity> x) const {
     double sum = 0;
     for (const Spring& s : springs_) {
-      const double stretch = span(s, x).norm() - s.rest;
+      const double stretch = norm(span(s, x)) - s.rest;
       sum += 0.5 * s.stiffness * stretch * stretch;
     }
     return sum;
@@ -71,10 +71,10 @@ class Springs {
   void add_forces(std::span<Velocity> p, std::span<const Velocity> x, std::span<const Velocity> v) const {
     for (const Spring& s : springs_) {
       const Vec3 d = span(s, x);
-      const double length = d.norm();
+      const double length = norm(d);
       if (length == 0) continue;
       const Vec3 e = d / length;
-      const double pull = s.stiffness * (length - s.rest) + s.damping * e.dot(rate(s, v));
+      const double pull = s.stiffness * (length - s.rest) + s.damping * dot(e, rate(s, v));
       push(p, s, -pull * e);
     }
   }
@@ -98,7 +98,7 @@ class Springs {
     }
     const Index n = Index(x.size());
     pairs_.clear();
-    inverse_.assign(n, Block::Zero());
+    inverse_.assign(n, zero<Block>());
     for (const Index b : active) inverse_[b] = T(scale.mass) * mass[b] * Block::Identity();
     for (const Spring& s : springs_) {
       const Block K = system(s, x, scale);
@@ -111,7 +111,7 @@ class Springs {
     if (is_coupled_) factor_coupled(scale, x, inverse_mass, n);
     else
       for (Index b = 0; b < n; ++b)
-        inverse_[b] = inverse_mass[b] > 0 ? Block(inverse_[b].inverse()) : Block(Block::Zero());
+        inverse_[b] = inverse_mass[b] > 0 ? Block(inverse_[b].inverse()) : Block(zero<Block>());
   }
 
   /// (scale.mass · m_b)⁻¹ x: as if no spring were there.
@@ -128,7 +128,7 @@ class Springs {
   /// x ← A⁻¹ x; entries of blocks that do not move become zero.
   void solve(std::span<Velocity> x) const {
     for (std::size_t b = 0; b < x.size(); ++b)
-      if (!(inverse_mass_[b] > 0)) x[b].setZero();
+      if (!(inverse_mass_[b] > 0)) set_zero(x[b]);
     if (is_coupled_) cholesky_.solve(x);
     else
       for (std::size_t b = 0; b < x.size(); ++b) x[b] = solve_block<1>(Index(b), x[b]);
@@ -145,7 +145,7 @@ class Springs {
     return x[s.a].template cast<double>() - end;
   }
   static Vec3 rate(const Spring& s, std::span<const Velocity> v) {
-    const Vec3 end = s.b < 0 ? Vec3(Vec3::Zero()) : Vec3(v[s.b].template cast<double>());
+    const Vec3 end = s.b < 0 ? Vec3(zero<Vec3>()) : Vec3(v[s.b].template cast<double>());
     return v[s.a].template cast<double>() - end;
   }
   static void push(std::span<Velocity> p, const Spring& s, const Vec3& force) {
@@ -154,16 +154,16 @@ class Springs {
   }
   Mat3 stiffness(const Spring& s, std::span<const Velocity> x) const {
     const Vec3 d = span(s, x);
-    const double length = d.norm();
-    if (length == 0) return s.rest > 0 ? Mat3(Mat3::Zero()) : Mat3(s.stiffness * Mat3::Identity());
+    const double length = norm(d);
+    if (length == 0) return s.rest > 0 ? Mat3(zero<Mat3>()) : Mat3(s.stiffness * Mat3::Identity());
     const Vec3 e = d / length;
     const double across = s.stiffness * std::max(0.0, 1 - s.rest / length);
     return across * Mat3::Identity() + (s.stiffness - across) * e * e.transpose();
   }
   Block system(const Spring& s, std::span<const Velocity> x, SystemScale scale) const {
     const Vec3 d = span(s, x);
-    const double length = d.norm();
-    const Vec3 e = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
+    const double length = norm(d);
+    const Vec3 e = length > 0 ? Vec3(d / length) : Vec3(zero<Vec3>());
     return (scale.stiffness * stiffness(s, x) + scale.damping * s.damping * e * e.transpose()).template cast<T>();
   }
 

@@ -214,7 +214,7 @@ using scalar_t = typename World::Scalar;
 
 /// The material point `local` (body frame, m) of a body, with a joint frame turned by `frame` against the body's.
 template <BodySet S>
-Anchor anchor(const S& set, typename S::Handle body, const Vec3& local = Vec3::Zero(),
+Anchor anchor(const S& set, typename S::Handle body, const Vec3& local = zero<Vec3>(),
               const Quat& frame = Quat::Identity()) {
   DELASSUS_EXPECT(set.contains(body),
                   "anchor: " + inner::wrong_handle(body.owner, "body",
@@ -222,7 +222,7 @@ Anchor anchor(const S& set, typename S::Handle body, const Vec3& local = Vec3::Z
   DELASSUS_EXPECT(is_finite(local), "anchor: the point on " + set.who(body.index) + " is not finite");
   DELASSUS_EXPECT(inner::fits<typename S::Scalar>(local), "anchor: the point on " + set.who(body.index) + ", " +
                                                               inner::beyond<typename S::Scalar>(local, "m"));
-  DELASSUS_EXPECT(std::abs(frame.coeffs().norm() - 1) < 1e-6,
+  DELASSUS_EXPECT(std::abs(norm(frame.coeffs()) - 1) < 1e-6,
                   "anchor: the frame on " + set.who(body.index) + " is not a unit quaternion");
   return {.block = body.index,
           .local = local,

@@ -4,6 +4,7 @@
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/collision/inner/dynamic_tree.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -50,7 +51,7 @@ class BasicBoxTree {
     Index node = -1;             ///< in its tree; −1 while its box is empty
     Index place = -1;            ///< in this call's array; −1 when it is not there
     Aabb box;                    ///< the fattened one
-    Vec3 middle = Vec3::Zero();  ///< of the box itself, last step
+    Vec3 middle = zero<Vec3>();  ///< of the box itself, last step
   };
 
   /// Which leaf each box has. Usually the boxes stand as they stood; else the leaves are found by their keys.
@@ -64,7 +65,7 @@ class BasicBoxTree {
     const Index known = Index(sorted_.size());
     for (Index i = 0; i < Index(tags.size()); ++i) {
       const auto end = sorted_.begin() + known,
-                 at = std::lower_bound(sorted_.begin(), end, tags[i].key, by_key);
+                 at = inner::lower_bound(sorted_.begin(), end, tags[i].key, by_key);
       if (at != end && leaf_[*at].key == tags[i].key) {
         leaf_of_[i] = *at;
       } else {
@@ -73,16 +74,19 @@ class BasicBoxTree {
       }
       leaf_[leaf_of_[i]].place = i;
     }
-    const auto is_gone = [&](Index l) {
-      if (leaf_[l].place >= 0) return false;
+    moved_.clear();
+    std::size_t kept = 0;
+    for (const Index l : sorted_) {
+      if (leaf_[l].place >= 0) {
+        sorted_[kept++] = l;
+        continue;
+      }
       leave(leaf_[l]);
       free_.push_back(l);
-      return true;
-    };
-    moved_.clear();
-    sorted_.erase(std::remove_if(sorted_.begin(), sorted_.end(), is_gone), sorted_.end());
+    }
+    sorted_.resize(kept);
     if (!moved_.empty()) renew_pairs();
-    std::sort(sorted_.begin(), sorted_.end(), [&](Index x, Index y) { return leaf_[x].key < leaf_[y].key; });
+    inner::sort(sorted_, [&](Index x, Index y) { return leaf_[x].key < leaf_[y].key; });
   }
 
   Index take_leaf(std::uint32_t key) {
@@ -117,7 +121,7 @@ class BasicBoxTree {
     leaf.is_movable = is_movable;
     if (box.isEmpty()) return;
     const Vec3 middle = (box.min() + box.max()) / 2;
-    const Vec3 motion = leaf.node >= 0 ? Vec3(middle - leaf.middle) : Vec3::Zero();
+    const Vec3 motion = leaf.node >= 0 ? Vec3(middle - leaf.middle) : zero<Vec3>();
     leaf.middle = middle;
     const double edge = (box.max() - box.min()).maxCoeff();
     if (leaf.node >= 0 && leaf.box.contains(box) && !is_slack(leaf.box, box, edge)) return;
@@ -164,9 +168,14 @@ class BasicBoxTree {
     }
     for (const Index l : moved_) leaf_[l].has_moved = false;
     moved_.clear();
-    std::sort(fresh_.begin(), fresh_.end());
-    merged_.resize(kept_.size() + fresh_.size());
-    std::merge(kept_.begin(), kept_.end(), fresh_.begin(), fresh_.end(), merged_.begin());
+    inner::sort(fresh_);
+    merged_.clear();
+    std::size_t next = 0;
+    for (const std::uint64_t pair : kept_) {
+      for (; next < fresh_.size() && fresh_[next] < pair; ++next) merged_.push_back(fresh_[next]);
+      merged_.push_back(pair);
+    }
+    for (; next < fresh_.size(); ++next) merged_.push_back(fresh_[next]);
     kept_.swap(merged_);
   }
 
@@ -180,7 +189,7 @@ class BasicBoxTree {
       is_sorted = is_sorted && (pairs.size() == first || pairs.back() < found);
       pairs.push_back(found);
     }
-    if (!is_sorted) std::sort(pairs.begin() + std::ptrdiff_t(first), pairs.end());
+    if (!is_sorted) inner::sort(pairs.data() + first, pairs.data() + pairs.size());
   }
 
   Array<Leaf> leaf_;

@@ -20,12 +20,12 @@ namespace delassus {
 template <std::same_as<SignedPair> Pair>
 bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale, Pair& r) {
   if (r.status == PairStatus::failed || !is_finite(r.normal) || !std::isfinite(r.distance)) return false;
-  const double excess = r.normal.squaredNorm() - 1;
+  const double excess = squared_norm(r.normal) - 1;
   if (!(std::abs(excess) < 1e-9)) return false;
   if (std::abs(excess) > 1e-15) r.normal *= 1 - 0.5 * excess;  // else heights of 1 m would be off by 5e-10 m
   const Vec3& n = r.normal;
-  const double height_a = n.dot(support(a, n));
-  const double height_b = n.dot(b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * n)))));
+  const double height_a = dot(n, support(a, n));
+  const double height_b = dot(n, b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * n)))));
   const double proven = height_b - height_a;
   if (r.status == PairStatus::far) return proven > (1 - 1e-3) * margin;
   const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
@@ -40,7 +40,7 @@ bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, 
 /// answer is not the shortest way out, though it is one.
 template <std::same_as<SignedPair> Pair>
 bool is_beaten(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& other, double scale, const Pair& r) {
-  if (r.status != PairStatus::near || !(other.squaredNorm() > 0.5)) return false;
+  if (r.status != PairStatus::near || !(squared_norm(other) > 0.5)) return false;
   const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);
   return -inner::Difference{a, b, b_in_a}.reach(other) > r.distance + tolerance;
 }
@@ -53,7 +53,7 @@ Pair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3&
   const Mat3& R = b_in_a.rotation;
   Pair r{.status = PairStatus::near, .distance = -std::numeric_limits<double>::infinity()};
   const auto consider = [&](const Vec3& direction) {
-    const double length = direction.norm();
+    const double length = norm(direction);
     if (!(length > 0)) return;
     const Vec3 n = direction / length;
     const double distance = -difference.reach(n);

@@ -22,8 +22,8 @@ SignedPair sphere_against(const std::same_as<Shape> auto& a, double radius, cons
 /// v. Source: [Ericson2005], §5.1.9; parallel ones meet in the middle of their overlap.
 template <class T>
 void nearest_on_segments(const Vec<3, T>& u, const Vec<3, T>& v, const Vec<3, T>& x, double& s, double& t) {
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ux = u.dot(x), vx = v.dot(x);
-  const double determinant = u.cross(v).squaredNorm();
+  const double uu = squared_norm(u), vv = squared_norm(v), uv = dot(u, v), ux = dot(u, x), vx = dot(v, x);
+  const double determinant = squared_norm(cross(u, v));
   if (determinant > 1e-12 * uu * vv) {
     s = std::clamp((ux * vv - vx * uv) / determinant, -1.0, 1.0);
   } else {
@@ -41,16 +41,16 @@ SignedPair two_capsules(const S& a, const S& b, const Pose& b_in_a, const Vec3& 
   double s = 0, t = 0;
   nearest_on_segments(u, v, b_in_a.position, s, t);
   const Vec3 on_a = s * u, on_b = b_in_a.position + t * v, apart = on_b - on_a;
-  const double length = apart.norm();
+  const double length = norm(apart);
   SignedPair r{.status = PairStatus::near, .distance = length - a.size[0] - b.size[0]};
   if (length > 1e-14 * (a.size[1] + b.size[1])) {
     r.normal = apart / length;
   } else {
     // The axes cross: out of their common plane, or across them when they are one line.
-    const Vec3 out = u.cross(v);
-    const bool is_plane = out.squaredNorm() > 1e-12 * u.squaredNorm() * v.squaredNorm();
+    const Vec3 out = cross(u, v);
+    const bool is_plane = squared_norm(out) > 1e-12 * squared_norm(u) * squared_norm(v);
     r.normal =
-        is_plane ? Vec3(with_sign(1, out.dot(wish)) * out.normalized()) : perpendicular(unit_axis(2), wish);
+        is_plane ? Vec3(with_sign(1, dot(out, wish)) * normalized(out)) : perpendicular(unit_axis(2), wish);
   }
   r.point_a = on_a + a.size[0] * r.normal;
   r.point_b = on_b - b.size[0] * r.normal;
@@ -65,7 +65,7 @@ inline bool is_simple(const Shape& s) {
 inline SignedPair swapped(const SignedPair& r, const Pose& b_in_a) {
   SignedPair s = r;
   // The rotation may come from single precision, and is orthogonal to that only.
-  s.normal = -(b_in_a.rotation * r.normal).normalized();
+  s.normal = -normalized(b_in_a.rotation * r.normal);
   s.point_a = b_in_a.to_world(r.point_b);
   s.point_b = b_in_a.to_world(r.point_a);
   return s;
@@ -84,7 +84,7 @@ inline bool has_closed_form(const Shape& a, const Shape& b) {
 template <std::same_as<SignedPair> Pair>
 bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3& guess, Pair& r) {
   if (!has_closed_form(a, b)) return false;
-  const Vec3 wish = guess.squaredNorm() > 0 ? guess : b_in_a.position;
+  const Vec3 wish = squared_norm(guess) > 0 ? guess : b_in_a.position;
   if (b.kind == ShapeKind::sphere) {
     r = inner::sphere_against(a, b.size[0], b_in_a.position, wish);
   } else if (a.kind == ShapeKind::sphere) {

@@ -22,15 +22,15 @@ struct NoFilter {
 struct Collider {
   Shape shape{};
   Pose pose{};
-  Vec3 velocity = Vec3::Zero();
-  Vec3 angular_velocity = Vec3::Zero();
+  Vec3 velocity = zero<Vec3>();
+  Vec3 angular_velocity = zero<Vec3>();
   bool is_movable = true;  ///< two colliders that neither move are never paired
   std::uint32_t group = 1;
   std::uint32_t collides_with = ~0u;  ///< pairs when each one's group meets the other's mask
   std::uint32_t key = 0;              ///< names this collider from step to step; unique
 
   /// Of its point at x, world frame.
-  Vec3 velocity_at(const Vec3& x) const { return velocity + angular_velocity.cross(Vec3(x - pose.position)); }
+  Vec3 velocity_at(const Vec3& x) const { return velocity + cross(angular_velocity, Vec3(x - pose.position)); }
 };
 
 /// One of them moves, and each one's group meets the other's mask.
@@ -49,7 +49,7 @@ constexpr std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
 /// One contact. `a` and `b` index the colliders of this call, key of a < key of b. World frame.
 struct ContactPoint {
   Index a = -1, b = -1;
-  Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();  ///< point_b − point_a = gap · normal
+  Vec3 point_a = zero<Vec3>(), point_b = zero<Vec3>();  ///< point_b − point_a = gap · normal
   Vec3 normal = unit_axis(2);                           ///< unit, from A to B
   double gap = 0;                                       ///< m, negative when the bodies overlap
   std::uint64_t pair = 0;                               ///< key of a · 2³² + key of b

@@ -144,9 +144,9 @@ struct Continuous {
   /// The backend's contact of a pair with the least gap, if it has any.
   static std::optional<ContactPoint> touching(const std::vector<ContactPoint>& contacts, std::size_t known,
                                               std::uint64_t pair) {
-    const auto end = contacts.begin() + std::ptrdiff_t(known);
-    auto at = std::lower_bound(contacts.begin(), end, pair,
-                               [](const ContactPoint& p, std::uint64_t key) { return p.pair < key; });
+    const ContactPoint* const end = contacts.data() + known;
+    const ContactPoint* at = inner::lower_bound(contacts.data(), end, pair,
+                                                [](const ContactPoint& p, std::uint64_t key) { return p.pair < key; });
     std::optional<ContactPoint> nearest;
     for (; at != end && at->pair == pair; ++at)
       if (!nearest || at->gap < nearest->gap) nearest = *at;
@@ -165,12 +165,12 @@ struct Continuous {
     const SignedPair r = inner::distance_of(a.shape, b.shape, b_in_a, margin, scale, hit.normal_in_a, patch_);
     if (r.status != PairStatus::near) return;
     const Vec3 n = hit.a.rotation * r.normal;
-    const double flight = n.dot(a.velocity - b.velocity);
+    const double flight = dot(n, a.velocity - b.velocity);
     const Vec3 arm_a = hit.a.rotation * r.point_a, arm_b = hit.a.to_world(r.point_b) - hit.b.position;
-    if (flight >= n.dot(a.angular_velocity.cross(arm_a) - b.angular_velocity.cross(arm_b))) {
+    if (flight >= dot(n, cross(a.angular_velocity, arm_a) - cross(b.angular_velocity, arm_b))) {
       if (!(flight > 0)) return;
       const bool holds_a =
-          a.is_movable && (!b.is_movable || a.velocity.squaredNorm() > b.velocity.squaredNorm());
+          a.is_movable && (!b.is_movable || squared_norm(a.velocity) > squared_norm(b.velocity));
       const Collider& held = holds_a ? a : b;
       pair.add(held.pose.position, n, hit.time * flight, whole_name);
       if (inner::is_turning(held)) add_ahead(pair, hit, n, {.a = r.point_a, .b = r.point_b, .name = end_name}, 0);
@@ -203,11 +203,11 @@ struct Continuous {
     if (!core.is_movable || !core.shape.has_volume()) return;
     const double radius = inner::core_of_motion(core.shape);
     core.shape = Sphere{radius};
-    core.angular_velocity.setZero();
+    set_zero(core.angular_velocity);
     const inner::Impact hit = inner::time_of_impact(a, b, pair.h, radius, 1e-3 * radius);
     if (!hit.is_found && !hit.is_now) return;
     const Vec3 n = hit.a.rotation * hit.normal_in_a;
-    const double flight = n.dot(a.velocity - b.velocity);
+    const double flight = dot(n, a.velocity - b.velocity);
     if (!(flight > 0) && !hit.is_now) return;
     // What touches has nowhere to go but to turn about that point, and may turn by more than a row can
     // follow.
@@ -222,10 +222,10 @@ struct Continuous {
     const Vec3 up = holds_a ? Vec3(-touch.normal) : touch.normal;
     const Vec3 on_other = holds_a ? touch.point_b : touch.point_a;
     body.velocity -= other.velocity;
-    body.velocity -= std::min(0.0, up.dot(body.velocity)) * up;
+    body.velocity -= std::min(0.0, dot(up, body.velocity)) * up;
     const double target = 1e-3 * inner::pair_scale(body.shape, other.shape);
-    const inner::Swing swing = inner::swing_to_plane(body, up, up.dot(on_other), pair.h, target);
-    const double closing = -up.dot(body.velocity + body.angular_velocity.cross(swing.arm));
+    const inner::Swing swing = inner::swing_to_plane(body, up, dot(up, on_other), pair.h, target);
+    const double closing = -dot(up, body.velocity + cross(body.angular_velocity, swing.arm));
     if (!swing.is_found || !(closing > 0) || !inner::meets(other, body, swing)) return;
     pair.add(body.pose.position + swing.arm, touch.normal, swing.time * closing,
              holds_a ? end_name + 1 : end_name + 2);
@@ -236,10 +236,10 @@ struct Continuous {
                         double more) {
     const Collider &a = pair.a, &b = pair.b;
     const Vec3 arm_a = hit.a.to_world(p.a) - hit.a.position, arm_b = hit.a.to_world(p.b) - hit.b.position;
-    const Vec3 of_a = a.velocity + a.angular_velocity.cross(arm_a),
-               of_b = b.velocity + b.angular_velocity.cross(arm_b);
+    const Vec3 of_a = a.velocity + cross(a.angular_velocity, arm_a),
+               of_b = b.velocity + cross(b.angular_velocity, arm_b);
     const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b;
-    const double way = hit.time * n.dot(of_a - of_b);
+    const double way = hit.time * dot(n, of_a - of_b);
     if (!(way > 0)) return;
     pair.add(!a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b)), n, way + more, p.name);
   }

@@ -14,6 +14,7 @@
 #include <delassus/collision/pair_memory.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <span>
@@ -72,7 +73,7 @@ class CollisionEngine {
       for (Index i = 0; i < Index(colliders.size()); ++i)
         if (!is_empty(boxes_[i]) && inner::may_touch(colliders[plane], boxes_[i], h, settings))
           add_job(colliders, plane, i, filter);
-    std::sort(jobs_.begin(), jobs_.end());
+    inner::sort(jobs_);
     report_.pairs = Index(jobs_.size());
   }
 
@@ -145,13 +146,13 @@ class CollisionEngine {
     // Centres in one point: the normal of B moved by 1e-4 of the size, far above what round shapes resolve. Along it B
     // is then put back, and the depth is within 4e-4 of the size of the least.
     const bool is_moved = is_zero(b_in_a.position) && is_zero(last.normal);
-    Vec3 shift = Vec3::Zero();
+    Vec3 shift = zero<Vec3>();
     if (is_moved) shift = a.pose.rotation.transpose() * (1e-4 * scale * inner::fallback_normal(a.key, b.key));
     const Pose pose{.position = b_in_a.position + shift, .rotation = b_in_a.rotation};
     const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, pose, reach, scale, guess);
     report_.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
-    if (is_moved) r.distance -= r.normal.dot(shift), r.point_b -= r.normal * r.normal.dot(shift);
+    if (is_moved) r.distance -= dot(r.normal, shift), r.point_b -= r.normal * dot(r.normal, shift);
     if (r.status == PairStatus::near)
       now.owner = inner::snap_normal_to_face(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;

@@ -12,19 +12,19 @@ namespace delassus::inner {
 
 /// The best supporting plane found and the witnesses on it. h = h(normal) is the depth of the cores, m.
 struct EpaResult {
-  Vec3 normal = Vec3::Zero(), point_a = Vec3::Zero(), point_b = Vec3::Zero();
+  Vec3 normal = zero<Vec3>(), point_a = zero<Vec3>(), point_b = zero<Vec3>();
   double h = std::numeric_limits<double>::infinity();
 };
 
 /// A unit vector perpendicular to the unit vector `axis`, as near to `wish` as can be.
 Vec3 perpendicular(const std::same_as<Vec3> auto& axis, const Vec3& wish) {
-  const Vec3 across = wish - axis * axis.dot(wish);
-  const double length = across.norm();
-  if (length > 1e-6 * wish.norm()) return across / length;
+  const Vec3 across = wish - axis * dot(axis, wish);
+  const double length = norm(across);
+  if (length > 1e-6 * norm(wish)) return across / length;
   int k = 0;
   for (const int j : {1, 2})
     if (std::abs(axis[j]) < std::abs(axis[k])) k = j;
-  return axis.cross(unit_axis(k)).normalized();
+  return normalized(cross(axis, unit_axis(k)));
 }
 
 /// Grows the simplex to one more dimension: takes the support point that lies farthest from its hull.
@@ -40,18 +40,18 @@ bool grow(const D& difference, std::array<DifferencePoint, 4>& p, int& count, do
   };
   if (count == 1) {
     for (int k = 0; k < 6; ++k)
-      consider((k < 3 ? 1.0 : -1.0) * unit_axis(k % 3), [](const Vec3& d) { return d.norm(); });
+      consider((k < 3 ? 1.0 : -1.0) * unit_axis(k % 3), [](const Vec3& d) { return norm(d); });
   } else if (count == 2) {
-    const Vec3 axis = (p[1].w - p[0].w).normalized(), x = perpendicular(axis, unit_axis(0)),
-               y = axis.cross(x);
+    const Vec3 axis = normalized(p[1].w - p[0].w), x = perpendicular(axis, unit_axis(0)),
+               y = cross(axis, x);
     constexpr double c = 0.5, s = 0.86602540378443864676;
     constexpr double hexagon[6][2] = {{1, 0}, {c, s}, {-c, s}, {-1, 0}, {-c, -s}, {c, -s}};
     for (const auto& [u, v] : hexagon)
-      consider(u * x + v * y, [&](const Vec3& d) { return d.cross(axis).norm(); });
+      consider(u * x + v * y, [&](const Vec3& d) { return norm(cross(d, axis)); });
   } else {
-    const Vec3 normal = (p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized();
+    const Vec3 normal = normalized(cross(p[1].w - p[0].w, p[2].w - p[0].w));
     for (const double sign : {1.0, -1.0})
-      consider(sign * normal, [&](const Vec3& d) { return std::abs(d.dot(normal)); });
+      consider(sign * normal, [&](const Vec3& d) { return std::abs(dot(d, normal)); });
   }
   if (!(best_height > 1e-9 * size)) return false;
   p[count++] = best;
@@ -67,15 +67,15 @@ EpaResult flat_depth(const D& difference, const std::array<DifferencePoint, 4>& 
   r.point_a = p[0].a;
   r.point_b = p[0].b;
   if (count == 3) {
-    const Vec3 normal = (p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized();
-    const double up = normal.dot(difference.core(normal).w), down = -normal.dot(difference.core(-normal).w);
-    const bool is_up = up != down ? up < down : normal.dot(guess) >= 0;
+    const Vec3 normal = normalized(cross(p[1].w - p[0].w, p[2].w - p[0].w));
+    const double up = dot(normal, difference.core(normal).w), down = -dot(normal, difference.core(-normal).w);
+    const bool is_up = up != down ? up < down : dot(normal, guess) >= 0;
     r.normal = is_up ? normal : Vec3(-normal);
     r.h = is_up ? up : down;
     return r;
   }
-  r.normal = count == 2 ? perpendicular((p[1].w - p[0].w).normalized(), guess) : guess.normalized();
-  r.h = r.normal.dot(difference.core(r.normal).w);
+  r.normal = count == 2 ? perpendicular(normalized(p[1].w - p[0].w), guess) : normalized(guess);
+  r.h = dot(r.normal, difference.core(r.normal).w);
   return r;
 }
 
@@ -83,11 +83,11 @@ EpaResult flat_depth(const D& difference, const std::array<DifferencePoint, 4>& 
 int independent(const std::same_as<Simplex> auto& s, double size, std::array<DifferencePoint, 4>& p) {
   int count = 0;
   for (int i = 0; i < s.count; ++i) {
-    const Vec3 d = count > 0 ? Vec3(s.p[i].w - p[0].w) : Vec3::Zero();
+    const Vec3 d = count > 0 ? Vec3(s.p[i].w - p[0].w) : zero<Vec3>();
     double height = size;
-    if (count == 1) height = d.norm();
-    if (count == 2) height = d.cross((p[1].w - p[0].w).normalized()).norm();
-    if (count == 3) height = std::abs(d.dot((p[1].w - p[0].w).cross(p[2].w - p[0].w).normalized()));
+    if (count == 1) height = norm(d);
+    if (count == 2) height = norm(cross(d, normalized(p[1].w - p[0].w)));
+    if (count == 3) height = std::abs(dot(d, normalized(cross(p[1].w - p[0].w, p[2].w - p[0].w))));
     if (height > 1e-9 * size) p[count++] = s.p[i];
   }
   return count;
@@ -104,9 +104,9 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
   double size = 0, size_a = 0, size_b = 0;
   for (int k = 0; k < 3; ++k) {
     const DifferencePoint high = difference.core(unit_axis(k)), low = difference.core(-unit_axis(k));
-    size = std::max(size, (high.w - low.w).norm());
-    size_a = std::max(size_a, (high.a - low.a).norm());
-    size_b = std::max(size_b, (high.b - low.b).norm());
+    size = std::max(size, norm(high.w - low.w));
+    size_a = std::max(size_a, norm(high.a - low.a));
+    size_b = std::max(size_b, norm(high.b - low.b));
   }
   std::array<DifferencePoint, 4> corner;
   int count = independent(start, size, corner);
@@ -119,7 +119,7 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
   std::array<DifferencePoint, 3> best_face;
   const auto consider = [&](const std::array<DifferencePoint, 3>& face, const Vec3& normal,
                             const DifferencePoint& q) {
-    const double h = normal.dot(q.w);
+    const double h = dot(normal, q.w);
     if (!(h < best.h)) return;
     best.h = h;
     best.normal = normal;
@@ -134,7 +134,7 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
     if (do_bounds_meet) break;
     const DifferencePoint q = difference.core(face.normal);
     consider(polytope.corners(f), face.normal, q);
-    do_bounds_meet = face.normal.dot(q.w) - face.offset <= tolerance;
+    do_bounds_meet = dot(face.normal, q.w) - face.offset <= tolerance;
     if (!do_bounds_meet && !polytope.extend(q, 1e-14 * size)) polytope.retire(f);
   }
   if (best.h == std::numeric_limits<double>::infinity()) return best;

@@ -39,7 +39,7 @@ inline bool touches(const Triangle& t, const Vec3& x, const TouchRange& range, P
   const double slack = 1e-5 * range.scale + cone_slack * std::max(0.0, height);
   bool is_over = true;
   for (int k = 0; k < 3; ++k) {
-    const double overhang = t.outward(k).dot(x - t.point[k]);
+    const double overhang = dot(t.outward(k), x - t.point[k]);
     is_over = is_over && overhang <= (height < 0 && t.lean[k] == 0 ? 5e-3 * range.scale : slack);
   }
   out = {x - height * t.normal, t.normal, height};
@@ -47,7 +47,7 @@ inline bool touches(const Triangle& t, const Vec3& x, const TouchRange& range, P
   if (height < 0) return false;
   out.foot = inner::nearest_on(t, x);
   const Vec3 apart = x - out.foot;
-  out.gap = apart.norm();
+  out.gap = norm(apart);
   if (!(out.gap <= range.before && out.gap > 0)) return false;
   out.normal = apart / out.gap;
   const inner::Rim rim(t, out.normal);
@@ -69,14 +69,14 @@ struct SharpEdge {
       : from(t.point[k]),
         to(t.point[(k + 1) % 3]),
         normal{t.normal, across},
-        outward{t.outward(k), Vec3((from - to).cross(across) / (from - to).norm())} {}
+        outward{t.outward(k), Vec3(cross(from - to, across) / norm(from - to))} {}
 
   /// Out of the solid, between the two triangles.
   Vec3 away() const { return normal[0] + normal[1] + outward[0] + outward[1]; }
   /// Whether n, normal to the edge, lies between the normals of the two triangles.
   bool allows(const Vec3& n) const {
-    return n.dot(away()) > 0 && n.dot(outward[0]) >= -cone_slack && n.dot(outward[1]) >= -cone_slack &&
-           (!is_zero(normal[1]) || n.dot(normal[0]) >= -1e-6);
+    return dot(n, away()) > 0 && dot(n, outward[0]) >= -cone_slack && dot(n, outward[1]) >= -cone_slack &&
+           (!is_zero(normal[1]) || dot(n, normal[0]) >= -1e-6);
   }
 };
 
@@ -91,19 +91,19 @@ struct EdgeTouch {
 /// Nearest points of lines: [Ericson2005], §5.1.8.
 inline bool touches(const SharpEdge& e, const SharpEdge& f, const TouchRange& range, EdgeTouch& out) {
   const Vec3 u = e.to - e.from, v = f.to - f.from, r = e.from - f.from;
-  const Vec3 across = u.cross(v);
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), size2 = across.squaredNorm();
+  const Vec3 across = cross(u, v);
+  const double uu = squared_norm(u), vv = squared_norm(v), uv = dot(u, v), size2 = squared_norm(across);
   if (!(size2 > cone_slack * cone_slack * uu * vv)) return false;
-  const double ur = u.dot(r), vr = v.dot(r);
+  const double ur = dot(u, r), vr = dot(v, r);
   const double s = (uv * vr - ur * vv) / size2, q = (vr * uu - uv * ur) / size2;
   if (!(s >= 0 && s <= 1 && q >= 0 && q <= 1)) return false;
   const Vec3 a = e.from + s * u, b = f.from + q * v;
   Vec3 n = across / std::sqrt(size2);
-  if (n.dot(e.away()) < 0) n = -n;
+  if (dot(n, e.away()) < 0) n = -n;
   if (!e.allows(n) || !f.allows(-n)) return false;
   for (const Vec3& face : {Vec3(-f.normal[1]), Vec3(-f.normal[0]), e.normal[1], e.normal[0]})
-    if (n.dot(face) > 1 - 0.5 * cone_slack * cone_slack) n = face;
-  const double gap = n.dot(b - a);
+    if (dot(n, face) > 1 - 0.5 * cone_slack * cone_slack) n = face;
+  const double gap = dot(n, b - a);
   if (!(gap <= range.before && gap >= -range.behind)) return false;
   const Vec3 middle = 0.5 * (a + b);
   out = {middle - 0.5 * gap * n, middle + 0.5 * gap * n, n, gap};

@@ -12,7 +12,7 @@ namespace delassus::inner {
 /// A simplex of A − B with the origin's nearest point on it, and the best separating direction seen.
 struct GjkResult {
   Simplex simplex;
-  Vec3 normal = Vec3::Zero();  ///< unit, from A to B
+  Vec3 normal = zero<Vec3>();  ///< unit, from A to B
   double separation = 0;       ///< −h(normal) of the cores: a proven lower bound of their distance, m
   bool is_apart = false;       ///< separation > 0 and clear of rounding
 };
@@ -31,14 +31,14 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
   r.simplex.add(difference.core(direction));
   r.simplex.weight[0] = 1;
   Vec3 v = r.simplex.p[0].w;
-  double size = v.norm(), length = size;
+  double size = norm(v), length = size;
   // A bound that is open by ε of the length lets the normal lean by √2ε; below the rounding of A − B nothing
   // is seen.
   const auto slack = [&](double l) { return std::max(1e-14 * l, 2e-16 * size); };
   const auto prove = [&](const Vec3& n) {
     const DifferencePoint q = difference.core(n);
-    size = std::max(size, q.w.norm());
-    const double separation = -n.dot(q.w);
+    size = std::max(size, norm(q.w));
+    const double separation = -dot(n, q.w);
     if (separation > r.separation) r.separation = separation, r.normal = n;
     r.is_apart = r.separation > 1e-10 * size;
     return q;
@@ -47,9 +47,9 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
   for (int iteration = 0; iteration < 128 && length > 1e-10 * size; ++iteration) {
     const Vec3 n = -v / length;
     const DifferencePoint q = prove(n);
-    if (r.separation > margin || length + n.dot(q.w) <= slack(length)) return r;
+    if (r.separation > margin || length + dot(n, q.w) <= slack(length)) return r;
     for (int i = 0; i < r.simplex.count; ++i)
-      if ((q.w - r.simplex.p[i].w).squaredNorm() <= 1e-28 * size * size) return r;
+      if (squared_norm(q.w - r.simplex.p[i].w) <= 1e-28 * size * size) return r;
     const Simplex before = r.simplex;
     r.simplex.add(q);
     bool is_inside = false;
@@ -58,7 +58,7 @@ GjkResult gjk(const D& difference, Vec3 direction, double margin) {
       r.is_apart = false;
       return r;
     }
-    const double next = v.norm();
+    const double next = norm(v);
     if (next >= length) {
       // As short as can be seen, but not yet as straight: a bound that is open by g across a simplex of the
       // length D shortens v by g² / D² only, which rounding hides.

@@ -27,8 +27,8 @@ struct GjkEpa {
   static SignedPair convex(const A& a, const B& b, const Pose& b_in_a, double margin, Vec3 guess) noexcept {
     const inner::Difference difference{a, b, b_in_a};
     const double radius = difference.radius();
-    if (!(guess.squaredNorm() > 0)) guess = b_in_a.position;
-    if (!(guess.squaredNorm() > 0)) guess = unit_axis(2);
+    if (!(squared_norm(guess) > 0)) guess = b_in_a.position;
+    if (!(squared_norm(guess) > 0)) guess = unit_axis(2);
     const inner::GjkResult apart = inner::gjk(difference, guess, margin + radius);
     const auto answer_apart = [&] {
       const inner::Simplex& s = apart.simplex;

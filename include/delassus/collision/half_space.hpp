@@ -16,7 +16,7 @@ namespace inner {
 
 inline Plane plane_of(const Shape& s, const Pose& pose) {
   const Vec3 n = pose.rotation * Vec3(s.size[0], s.size[1], s.size[2]);
-  return {n, s.size[3] + n.dot(pose.position)};
+  return {n, s.size[3] + dot(n, pose.position)};
 }
 
 }  // namespace inner
@@ -31,7 +31,7 @@ inline SignedPair half_space_patch(const Shape& a, const Shape& b, const Pose& b
   const Pose pose = plane_is_a ? b_in_a : Pose{};
   const Vec3 down = -(pose.rotation.transpose() * plane.normal);
   const auto contact = [&](const Vec3& point, std::uint32_t name) {
-    const double gap = plane.normal.dot(point) - plane.offset;
+    const double gap = dot(plane.normal, point) - plane.offset;
     const Vec3 foot = point - gap * plane.normal;
     return plane_is_a ? PatchPoint{foot, point, gap, name} : PatchPoint{point, foot, gap, name};
   };

@@ -58,13 +58,13 @@ inline bool is_cap(const Shape& s, const Face& face) {
 /// on their axes.
 inline void align_octagons(const Face& cap, const Vec3& origin, Face& other, const Vec3& other_origin) {
   const auto centre = [](const Face& f, const Vec3& on_axis) {
-    return Vec3(on_axis + f.normal * f.normal.dot(f.point[0] - on_axis));
+    return Vec3(on_axis + f.normal * dot(f.normal, f.point[0] - on_axis));
   };
   const Vec3 from = centre(cap, origin), to = centre(other, other_origin);
-  const double radius = (other.point[0] - to).norm();
+  const double radius = norm(other.point[0] - to);
   for (int k = 0; k < cap.count; ++k) {
     const Vec3 spoke = cap.point[k] - from;
-    other.point[k] = to + radius * (spoke - other.normal * other.normal.dot(spoke)).normalized();
+    other.point[k] = to + radius * normalized(spoke - other.normal * dot(other.normal, spoke));
     other.corner[k] = cap.corner[k];
   }
   other.count = cap.count;
@@ -74,10 +74,10 @@ inline void align_octagons(const Face& cap, const Vec3& origin, Face& other, con
 inline void overlap_of_faces(const Face& subject, const Face& clip, const Vec3& n, bool subject_is_a,
                              double margin, double slack, Patch& patch) {
   const FaceClipper clipper(subject, clip, n, subject_is_a, slack);
-  const double slope = clip.normal.dot(n);
+  const double slope = dot(clip.normal, n);
   for (int i = 0; i < clipper.polygon().count; ++i) {
     const ClipCorner& corner = clipper.polygon().corner[i];
-    const double lift = clip.normal.dot(corner.point - clip.point[0]) / slope;
+    const double lift = dot(clip.normal, corner.point - clip.point[0]) / slope;
     const double gap = subject_is_a ? -lift : lift;
     if (gap > margin) continue;
     const Vec3 foot = corner.point - lift * n;
@@ -90,15 +90,15 @@ inline void overlap_of_faces(const Face& subject, const Face& clip, const Vec3& 
 inline void overlap_of_lines(const Face& a, const Face& b, const Vec3& n, double margin, double scale,
                              Patch& patch) {
   const Vec3 u = a.point[1] - a.point[0], v = b.point[1] - b.point[0];
-  const double length = u.norm();
-  if (std::abs(u.cross(v).dot(n)) > line_slope * length * v.norm()) return;
+  const double length = norm(u);
+  if (std::abs(dot(cross(u, v), n)) > line_slope * length * norm(v)) return;
   const Vec3 e = u / length;
-  const double b0 = e.dot(b.point[0] - a.point[0]), b1 = e.dot(b.point[1] - a.point[0]);
+  const double b0 = dot(e, b.point[0] - a.point[0]), b1 = dot(e, b.point[1] - a.point[0]);
   const double low = std::max(0.0, std::min(b0, b1)), high = std::min(length, std::max(b0, b1));
   if (!(high - low > 1e-3 * scale)) return;
   for (const double s : {low, high}) {
     const Vec3 on_a = a.point[0] + s * e, on_b = b.point[0] + v * ((s - b0) / (b1 - b0));
-    const double gap = n.dot(on_b - on_a);
+    const double gap = dot(n, on_b - on_a);
     if (gap > margin) continue;
     const Vec3 middle = 0.5 * (on_a + on_b);
     const bool is_end_of_a = s == 0.0 || s == length;
@@ -114,7 +114,7 @@ inline void drop_twins(double scale, Patch& patch) {
   int kept = 0;
   for (int i = 0; i < patch.count; ++i) {
     int k = 0;
-    while (k < kept && (patch.point[k].a - patch.point[i].a).squaredNorm() >= 1e-6 * scale * scale) ++k;
+    while (k < kept && squared_norm(patch.point[k].a - patch.point[i].a) >= 1e-6 * scale * scale) ++k;
     if (k == kept) patch.point[kept++] = patch.point[i];
   }
   patch.count = kept;
@@ -127,7 +127,7 @@ inline void add_witness(const PatchPoint& witness, double scale, Patch& patch) {
   double deepest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < patch.count; ++i) {
     deepest = std::min(deepest, patch.point[i].gap);
-    if ((patch.point[i].a - witness.a).squaredNorm() < 1e-6 * scale * scale) twin = i;
+    if (squared_norm(patch.point[i].a - witness.a) < 1e-6 * scale * scale) twin = i;
   }
   if (deepest <= witness.gap + 5e-5 * scale) return;
   if (twin >= 0)
@@ -148,15 +148,15 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
   Face face_a = face_towards(a, n);
   Face face_b = inner::posed(face_towards(b, Vec3(-(b_in_a.rotation.transpose() * n))), b_in_a);
   if (face_b.count >= 3) inner::reverse(face_b);
-  const double slope_a = face_a.normal.dot(n), slope_b = -face_b.normal.dot(n), steepest = 0.2;
+  const double slope_a = dot(face_a.normal, n), slope_b = -dot(face_b.normal, n), steepest = 0.2;
   const double slack = 1e-7 * scale;
   if (face_a.count == 2 && face_b.count == 2) {
     inner::overlap_of_lines(face_a, face_b, n, margin, scale, patch);
   } else if (face_a.count >= 2 && face_b.count >= 2 && std::max(slope_a, slope_b) > steepest) {
     const bool clip_is_a = slope_a >= slope_b;
     if (inner::is_cap(a, face_a) && inner::is_cap(b, face_b))
-      clip_is_a ? inner::align_octagons(face_b, b_in_a.position, face_a, Vec3::Zero())
-                : inner::align_octagons(face_a, Vec3::Zero(), face_b, b_in_a.position);
+      clip_is_a ? inner::align_octagons(face_b, b_in_a.position, face_a, zero<Vec3>())
+                : inner::align_octagons(face_a, zero<Vec3>(), face_b, b_in_a.position);
     inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
                             slack, patch);
   }

@@ -28,11 +28,11 @@ void each_surface(const World& world, const WithMeshes<Backend>& meshes, std::ui
 /// The way along the unit direction d to where the ray enters a triangle from outside, m; infinite when it
 /// does not. Source: [MollerTrumbore1997].
 inline double way_to(const Triangle& t, const Vec3& origin, const Vec3& d) {
-  const Vec3 e1 = t.point[1] - t.point[0], e2 = t.point[2] - t.point[0], p = d.cross(e2);
-  const double determinant = e1.dot(p);
+  const Vec3 e1 = t.point[1] - t.point[0], e2 = t.point[2] - t.point[0], p = cross(d, e2);
+  const double determinant = dot(e1, p);
   if (!(determinant > 0)) return forever;
-  const Vec3 s = origin - t.point[0], q = s.cross(e1);
-  const double u = s.dot(p), v = d.dot(q), way = e2.dot(q) / determinant;
+  const Vec3 s = origin - t.point[0], q = cross(s, e1);
+  const double u = dot(s, p), v = dot(d, q), way = dot(e2, q) / determinant;
   return u >= 0 && v >= 0 && u + v <= determinant && way >= 0 ? way : forever;
 }
 
@@ -73,11 +73,11 @@ SurfacePoint closest_point(const World& world, const WithMeshes<Backend>& meshes
   inner::each_surface(
       world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& pose) {
         const Vec3 local = pose.to_local(point);
-        const auto meets = [&](const inner::Bounds& box) { return box.beyond(local).norm() <= limit; };
+        const auto meets = [&](const inner::Bounds& box) { return norm(box.beyond(local)) <= limit; };
         surface.visit(meets, [&](Index t) {
           const Triangle triangle = surface.triangle(t);
           const Vec3 on = inner::nearest_on(triangle, local), apart = local - on;
-          const double distance = apart.norm();
+          const double distance = norm(apart);
           if (!(distance <= limit) || (best && distance == limit)) return;
           limit = distance;
           const Vec3 normal = distance > 0 ? Vec3(apart / distance) : triangle.normal;

@@ -19,7 +19,7 @@ struct RememberedPoint {
 struct PairMemory {
   static constexpr int capacity = 8;
   std::uint64_t pair = 0;
-  Vec3 normal = Vec3::Zero();  ///< world frame
+  Vec3 normal = zero<Vec3>();  ///< world frame
   std::array<RememberedPoint, capacity> point;
   std::uint8_t count = 0;
   inner::NormalOwner owner = inner::NormalOwner::kernel;
@@ -47,8 +47,8 @@ struct Continuation {
                                                          : 4e-4 * scale * scale;
       for (int i = 0; i < patch.count; ++i) {
         if (of[i] >= 0) continue;
-        const double on_a = (patch.point[i].a - last.point[k].local_a).squaredNorm();
-        const double on_b = (b_in_a.to_local(patch.point[i].b) - last.point[k].local_b).squaredNorm();
+        const double on_a = squared_norm(patch.point[i].a - last.point[k].local_a);
+        const double on_b = squared_norm(b_in_a.to_local(patch.point[i].b) - last.point[k].local_b);
         if (std::min(on_a, on_b) < best) best = std::min(on_a, on_b), nearest = i;
       }
       if (nearest >= 0) take(nearest, k, is_taken);

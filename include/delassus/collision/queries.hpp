@@ -5,6 +5,7 @@
 #include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,8 @@ namespace delassus {
 struct SurfacePoint {
   bool is_found = false;
   Anchor anchor{};
-  Vec3 point = Vec3::Zero();   ///< on the surface, world frame, m
-  Vec3 normal = Vec3::Zero();  ///< unit, out of the body
+  Vec3 point = zero<Vec3>();   ///< on the surface, world frame, m
+  Vec3 normal = zero<Vec3>();  ///< unit, out of the body
   double distance = 0;         ///< m: along the ray, or from the point asked for, negative inside
   explicit operator bool() const { return is_found; }
 };
@@ -27,7 +28,7 @@ struct SurfacePoint {
 /// The shortest way between two bodies, or out of each other. World frame, m; b − a = distance · normal.
 struct Separation {
   double distance = 0;
-  Vec3 normal = Vec3::Zero(), point_a = Vec3::Zero(), point_b = Vec3::Zero();
+  Vec3 normal = zero<Vec3>(), point_a = zero<Vec3>(), point_b = zero<Vec3>();
 };
 
 namespace inner {
@@ -38,7 +39,7 @@ inline constexpr double forever = std::numeric_limits<double>::infinity();
 /// `reach`.
 inline SignedPair measure(const Shape& a, const Shape& b, const Pose& b_in_a, double reach) {
   Patch patch;
-  return distance_of(a, b, b_in_a, reach, pair_scale(a, b), Vec3::Zero(), patch);
+  return distance_of(a, b, b_in_a, reach, pair_scale(a, b), zero<Vec3>(), patch);
 }
 
 /// The signed distance of a point from a shape, in its frame: `normal` points from the shape to the point.
@@ -60,7 +61,7 @@ inline bool enter(const Shape& s, const Vec3& origin, const Vec3& direction, dou
     const SignedPair r = measure_point(s, origin + way * direction);
     normal = r.normal;
     if (r.distance <= 1e-10 * (scale + way)) return true;
-    const double approach = -normal.dot(direction);
+    const double approach = -dot(normal, direction);
     if (!(approach > 0)) return false;
     way += r.distance / approach;
     if (!(way <= reach)) return false;
@@ -73,7 +74,7 @@ inline double farthest(const Aabb& box, const Vec3& point) {
   Vec3 far;
   for (int k = 0; k < 3; ++k)
     far[k] = std::max(std::abs(box.min()[k] - point[k]), std::abs(box.max()[k] - point[k]));
-  return far.norm();
+  return norm(far);
 }
 
 /// By this share of the farthest point's distance an answer may stand before the box of its body: a ray ends
@@ -165,7 +166,7 @@ template <class World, std::derived_from<inner::AskedBodies> Bodies, class Kept 
 SurfacePoint ray_cast(const World& world, const Bodies& bodies, const Vec3& origin, const Vec3& direction,
                       double reach = inner::forever, std::uint32_t groups = ~0u, const Kept& kept = {}) {
   const Vec3 along = inner::direction_of(direction);
-  DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && along.squaredNorm() > 0.5,
+  DELASSUS_EXPECT(is_finite(origin) && is_finite(along) && squared_norm(along) > 0.5,
                   "ray_cast: origin and direction must be finite and the direction not zero");
   inner::expect_at_least_zero("ray_cast: reach", reach, "m");
   SurfacePoint first;
@@ -234,7 +235,7 @@ void overlaps(const World& world, const Bodies& bodies, const Shape& shape, cons
   const auto order = [](const SurfacePoint& p, const SurfacePoint& q) {
     return inner::comes_before(p.anchor.set, p.anchor.block, q.anchor);
   };
-  if (!std::is_sorted(found.begin(), found.end(), order)) std::sort(found.begin(), found.end(), order);
+  if (!inner::is_sorted(found.data(), found.data() + found.size(), order)) inner::sort(found, order);
 }
 
 /// The first body that the ray from `origin` along `direction` (any length) meets within `reach` m. A body

@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
@@ -72,7 +73,7 @@ struct Seamless {
       if (colliders[c.a].is_movable) sides_.push_back({c.a, c.b, first, last, p.normal, p.point_b, p.gap});
       if (colliders[c.b].is_movable) sides_.push_back({c.b, c.a, first, last, -p.normal, p.point_a, p.gap});
     }
-    std::sort(sides_.begin(), sides_.end(), [](const Side& x, const Side& y) {
+    inner::sort(sides_, [](const Side& x, const Side& y) {
       return x.body != y.body ? x.body < y.body : x.first < y.first;
     });
     is_seam_.assign(contacts.size(), 0);
@@ -96,7 +97,7 @@ struct Seamless {
   /// Whether `next` is a body beyond a seam of the one lain on. Never both of each other: one of two must bear.
   bool is_seam(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
     constexpr double parallel = 1 - 1e-8, near = 0.866;
-    const double along = lain_on.normal.dot(next.normal);
+    const double along = dot(lain_on.normal, next.normal);
     const bool touches = lain_on.gap <= 0.1 * level, bears = next.gap <= 0 && along > near;
     if (lain_on.first == next.first || !touches || bears || along > parallel) return false;
     return is_level(colliders, lain_on, next) && !is_level(colliders, next, lain_on);
@@ -106,12 +107,12 @@ struct Seamless {
   bool is_level(std::span<const Collider> colliders, const Side& lain_on, const Side& next) const {
     const Collider& c = colliders[next.other];
     const Vec3& n = lain_on.normal;
-    return c.shape.has_volume() && std::abs(-reach(c, -n) - n.dot(lain_on.point)) <= level;
+    return c.shape.has_volume() && std::abs(-reach(c, -n) - dot(n, lain_on.point)) <= level;
   }
   /// max n·x over the body, m.
   static double reach(const Collider& c, const Vec3& n) {
     const Vec3 local = c.pose.rotation.transpose() * n;
-    return n.dot(c.pose.position) + local.dot(support(c.shape, local));
+    return dot(n, c.pose.position) + dot(local, support(c.shape, local));
   }
 
   Array<Side> sides_;

@@ -17,15 +17,15 @@ enum class PairStatus : std::uint8_t { far, near, failed };
 struct SignedPair {
   PairStatus status = PairStatus::failed;
   double distance = 0;                                  ///< < 0 is the depth of penetration
-  Vec3 normal = Vec3::Zero();                           ///< unit, from A to B, also when they overlap
-  Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();  ///< witnesses: b − a = distance · normal
+  Vec3 normal = zero<Vec3>();                           ///< unit, from A to B, also when they overlap
+  Vec3 point_a = zero<Vec3>(), point_b = zero<Vec3>();  ///< witnesses: b − a = distance · normal
 };
 
 namespace inner {
 
 /// Puts the witnesses at these heights along the normal, in the middle of where they were across it.
 inline void put_witnesses(double height_a, double height_b, SignedPair& r) {
-  const Vec3 middle = 0.5 * (r.point_a + r.point_b), across = middle - r.normal * r.normal.dot(middle);
+  const Vec3 middle = 0.5 * (r.point_a + r.point_b), across = middle - r.normal * dot(r.normal, middle);
   r.point_a = across + height_a * r.normal;
   r.point_b = across + height_b * r.normal;
 }
@@ -35,7 +35,7 @@ inline void put_witnesses(double height_a, double height_b, SignedPair& r) {
 /// What the engine remembers of a pair for its kernel: the last normal in the frame of A, zero when there is
 /// none.
 struct PairCache {
-  Vec3 guess = Vec3::Zero();
+  Vec3 guess = zero<Vec3>();
 };
 
 /// A kernel answers for shapes other than half-spaces, with B posed in the frame of A. It need not be right:

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 
@@ -45,14 +46,14 @@ class SweepAndPrune {
     axis_ = axis;
     order_.resize(boxes.size());
     for (Index i = 0; i < Index(boxes.size()); ++i) order_[i] = i;
-    std::sort(order_.begin(), order_.end(),
+    inner::sort(order_,
               [&](Index i, Index j) { return start(boxes, i) < start(boxes, j); });
   }
 
   /// Changes only when another axis spreads twice as much.
   int widest_axis(std::span<const Aabb> boxes) const {
-    Vec3 sum = Vec3::Zero(), low = Vec3::Zero();
-    Vec3 squares = Vec3::Zero();
+    Vec3 sum = zero<Vec3>(), low = zero<Vec3>();
+    Vec3 squares = zero<Vec3>();
     Index count = 0;
     for (const Aabb& box : boxes) {
       if (box.isEmpty()) continue;

@@ -31,9 +31,9 @@ struct Rim {
     std::array<double, 3> reach;
     double farthest = -std::numeric_limits<double>::infinity(), longest = 0;
     for (int k = 0; k < 3; ++k) {
-      reach[k] = n.dot(t.point[k] - t.point[0]);
+      reach[k] = dot(n, t.point[k] - t.point[0]);
       farthest = std::max(farthest, reach[k]);
-      longest = std::max(longest, (t.point[(k + 1) % 3] - t.point[k]).squaredNorm());
+      longest = std::max(longest, squared_norm(t.point[(k + 1) % 3] - t.point[k]));
     }
     const double slack = 1e-6 * std::sqrt(longest);
     for (int k = 0; k < 3; ++k)
@@ -45,11 +45,11 @@ struct Rim {
 /// surface bends away there, and not at all where it is flat or hollow.
 inline bool is_allowed(const Triangle& t, const Rim& rim, const Vec3& n) {
   if (rim.count == 3) return true;
-  if (n.dot(t.normal) < -1e-6) return false;
+  if (dot(n, t.normal) < -1e-6) return false;
   for (int k = 0; k < 3; ++k) {
     const bool from = rim.has[k], to = rim.has[(k + 1) % 3];
     const bool touches = rim.count == 2 ? from && to : from || to;
-    if (touches && n.dot(t.outward(k)) > t.lean[k] + 1e-9) return false;
+    if (touches && dot(n, t.outward(k)) > t.lean[k] + 1e-9) return false;
   }
   return true;
 }
@@ -57,7 +57,7 @@ inline bool is_allowed(const Triangle& t, const Rim& rim, const Vec3& n) {
 /// A sphere's distance is that of its centre from the triangle. Pre: the centre is not behind the triangle.
 inline SignedPair triangle_and_sphere(const Triangle& t, double radius, const Vec3& centre) {
   const Vec3 on = nearest_on(t, centre), apart = centre - on;
-  const double length = apart.norm();
+  const double length = norm(apart);
   SignedPair r{.status = PairStatus::near, .distance = length - radius};
   r.normal = length > 1e-12 * radius ? Vec3(apart / length) : t.normal;
   r.point_a = on;
@@ -67,12 +67,12 @@ inline SignedPair triangle_and_sphere(const Triangle& t, double radius, const Ve
 
 /// Replaces the distance by what the normal proves, as heights along it.
 inline bool prove(const Triangle& t, const Shape& s, const Pose& pose, SignedPair& r) {
-  if (r.status != PairStatus::near || !is_finite(r.normal) || !(std::abs(r.normal.squaredNorm() - 1) < 1e-9))
+  if (r.status != PairStatus::near || !is_finite(r.normal) || !(std::abs(squared_norm(r.normal) - 1) < 1e-9))
     return false;
   const Vec3 on_a = core_support(t, r.normal);
   const Vec3 on_b = pose.to_world(support(s, Vec3(-(pose.rotation.transpose() * r.normal))));
-  r.distance = r.normal.dot(on_b - on_a);
-  put_witnesses(r.normal.dot(on_a), r.normal.dot(on_b), r);
+  r.distance = dot(r.normal, on_b - on_a);
+  put_witnesses(dot(r.normal, on_a), dot(r.normal, on_b), r);
   return is_finite(r.point_a) && is_finite(r.point_b);
 }
 
@@ -123,7 +123,7 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
     const bool is_proven = inner::prove(t, s, pose, shortest);
     is_doubtful = !is_proven || !inner::is_allowed(t, inner::Rim(t, shortest.normal), shortest.normal);
     is_flat =
-        is_doubtful || (shortest.normal.dot(t.normal) > 0.9998 && height >= shortest.distance - 1e-5 * scale);
+        is_doubtful || (dot(shortest.normal, t.normal) > 0.9998 && height >= shortest.distance - 1e-5 * scale);
     if (!is_flat) r = shortest;
   }
   if (r.distance > margin) return PatchTrust::none;
@@ -139,7 +139,7 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
     const Face rim = inner::face_of(t, inner::Rim(t, n));
     if (rim.count == 2 && face.count == 2)
       inner::overlap_of_lines(rim, face, n, margin, scale, patch);
-    else if (rim.count == 2 && face.count >= 3 && -face.normal.dot(n) > 0.2)
+    else if (rim.count == 2 && face.count >= 3 && -dot(face.normal, n) > 0.2)
       inner::overlap_of_faces(rim, face, n, true, margin, slack, patch);
   }
   inner::drop_twins(scale, patch);

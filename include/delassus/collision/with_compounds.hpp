@@ -6,9 +6,9 @@
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/compound.hpp>
 
-#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -97,7 +97,7 @@ struct WithCompounds {
 
   std::uint32_t body_key(std::uint32_t key) const {
     if (key < part_key) return key;
-    const auto at = std::lower_bound(by_key_.begin(), by_key_.end(), key,
+    const auto at = inner::lower_bound(by_key_.data(), by_key_.data() + by_key_.size(), key,
                                      [](const Owner& o, std::uint32_t k) { return o.key < k; });
     return at->body_key;
   }
@@ -133,11 +133,11 @@ struct WithCompounds {
       }
     }
     by_key_ = owners_;
-    std::sort(by_key_.begin(), by_key_.end(), [](const Owner& a, const Owner& b) { return a.key < b.key; });
+    inner::sort(by_key_, [](const Owner& a, const Owner& b) { return a.key < b.key; });
   }
 
   std::uint32_t first_name(std::uint32_t body, Index compound) {
-    auto at = std::lower_bound(names_.begin(), names_.end(), body,
+    auto at = inner::lower_bound(names_.data(), names_.data() + names_.size(), body,
                                [](const Names& n, std::uint32_t key) { return n.body < key; });
     if (at == names_.end() || at->body != body) at = names_.insert(at, {body, -1, 0});
     if (at->compound != compound) {

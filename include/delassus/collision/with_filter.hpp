@@ -6,6 +6,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/rows/anchor.hpp>
 
 #include <algorithm>
@@ -61,7 +62,7 @@ struct WithFilter {
       each_joint([&](const Anchor& a, const Anchor& b) {
         if (!a.is_world() && !b.is_world()) pairs_.push_back(key(a, b));
       });
-    std::sort(pairs_.begin(), pairs_.end());
+    inner::sort(pairs_);
   }
 
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
@@ -75,7 +76,7 @@ struct WithFilter {
     }
   }
 
-  bool lets(std::uint64_t pair) const { return !std::binary_search(pairs_.begin(), pairs_.end(), pair); }
+  bool lets(std::uint64_t pair) const { return !inner::is_listed(pairs_, pair); }
 
   void memory(auto& archive) {
     archive(named_);

@@ -5,6 +5,7 @@
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/height_field.hpp>
 #include <delassus/geometry/triangle_mesh.hpp>
 
@@ -119,7 +120,7 @@ struct WithMeshes {
         if (is_near(mesh, other) && filter.lets(pair)) jobs_.push_back({pair, m, i});
       }
     }
-    std::sort(jobs_.begin(), jobs_.end());
+    inner::sort(jobs_);
   }
 
   const Kind& kind_of(const Shape& shape) const {
@@ -156,7 +157,7 @@ struct WithMeshes {
     const double own = outer_radius(other.shape),
                  margin = std::max(settings.margin, own) + settings.contact_distance,
                  reach = outer_radius(mesh.shape) + own + margin;
-    return (mesh.pose.position - other.pose.position).squaredNorm() <= reach * reach;
+    return squared_norm(mesh.pose.position - other.pose.position) <= reach * reach;
   }
 
   std::vector<TriangleMesh> meshes_;

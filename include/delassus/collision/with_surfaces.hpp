@@ -6,6 +6,7 @@
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <span>
@@ -70,7 +71,7 @@ struct WithSurfaces {
         if (is_present(j) && (i != j || self_contact)) report.queries += pairing.soft(i, j);
     }
     if (!ends_.empty()) inner::sort_by_name(contacts);
-    std::sort(ends_.begin(), ends_.end());
+    inner::sort(ends_);
     report.points = Index(contacts.size());
     return report;
   }
@@ -131,7 +132,7 @@ struct WithSurfaces {
   }
 
   Index owner_of(std::uint32_t key) const {
-    const auto at = std::lower_bound(owners_.begin(), owners_.end(), key,
+    const auto at = inner::lower_bound(owners_.data(), owners_.data() + owners_.size(), key,
                                      [](const Owner& o, std::uint32_t k) { return o.key < k; });
     return at != owners_.end() && at->key == key ? at->surface : Index(-1);
   }
@@ -141,7 +142,7 @@ struct WithSurfaces {
     owners_.clear();
     for (Index i = 0; i < Index(surfaces_.size()); ++i)
       for (const Index b : surfaces_[i].blocks()) owners_.push_back({collider_key(surfaces_[i].set(), b), i});
-    std::sort(owners_.begin(), owners_.end(), [](const Owner& x, const Owner& y) { return x.key < y.key; });
+    inner::sort(owners_, [](const Owner& x, const Owner& y) { return x.key < y.key; });
     place_.assign(surfaces_.size(), -1);
     is_node_.assign(colliders.size(), 0);
     for (Index c = 0; c < Index(colliders.size()); ++c) {
@@ -233,19 +234,19 @@ struct WithSurfaces<Backend>::Pairing {
     for (const inner::FeatureContact& c : all.pairs_.found) {
       if (c.point.gap < 0 && is_other_side(s, o, c.point.name)) continue;
       const Vec3 &n = c.normal, x = s.shares(c.triangle_a, c.point.a),
-                 y = o ? o->shares(c.triangle_b, c.point.b) : Vec3(Vec3::Zero());
+                 y = o ? o->shares(c.triangle_b, c.point.b) : Vec3(zero<Vec3>());
       double of_a = s.radius(), of_b = o ? o->radius() : 0;
       if (o == &s) {
         // No thicker than what was apart at rest; and what seems passed by as much is the body between its
         // sides.
-        const double rest = (s.rest_point(c.triangle_a, x) - s.rest_point(c.triangle_b, y)).norm();
+        const double rest = norm(s.rest_point(c.triangle_a, x) - s.rest_point(c.triangle_b, y));
         if (c.point.gap < -0.1 * rest) continue;
         of_a = of_b = std::min(of_a, 0.5 * rest);
       }
       const Vec3 va = s.velocity(c.triangle_a, x),
                  vb = o ? o->velocity(c.triangle_b, y) : b.velocity_at(c.point.b);
       const double gap = c.point.gap - of_a - of_b - settings.contact_distance;
-      if (!(gap <= inner::widest_margin(std::abs(n.dot(vb - va)), scale, h, settings))) continue;
+      if (!(gap <= inner::widest_margin(std::abs(dot(n, vb - va)), scale, h, settings))) continue;
       if (!s.moves(c.triangle_a, x) && !(o ? o->moves(c.triangle_b, y) : b.is_movable)) continue;
       if (!lets(s, c.triangle_a, x, b.key) || (o && !lets(*o, c.triangle_b, y, a.key))) continue;
       const Vec3 shift = 0.5 * settings.contact_distance * n;

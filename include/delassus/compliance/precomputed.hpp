@@ -6,8 +6,8 @@
 #include <delassus/compliance/inner/rotated_operator.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/sort.hpp>
 
-#include <algorithm>
 #include <string>
 
 namespace delassus {
@@ -33,8 +33,8 @@ class FactorAtRest {
     if (has_file && read_compliance(path, keys, inverse)) return;
     Array<Index> nodes;
     for (const auto& triangle : surface(body.mesh())) nodes.append(triangle.begin(), triangle.end());
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    inner::sort(nodes);
+    inner::drop_repeats(nodes);
     inverse.know(nodes, false);
     if (has_file) write_compliance(path, keys, inverse);
   }

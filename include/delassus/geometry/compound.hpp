@@ -15,7 +15,7 @@ namespace delassus {
 /// A shape, where it stands in the compound (m) and what it is made of (kg/m³).
 struct CompoundPart {
   Shape shape{};
-  Vec3 position = Vec3::Zero();
+  Vec3 position = zero<Vec3>();
   Quat orientation = Quat::Identity();
   double density = 1000;
 };
@@ -40,7 +40,7 @@ class Compound {
       const Vec3 d = m.centre - centre_;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-          inertia_(i, j) += m.inertia(i, j) + m.mass * ((i == j ? d.squaredNorm() : 0.0) - d[i] * d[j]);
+          inertia_(i, j) += m.inertia(i, j) + m.mass * ((i == j ? squared_norm(d) : 0.0) - d[i] * d[j]);
     }
     for (Pose& pose : poses_) pose.position -= centre_;
   }
@@ -59,7 +59,7 @@ class Compound {
   const Mat3& inertia() const { return inertia_; }  ///< about it, kg·m²
   /// Half edges of a box around the centre that holds all parts, m.
   Vec3 reach() const {
-    Vec3 reach = Vec3::Zero();
+    Vec3 reach = zero<Vec3>();
     for (Index i = 0; i < part_count(); ++i) {
       const Aabb box = tight_box(shape(i), poses_[i]);
       for (int k = 0; k < 3; ++k)
@@ -77,8 +77,8 @@ class Compound {
     DELASSUS_EXPECT(part.shape.has_volume(),
                     who + ": a " + name(part.shape.kind) + " has no volume; give a convex shape");
     inner::expect_positive(who + ": density", part.density);
-    const double norm = part.orientation.coeffs().norm();
-    DELASSUS_EXPECT(is_finite(part.position) && std::isfinite(norm) && norm > 1e-12,
+    const double length = norm(part.orientation.coeffs());
+    DELASSUS_EXPECT(is_finite(part.position) && std::isfinite(length) && length > 1e-12,
                     who + ": its pose is not finite");
     const Pose pose{part.position, Quat(part.orientation.normalized()).toRotationMatrix()};
     MassProperties m = mass_properties(part.shape, part.density);
@@ -97,8 +97,8 @@ class Compound {
   std::vector<Index> hull_of_;
   std::vector<ConvexHull> hulls_;
   double mass_ = 0;
-  Vec3 centre_ = Vec3::Zero();
-  Mat3 inertia_ = Mat3::Zero();
+  Vec3 centre_ = zero<Vec3>();
+  Mat3 inertia_ = zero<Mat3>();
 };
 
 }  // namespace delassus

@@ -73,7 +73,7 @@ class BasicConvexHull {
   BasicConvexHull centred() const {
     BasicConvexHull moved = *this;
     for (Vector& v : moved.vertices_) v -= centroid_;
-    moved.centroid_.setZero();
+    set_zero(moved.centroid_);
     moved.find_fingerprint();
     moved.put_in_blocks();
     return moved;
@@ -111,8 +111,8 @@ class BasicConvexHull {
   Array<Scalar> blocks_;
   Array<Index> face_start_, face_loop_, around_start_, around_;
   Scalar volume_ = 0, inner_radius_ = 0, outer_radius_ = 0;
-  Vector centroid_ = Vector::Zero();
-  Matrix second_moment_ = Matrix::Zero();
+  Vector centroid_ = zero<Vector>();
+  Matrix second_moment_ = zero<Matrix>();
   std::uint64_t fingerprint_ = 0;
 };
 
@@ -156,16 +156,16 @@ void BasicConvexHull<Scalar>::find_neighbours() {
 /// = x − m.
 template <class Scalar>
 void BasicConvexHull<Scalar>::find_moments() {
-  Vector mean = Vector::Zero(), first = Vector::Zero();
+  Vector mean = zero<Vector>(), first = zero<Vector>();
   for (const Vector& v : vertices_) mean += v / Scalar(vertices_.size());
-  Matrix second = Matrix::Zero();
+  Matrix second = zero<Matrix>();
   for (Index f = 0; f < face_count(); ++f) {
     const std::span<const Index> loop = face(f);
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
       const Vector a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean,
                  c = vertices_[loop[k + 1]] - mean;
       const Vector s = a + b + c;
-      const Scalar volume = a.dot(b.cross(c)) / 6;
+      const Scalar volume = dot(a, cross(b, c)) / 6;
       volume_ += volume;
       first += volume / 4 * s;
       for (int i = 0; i < 3; ++i)
@@ -177,10 +177,10 @@ void BasicConvexHull<Scalar>::find_moments() {
   centroid_ = mean + shift;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) second_moment_(i, j) = second(i, j) - volume_ * shift[i] * shift[j];
-  for (const Vector& v : vertices_) outer_radius_ = std::max(outer_radius_, (v - centroid_).norm());
+  for (const Vector& v : vertices_) outer_radius_ = std::max(outer_radius_, norm(v - centroid_));
   inner_radius_ = outer_radius_;
   for (Index f = 0; f < face_count(); ++f)
-    inner_radius_ = std::min(inner_radius_, normals_[f].dot(vertices_[face(f)[0]] - centroid_));
+    inner_radius_ = std::min(inner_radius_, dot(normals_[f], vertices_[face(f)[0]] - centroid_));
 }
 
 }  // namespace delassus

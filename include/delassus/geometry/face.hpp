@@ -17,7 +17,7 @@ struct Face {
   std::array<Vec3, capacity> point;
   std::array<std::uint16_t, capacity> corner;
   int count = 0;
-  Vec3 normal = Vec3::Zero();  ///< outward and unit when count ≥ 3, else zero
+  Vec3 normal = zero<Vec3>();  ///< outward and unit when count ≥ 3, else zero
 
   void add(const Vec3& p, int name) {
     point[count] = p;
@@ -110,7 +110,7 @@ inline void cone_face(const Shape& s, const Vec3& d, Face& face) {
 inline void hull_face(const ConvexHull& h, const Vec3& d, Face& face) {
   Index best = -1;
   for (const Index f : h.faces_around(support_vertex(h, d)))
-    if (best < 0 || h.normal(f).dot(d) > h.normal(best).dot(d)) best = f;
+    if (best < 0 || dot(h.normal(f), d) > dot(h.normal(best), d)) best = f;
   if (best < 0) return;
   const std::span<const Index> loop = h.face(best);
   const std::size_t count = std::min(loop.size(), std::size_t(Face::capacity));

@@ -34,7 +34,7 @@ class HeightField {
       DELASSUS_EXPECT(std::isfinite(heights[i]),
                       "height field: height #" + std::to_string(i) + " is not finite");
     for (Index t = 0; t < triangle_count(); ++t)
-      DELASSUS_EXPECT(normal(t).squaredNorm() > 0.5, "height field: triangle #" + std::to_string(t) +
+      DELASSUS_EXPECT(squared_norm(normal(t)) > 0.5, "height field: triangle #" + std::to_string(t) +
                                                             " is flatter than 1e-6 of its longest edge");
     tree_.build(cell_count(), [&](Index c) { return cell_bounds(c); });
   }

@@ -56,7 +56,7 @@ inline Vec3 trilinear_slope(int a, const Vec3& xi) {
 inline Mat3 jacobian(const EightPoints& x, const Vec3& xi) {
   return jacobian_of(x, [&](int a) { return trilinear_slope(a, xi); });
 }
-inline double determinant(const Mat3& A) { return Vec3(A.col(0)).dot(Vec3(A.col(1)).cross(Vec3(A.col(2)))); }
+inline double determinant(const Mat3& A) { return dot(Vec3(A.col(0)), cross(Vec3(A.col(1)), Vec3(A.col(2)))); }
 /// Gauss's point g of the 2 × 2 × 2 rule, all of weight 1: exact up to the third power of each ξ.
 inline Vec3 gauss_point(int g) {
   const double at = 1 / std::sqrt(3.0);

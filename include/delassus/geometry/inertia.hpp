@@ -13,8 +13,8 @@ namespace delassus {
 /// kg · body frame, m · kg·m² about the centre, axes of the body frame.
 struct MassProperties {
   double mass = 0;
-  Vec3 centre = Vec3::Zero();
-  Mat3 inertia = Mat3::Zero();
+  Vec3 centre = zero<Vec3>();
+  Mat3 inertia = zero<Mat3>();
 };
 
 namespace inner {

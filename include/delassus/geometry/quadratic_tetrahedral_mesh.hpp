@@ -1,6 +1,7 @@
 /// Meshes of tetrahedra with a node on each edge: shape functions, checks, volumes, the outer surface.
 #pragma once
 
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/hexahedral_mesh.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 
@@ -141,7 +142,7 @@ inline void check_mesh(const QuadraticTetrahedralMesh& mesh, const std::string& 
                                               " m³ somewhere; move the nodes of its edges to their middles");
   }
   inner::check_sides(straight, inner::tetrahedron_face, who, "tetrahedra");
-  std::sort(edges.begin(), edges.end());
+  inner::sort(edges);
   for (std::size_t k = 1; k < edges.size(); ++k)
     DELASSUS_EXPECT(
         edges[k][0] != edges[k - 1][0] || edges[k][1] != edges[k - 1][1] || edges[k][2] == edges[k - 1][2],
@@ -172,8 +173,8 @@ inline QuadraticTetrahedralMesh quadratic(const TetrahedralMesh& mesh) {
   };
   for (const auto& t : mesh.tetrahedra)
     for (int k = 0; k < 6; ++k) edges.push_back(edge(t, k));
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  inner::sort(edges);
+  inner::drop_repeats(edges);
   QuadraticTetrahedralMesh out{mesh.points, {}};
   for (const auto& [a, b] : edges) out.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
   for (const auto& t : mesh.tetrahedra) {
@@ -181,7 +182,7 @@ inline QuadraticTetrahedralMesh quadratic(const TetrahedralMesh& mesh) {
     std::copy(t.begin(), t.end(), ten.begin());
     for (int k = 0; k < 6; ++k)
       ten[4 + k] = Index(mesh.points.size()) +
-                   Index(std::lower_bound(edges.begin(), edges.end(), edge(t, k)) - edges.begin());
+                   Index(inner::lower_bound(edges.data(), edges.data() + edges.size(), edge(t, k)) - edges.data());
   }
   return out;
 }

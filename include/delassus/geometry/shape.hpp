@@ -21,7 +21,7 @@ inline Vec3 direction_of(const Vec3& n) {
   const double size = std::abs(n[largest_entry(n)]);
   if (!(size > 0)) return n;
   const Vec3 scaled = n / size;
-  return scaled / scaled.norm();
+  return scaled / norm(scaled);
 }
 
 }  // namespace inner
@@ -84,7 +84,7 @@ enum class ShapeKind : std::uint8_t {
 struct KeptShape {
   ShapeKind kind = ShapeKind::mesh;
   int number = 0;
-  Vec3 reach = Vec3::Zero();
+  Vec3 reach = zero<Vec3>();
 };
 
 /// Any of the shapes above, or none. Trivially copyable. `size` holds half lengths:
@@ -143,7 +143,7 @@ inline void check(const Shape& s, const std::string& where) {
   }
   if (s.kind == half_space) {
     const Vec3 n(s.size[0], s.size[1], s.size[2]);
-    DELASSUS_EXPECT(is_finite(n) && n.squaredNorm() > 0.5,
+    DELASSUS_EXPECT(is_finite(n) && squared_norm(n) > 0.5,
                     where + ": half-space normal is zero or not finite; it must point out of the solid");
     DELASSUS_EXPECT(std::isfinite(s.size[3]),
                     where + ": half-space offset " + inner::text(s.size[3]) + " m is not finite");

@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/inner/check_cells.hpp>
 #include <delassus/geometry/inner/surface_topology.hpp>
 #include <delassus/geometry/outer_face.hpp>
@@ -36,7 +37,7 @@ struct SheetMesh {
 inline double area(const SheetMesh& mesh, Index e) {
   const auto& t = mesh.triangles[e];
   const Vec3& o = mesh.points[t[0]];
-  return 0.5 * (mesh.points[t[1]] - o).cross(mesh.points[t[2]] - o).norm();
+  return 0.5 * norm(cross(mesh.points[t[1]] - o, mesh.points[t[2]] - o));
 }
 /// Of triangle e, m³.
 inline double volume(const SheetMesh& mesh, Index e) { return mesh.thickness * area(mesh, e); }
@@ -56,9 +57,9 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
   std::vector<std::array<Index, 4>> sorted;  // the points of a triangle in order, and its number
   for (const auto& t : mesh.triangles) {
     sorted.push_back({t[0], t[1], t[2], Index(sorted.size())});
-    std::sort(sorted.back().begin(), sorted.back().end() - 1);
+    inner::sort(sorted.back().data(), sorted.back().data() + sorted.back().size() - 1);
   }
-  std::sort(sorted.begin(), sorted.end());
+  inner::sort(sorted);
   for (std::size_t k = 1; k < sorted.size(); ++k) {
     const auto &a = sorted[k - 1], &b = sorted[k];
     DELASSUS_EXPECT(!std::equal(a.begin(), a.end() - 1, b.begin()),
@@ -76,7 +77,7 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
 }
 
 /// Where corner k is in the coordinates by which an element weighs its corners.
-inline Vec3 place_of_corner(const SheetMesh&, int k) { return k > 0 ? unit_axis(k - 1) : Vec3(Vec3::Zero()); }
+inline Vec3 place_of_corner(const SheetMesh&, int k) { return k > 0 ? unit_axis(k - 1) : Vec3(zero<Vec3>()); }
 
 inline const std::vector<std::array<Index, 3>>& surface(const SheetMesh& mesh) { return mesh.triangles; }
 /// Both sides: all triangles as they are, then all of them from behind.

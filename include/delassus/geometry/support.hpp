@@ -66,7 +66,7 @@ inline Vec3 cone_support(double radius, double half, const Vec3& d) {
 /// D² d / |D d| with the semi-axes D: where the tangent plane is normal to d.
 inline Vec3 ellipsoid_support(const Vec3& axes, const Vec3& d) {
   Vec3 stretched(axes[0] * d[0], axes[1] * d[1], axes[2] * d[2]);
-  const double length = stretched.norm();
+  const double length = norm(stretched);
   if (!(length > 0)) return {0, 0, axes[2]};
   for (int k = 0; k < 3; ++k) stretched[k] *= axes[k] / length;
   return stretched;
@@ -75,9 +75,9 @@ inline Vec3 ellipsoid_support(const Vec3& axes, const Vec3& d) {
 inline Index support_vertex(const ConvexHull& h, const Vec3& d) {
   const std::span<const Vec3> vertices = h.vertices();
   Index best = 0;
-  double reach = vertices[0].dot(d);
+  double reach = dot(vertices[0], d);
   for (Index i = 1; i < Index(vertices.size()); ++i) {
-    const double r = vertices[i].dot(d);
+    const double r = dot(vertices[i], d);
     if (r > reach) reach = r, best = i;
   }
   return best;
@@ -104,7 +104,7 @@ inline Vec3 core_support(const Shape& s, const Vec3& d) {
     case ShapeKind::convex_hull:
       return s.hull->vertices()[inner::support_vertex(*s.hull, d)];
     default:
-      return Vec3::Zero();
+      return zero<Vec3>();
   }
 }
 
@@ -134,7 +134,7 @@ inline double outer_radius(const Shape& s) {
     case ShapeKind::ellipsoid:
       return std::max({s.size[0], s.size[1], s.size[2]});
     case ShapeKind::convex_hull:
-      return s.hull->centroid().norm() + s.hull->outer_radius();
+      return norm(s.hull->centroid()) + s.hull->outer_radius();
     default:
       return 0;
   }
@@ -157,7 +157,7 @@ inline double length_scale(const Shape& s) {
 
 /// A point well inside the shape, body frame.
 inline Vec3 middle(const Shape& s) {
-  return s.kind == ShapeKind::convex_hull ? s.hull->centroid() : Vec3::Zero();
+  return s.kind == ShapeKind::convex_hull ? s.hull->centroid() : zero<Vec3>();
 }
 
 namespace inner {
@@ -182,7 +182,7 @@ Vec3 half_widths(const std::same_as<Shape> auto& s, const Mat3& R) {
       return along([&](int k) { return std::abs(R(k, 2)) * s.size[1] + across(R, k) * s.size[0]; });
     case ShapeKind::ellipsoid:
       return along(
-          [&](int k) { return Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]).norm(); });
+          [&](int k) { return norm(Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2])); });
     default:
       return Vec3::Constant(std::numeric_limits<double>::infinity());
   }

@@ -33,7 +33,7 @@ inline double volume(const TetrahedralMesh& mesh, Index e) {
   const auto& t = mesh.tetrahedra[e];
   const Vec3 &o = mesh.points[t[0]], a = mesh.points[t[1]] - o, b = mesh.points[t[2]] - o,
              c = mesh.points[t[3]] - o;
-  return a.dot(b.cross(c)) / 6;
+  return dot(a, cross(b, c)) / 6;
 }
 
 namespace inner {
@@ -70,7 +70,7 @@ inline TetrahedralMesh oriented(TetrahedralMesh mesh) {
 /// Where corner k is in the coordinates by which an element weighs its corners: their shares but for the
 /// first one's.
 inline Vec3 place_of_corner(const TetrahedralMesh&, int k) {
-  return k > 0 ? unit_axis(k - 1) : Vec3(Vec3::Zero());
+  return k > 0 ? unit_axis(k - 1) : Vec3(zero<Vec3>());
 }
 
 /// The triangles that belong to one tetrahedron only, in the order of the tetrahedra.

@@ -13,7 +13,7 @@ namespace delassus {
 struct Triangle {
   std::array<Vec3, 3> point;
   std::array<Index, 3> corner{};  ///< names of the points, the same in every triangle they belong to
-  Vec3 normal = Vec3::Zero();     ///< unit, outward
+  Vec3 normal = zero<Vec3>();     ///< unit, outward
   /// Sine of the angle up to which a contact normal at edge k may lean outward over it: 0 where the neighbour
   /// lies in the same plane or rises, 1 at a border and where the surface bends by a right angle or more.
   std::array<double, 3> lean{1, 1, 1};
@@ -21,18 +21,18 @@ struct Triangle {
   /// Unit, in the plane, out of the triangle across edge k.
   Vec3 outward(int k) const {
     const Vec3 edge = point[(k + 1) % 3] - point[k];
-    const Vec3 out = edge.cross(normal);
-    return out / out.norm();
+    const Vec3 out = cross(edge, normal);
+    return out / norm(out);
   }
-  double height(const Vec3& x) const { return normal.dot(x - point[0]); }
+  double height(const Vec3& x) const { return dot(normal, x - point[0]); }
 };
 
 /// A triangle is its own core.
 inline Vec3 core_support(const Triangle& t, const Vec3& d) {
   int best = 0;
-  double reach = t.point[0].dot(d);
+  double reach = dot(t.point[0], d);
   for (int k = 1; k < 3; ++k) {
-    const double r = t.point[k].dot(d);
+    const double r = dot(t.point[k], d);
     if (r > reach) reach = r, best = k;
   }
   return t.point[best];
@@ -48,17 +48,17 @@ inline Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   int apex = 0;
   double longest = 0;
   for (int k = 0; k < 3; ++k) {
-    const double length2 = (corner[(k + 2) % 3] - corner[(k + 1) % 3]).squaredNorm();
+    const double length2 = squared_norm(corner[(k + 2) % 3] - corner[(k + 1) % 3]);
     if (length2 > longest) longest = length2, apex = k;
   }
-  const Vec3 area2 = (corner[(apex + 1) % 3] - corner[apex]).cross(corner[(apex + 2) % 3] - corner[apex]);
-  const double size = area2.norm();
-  return size > 1e-6 * longest ? Vec3(area2 / size) : Vec3(Vec3::Zero());
+  const Vec3 area2 = cross(corner[(apex + 1) % 3] - corner[apex], corner[(apex + 2) % 3] - corner[apex]);
+  const double size = norm(area2);
+  return size > 1e-6 * longest ? Vec3(area2 / size) : Vec3(zero<Vec3>());
 }
 
 /// How far normals may lean over the edge towards a neighbour with this normal: `Triangle::lean`.
 inline double lean_towards(const Vec3& normal, const Vec3& neighbour, const Vec3& outward) {
-  const double bend = neighbour.dot(outward), along = neighbour.dot(normal);
+  const double bend = dot(neighbour, outward), along = dot(neighbour, normal);
   if (along < -0.9999) return 1;
   if (!(bend > 0)) return 0;
   return along > 0 ? bend : 1;
@@ -77,8 +77,8 @@ void find_leans(const Surface& surface, Index t, Triangle& out) {
 inline Vec3 nearest_on(const Triangle& t, const Vec3& p) {
   const Vec3 &a = t.point[0], &b = t.point[1], &c = t.point[2];
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
   if (d1 <= 0 && d2 <= 0) return a;
   if (d3 >= 0 && d4 <= d3) return b;
   const double vc = d1 * d4 - d3 * d2;
@@ -94,7 +94,7 @@ inline Vec3 nearest_on(const Triangle& t, const Vec3& p) {
 /// True when p, seen along the normal, lies over the triangle or within `slack` m of it.
 inline bool is_over(const Triangle& t, const Vec3& p, double slack) {
   for (int k = 0; k < 3; ++k)
-    if (t.outward(k).dot(p - t.point[k]) > slack) return false;
+    if (dot(t.outward(k), p - t.point[k]) > slack) return false;
   return true;
 }
 

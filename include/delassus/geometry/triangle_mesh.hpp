@@ -33,7 +33,7 @@ class TriangleMesh : public inner::TriangleSurface {
     for (Index t = 0; t < triangle_count(); ++t) {
       const auto [a, b, c] = points_of(t);
       normals_.push_back(inner::triangle_normal(a, b, c));
-      DELASSUS_EXPECT(normals_[t].squaredNorm() > 0.5,
+      DELASSUS_EXPECT(squared_norm(normals_[t]) > 0.5,
                       "mesh triangle #" + std::to_string(t) +
                           " is flat (height <= 1e-6 of its longest edge); drop it or join its vertices");
     }

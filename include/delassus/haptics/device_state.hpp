@@ -11,13 +11,13 @@ namespace delassus {
 /// Pose and velocity of the part of a device that the hand holds, world axes, m and m/s, rad/s. A device that cannot
 /// measure velocity may leave it zero: the damping of the coupling then acts on the tool alone.
 struct DeviceState {
-  Vec3 position = Vec3::Zero();
+  Vec3 position = zero<Vec3>();
   Quat orientation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 angular_velocity = Vec3::Zero();
+  Vec3 velocity = zero<Vec3>();
+  Vec3 angular_velocity = zero<Vec3>();
 
   bool is_finite() const {
-    const double square = orientation.squaredNorm();
+    const double square = squared_norm(orientation.coeffs());
     return delassus::is_finite(position) && delassus::is_finite(velocity) && delassus::is_finite(angular_velocity) &&
            square > 0.25 && square < 4;
   }
@@ -25,8 +25,8 @@ struct DeviceState {
 
 /// What the device shall exert on the hand, N and N·m, world axes, and how it came about.
 struct HapticForce {
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
+  Vec3 force = zero<Vec3>();
+  Vec3 torque = zero<Vec3>();
   SolveReport solve{};
   std::uint64_t sequence = 0;  ///< of the snapshot it was computed from; 0: none yet
   double snapshot_time = 0;    ///< s, simulated, at the start of the snapshot's step

@@ -34,8 +34,8 @@ struct ForceOutput {
   template <class T>
   Vec<3, T> operator()(const std::type_identity_t<Vec<3, T>>& wanted, double limit, Vec<3, T>& filtered) const {
     using Vector = Vec<3, T>;
-    filtered = is_finite(wanted) ? Vector(filtered + share() * (wanted - filtered)) : Vector(Vector::Zero());
-    const T size = filtered.norm();
+    filtered = is_finite(wanted) ? Vector(filtered + share() * (wanted - filtered)) : Vector(zero<Vector>());
+    const T size = norm(filtered);
     return size > limit ? Vector(limit / size * filtered) : filtered;
   }
 };

@@ -167,7 +167,7 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
   TripleBuffer<DeviceState> devices_;  // device → loop
   ConstraintHandle<VirtualCoupling> coupling_{};
   std::uint64_t sequence_ = 0;
-  Vec3 filtered_force_ = Vec3::Zero(), filtered_torque_ = Vec3::Zero();
+  Vec3 filtered_force_ = zero<Vec3>(), filtered_torque_ = zero<Vec3>();
 };
 
 template <class Solver, Clock C>

@@ -14,8 +14,8 @@ namespace delassus {
 class PassivityObserver {
  public:
   /// `force` was displayed while the device moved by `moved` (m), and `torque` while it turned by `turned` (rad).
-  void add(const Vec3& force, const Vec3& moved, const Vec3& torque = Vec3::Zero(), const Vec3& turned = Vec3::Zero()) {
-    energy_ -= force.dot(moved) + torque.dot(turned);
+  void add(const Vec3& force, const Vec3& moved, const Vec3& torque = zero<Vec3>(), const Vec3& turned = zero<Vec3>()) {
+    energy_ -= dot(force, moved) + dot(torque, turned);
     least_ = std::min(least_, energy_);
   }
 

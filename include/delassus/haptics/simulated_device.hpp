@@ -19,10 +19,10 @@ struct SimulatedDevice {
   double friction = 1;           ///< b, N·s/m
   double hand_stiffness = 300;   ///< K, N/m
   double hand_damping = 2;       ///< B, N·s/m
-  Vec3 position = Vec3::Zero();  ///< x, m
-  Vec3 velocity = Vec3::Zero();  ///< m/s
-  Vec3 hand = Vec3::Zero();      ///< x_h, m
-  Vec3 hand_velocity = Vec3::Zero();
+  Vec3 position = zero<Vec3>();  ///< x, m
+  Vec3 velocity = zero<Vec3>();  ///< m/s
+  Vec3 hand = zero<Vec3>();      ///< x_h, m
+  Vec3 hand_velocity = zero<Vec3>();
 
   void check() const {
     inner::expect_positive("SimulatedDevice: mass", mass, "kg");
@@ -43,7 +43,7 @@ struct SimulatedDevice {
       position += dt * mean;
       velocity = 2 * mean - velocity;
       hand += dt * hand_velocity;
-      lost_to_friction += dt * friction * mean.squaredNorm();
+      lost_to_friction += dt * friction * squared_norm(mean);
     }
   }
 
@@ -51,7 +51,7 @@ struct SimulatedDevice {
 
   /// ½ m v² + ½ K |x_h − x|², J.
   double energy() const {
-    return 0.5 * mass * velocity.squaredNorm() + 0.5 * hand_stiffness * (hand - position).squaredNorm();
+    return 0.5 * mass * squared_norm(velocity) + 0.5 * hand_stiffness * squared_norm(hand - position);
   }
 };
 

@@ -4,12 +4,12 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/joints/virtual_coupling.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/haptics/device_state.hpp>
 #include <delassus/math/positive.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <tuple>
@@ -83,12 +83,12 @@ class ToolRows {
     const auto& pool = problem.laws.template pool<p>();
     if (coupling.index < 0 || !pool.contains(coupling)) return true;
     const auto& active = pool.slots.active();
-    const auto place = std::lower_bound(active.begin(), active.end(), coupling.index);
+    const auto place = inner::lower_bound(active.data(), active.data() + active.size(), coupling.index);
     if (place == active.end() || *place != coupling.index) return false;
     item_ = Index(place - active.begin());
     for (Index k = 0; k < problem.islands.count() && island_ < 0; ++k) {
       const auto items = problem.islands.items(p, k);
-      if (std::binary_search(items.begin(), items.end(), item_)) island_ = k;
+      if (inner::is_listed(items, item_)) island_ = k;
     }
     if (!is_there()) return true;
     remember_device(world, pool.item(item_), problem.h);
@@ -103,8 +103,8 @@ class ToolRows {
     const Vec3 turned = logarithm<double>(now * frame_ * turn_.conjugate()) - ahead_;
     const Vec3 turns_faster = device.angular_velocity - rate_;
     Twist moved, faster;
-    moved << device.position + arm - point_ + turned.cross(half_stretch_), turned;
-    faster << device.velocity + device.angular_velocity.cross(arm) - velocity_ + turns_faster.cross(half_stretch_),
+    moved << device.position + arm - point_ + cross(turned, half_stretch_), turned;
+    faster << device.velocity + cross(device.angular_velocity, arm) - velocity_ + cross(turns_faster, half_stretch_),
         turns_faster;
     d_now_ = d_ - (by_place_.cwiseProduct(moved) + by_speed_.cwiseProduct(faster)).template cast<T>();
     each_pool(rows, [&](auto q, auto& pool) {
@@ -119,7 +119,7 @@ class ToolRows {
       for (const auto& row : std::get<q>(coupled_)) lambda -= row.Z.transpose() * pool.lambda[row.item];
     });
     Twist out = -lambda.template cast<double>();
-    out.template tail<3>() += half_stretch_.cross(out.template head<3>());
+    out.template tail<3>() += cross(half_stretch_, out.template head<3>());
     return out;
   }
 
@@ -127,16 +127,16 @@ class ToolRows {
   /// Where the step took the device's end to be when it is over, and how fast; and the shares of Δ and Δv in d.
   template <class World>
   void remember_device(const World& world, const VirtualCoupling::Item& item, double h) {
-    arm_ = item.b.is_world() ? Vec3(Vec3::Zero()) : item.b.local;
+    arm_ = item.b.is_world() ? Vec3(zero<Vec3>()) : item.b.local;
     frame_ = item.b.frame;
     turn_ = world.frame(item.b);
-    velocity_.setZero();
-    rate_.setZero();
+    set_zero(velocity_);
+    set_zero(rate_);
     world.visit(item.b.set, [&](const auto& set, auto) {
       if constexpr (std::remove_cvref_t<decltype(set)>::width == 6) {
         const Twist v = set.velocity()[item.b.block].template cast<double>();
         rate_ = v.template tail<3>();
-        velocity_ = v.template head<3>() + rate_.cross(turn_ * frame_.conjugate() * arm_);
+        velocity_ = v.template head<3>() + cross(rate_, turn_ * frame_.conjugate() * arm_);
       }
     });
     const Vec3 end = world.point(item.b);
@@ -153,8 +153,8 @@ class ToolRows {
     own_block_ = problem.W.template diagonal<p>(item_);
     inverse_ = inverse_of_positive(own_block_);
     d_ = own.d[item_];
-    own.d[item_].setZero();
-    own.lambda[item_].setZero();
+    set_zero(own.d[item_]);
+    set_zero(own.lambda[item_]);
     for_each_index<pools>([&](auto q) {
       auto& W = problem.W.template blocks<p, q>();  // row c: W_cj
       auto& rows = std::get<q>(coupled_);
@@ -164,7 +164,7 @@ class ToolRows {
         const Index j = W.column[e];
         place_[q][j] = Index(rows.size());
         rows.push_back({j, W.block[e].template cast<T>().transpose() * inverse_, problem.rows.template pool<q>().d[j]});
-        W.block[e].setZero();
+        set_zero(W.block[e]);
       }
     });
     for_each_index<pools>([&](auto a) {
@@ -182,7 +182,7 @@ class ToolRows {
       using S = typename std::remove_cvref_t<decltype(blocks.block[0])>::Scalar;
       for (Index e = blocks.start[row.item]; e < blocks.start[row.item + 1]; ++e) {
         const Index j = blocks.column[e];
-        if (b == p && j == item_) blocks.block[e].setZero();
+        if (b == p && j == item_) set_zero(blocks.block[e]);
         else if (place_[b][j] >= 0)
           blocks.block[e] -= (ZW * std::get<b>(coupled_)[place_[b][j]].Z.transpose()).template cast<S>();
       }
@@ -190,12 +190,12 @@ class ToolRows {
   }
 
   Index item_ = -1, island_ = -1;
-  Vec3 arm_ = Vec3::Zero(), half_stretch_ = Vec3::Zero();
-  Vec3 point_ = Vec3::Zero(), velocity_ = Vec3::Zero(), rate_ = Vec3::Zero(), ahead_ = Vec3::Zero();
+  Vec3 arm_ = zero<Vec3>(), half_stretch_ = zero<Vec3>();
+  Vec3 point_ = zero<Vec3>(), velocity_ = zero<Vec3>(), rate_ = zero<Vec3>(), ahead_ = zero<Vec3>();
   Quat frame_ = Quat::Identity(), turn_ = Quat::Identity();
-  Vec<6, T> d_ = Vec<6, T>::Zero(), d_now_ = Vec<6, T>::Zero();
-  Twist by_place_ = Twist::Zero(), by_speed_ = Twist::Zero();
-  Mat<6, 6, T> own_block_ = Mat<6, 6, T>::Zero(), inverse_ = Mat<6, 6, T>::Zero();  ///< W_cc and W_cc⁻¹
+  Vec<6, T> d_ = zero<Vec<6, T>>(), d_now_ = zero<Vec<6, T>>();
+  Twist by_place_ = zero<Twist>(), by_speed_ = zero<Twist>();
+  Mat<6, 6, T> own_block_ = zero<Mat<6, 6, T>>(), inverse_ = zero<Mat<6, 6, T>>();  ///< W_cc and W_cc⁻¹
   typename CoupledRows<Rows>::type coupled_;
   std::array<std::vector<Index>, std::size_t(pools)> place_;
 };

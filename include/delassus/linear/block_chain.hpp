@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -78,7 +79,7 @@ class BlockChain {
     const std::size_t rows = w * nodes.size();
     order_.clear();
     for (Index k = 0; k < Index(nodes.size()); ++k) order_.emplace_back(nodes[k], k);
-    std::sort(order_.begin(), order_.end());
+    inner::sort(order_);
     columns_.resize(nodes.size());
     std::size_t done = order_.size();  // order_[done …] have a column
     Block last;

@@ -3,10 +3,10 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 
-#include <algorithm>
-#include <functional>
-#include <iterator>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,8 +24,8 @@ class BasicBlockPattern {
     order(blocks, pairs);
     clear(blocks);
     for (auto [i, j] : pairs) {
-      const auto [column, row] = std::minmax(place_[i], place_[j]);
-      lists_[column].push_back(row);
+      const Index a = place_[i], b = place_[j];
+      lists_[a < b ? a : b].push_back(a < b ? b : a);
     }
     start_.assign(1, 0);
     row_.clear();
@@ -49,11 +49,14 @@ class BasicBlockPattern {
   /// The entry of a row in a column; both are places, row > column, and the entry exists.
   Index find(Index row, Index column) const {
     const auto first = row_.begin() + start_[column], last = row_.begin() + start_[column + 1];
-    return Index(std::lower_bound(first, last, row) - row_.begin());
+    return Index(inner::lower_bound(first, last, row) - row_.begin());
   }
 
  private:
-  using Degree = std::pair<Index, Index>;  ///< (degree, block)
+  /// A heap's largest is then its least.
+  struct IsLarger {
+    bool operator()(std::uint64_t a, std::uint64_t b) const { return a > b; }
+  };
 
   /// Minimum degree: the block with the fewest neighbours goes next, and its neighbours become neighbours of
   /// each other. Ties go to the lowest number. Plain lists; its cost is that of the fill.
@@ -73,27 +76,36 @@ class BasicBlockPattern {
       const Index b = pop();
       place_[b] = k;
       for (const Index n : lists_[b]) {
-        merged_.clear();
-        std::set_union(lists_[n].begin(), lists_[n].end(), lists_[b].begin(), lists_[b].end(),
-                       std::back_inserter(merged_));
-        erase_if(merged_, [&](Index i) { return i == n || i == b; });
-        lists_[n].assign(merged_.begin(), merged_.end());
+        unite(lists_[n], lists_[b], n, b);
+        lists_[n] = merged_;
         push(n);
       }
     }
   }
 
+  /// What is in either of two ascending lists, but for n and b.
+  void unite(const Array<Index>& x, const Array<Index>& y, Index n, Index b) {
+    merged_.clear();
+    for (std::size_t i = 0, j = 0; i < x.size() || j < y.size();) {
+      const bool takes_x = j == y.size() || (i < x.size() && x[i] <= y[j]), takes_y = i == x.size() || (j < y.size() && y[j] <= x[i]);
+      const Index next = takes_x ? x[i] : y[j];
+      i += takes_x, j += takes_y;
+      if (next != n && next != b) merged_.push_back(next);
+    }
+  }
+
   void push(Index b) {
-    queue_.emplace_back(Index(lists_[b].size()), b);
-    std::push_heap(queue_.begin(), queue_.end(), std::greater<Degree>{});
+    queue_.push_back(std::uint64_t(lists_[b].size()) << 32 | std::uint64_t(b));
+    inner::push_on_heap(queue_.data(), queue_.size(), IsLarger{});
   }
   /// An entry that says a degree its block no longer has is passed over: a newer one is in the heap.
   Index pop() {
     for (;;) {
-      const auto [degree, b] = queue_.front();
-      std::pop_heap(queue_.begin(), queue_.end(), std::greater<Degree>{});
+      const std::uint64_t least = queue_[0];
+      inner::pop_from_heap(queue_.data(), queue_.size(), IsLarger{});
       queue_.pop_back();
-      if (place_[b] < 0 && degree == Index(lists_[b].size())) return b;
+      const Index b = Index(least & 0xffffffffu);
+      if (place_[b] < 0 && least >> 32 == lists_[b].size()) return b;
     }
   }
 
@@ -102,13 +114,13 @@ class BasicBlockPattern {
     for (auto& list : lists_) list.clear();
   }
   static void sort_unique(Array<Index>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+    inner::sort(list);
+    inner::drop_repeats(list);
   }
 
   Array<Index> place_, start_, row_, merged_;
   std::vector<Array<Index>> lists_;
-  Array<Degree> queue_;
+  Array<std::uint64_t> queue_;  ///< a degree and its block
 };
 
 using BlockPattern = BasicBlockPattern<Index>;

@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -97,7 +98,7 @@ struct BasicNestedDissection {
                                               : w.far[axis - 1][i] - w.far[2][i],
                          i);
     }
-    std::sort(w.key.begin(), w.key.end());
+    inner::sort(w.key);
   }
 
   /// a is far from any node, b the farthest from a, c the farthest from both.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/supernodes.hpp>
 
@@ -83,20 +84,20 @@ class NodeCompliance {
     visited_.clear();
     slot_.assign(pattern.nodes(), -1);
     for (Index k = 0; k < Index(nodes.size()); ++k) wanted_.emplace_back(pattern.place(nodes[k]), k);
-    std::sort(wanted_.begin(), wanted_.end());
+    inner::sort(wanted_);
     for (auto [place, k] : wanted_)
       for (Index s = pattern.supernode_of(place); s >= 0 && slot_[supernodes[s].first] < 0;
            s = supernodes[s].parent) {
         slot_[supernodes[s].first] = 0;
         visited_.push_back(s);
       }
-    std::sort(visited_.begin(), visited_.end());
+    inner::sort(visited_);
     rows_ = 0;
     for (const Index s : visited_)
       for (Index c = 0; c < supernodes[s].width; ++c, rows_ += w) slot_[supernodes[s].first + c] = rows_;
   }
   Index first_wanted(Index place) const {
-    return Index(std::lower_bound(wanted_.begin(), wanted_.end(), std::pair<Index, Index>(place, -1)) -
+    return Index(inner::lower_bound(wanted_.data(), wanted_.data() + wanted_.size(), std::pair<Index, Index>(place, -1)) -
                  wanted_.begin());
   }
   /// The columns of Y that begin in a supernode or below it: [first, last).

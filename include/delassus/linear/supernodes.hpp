@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/linear/nested_dissection.hpp>
 
 #include <algorithm>
@@ -100,7 +101,7 @@ class BasicSupernodalPattern {
       for (const Index neighbour : graph.of(node_[k])) take(place_[neighbour]);
       for (const Index c : children[k])
         for (const Index i : rows_[c]) take(i);
-      std::sort(rows.begin(), rows.end());
+      inner::sort(rows);
       if (parent_[k] < 0) continue;
       children[parent_[k]].push_back(k);
       ++child_count_[parent_[k]];
@@ -188,14 +189,14 @@ struct BasicLowerEntries {
     for (Index j = 0; j < pattern.nodes(); ++j) {
       for (const Index i : graph.of(pattern.node(j)))
         if (pattern.place(i) > j) row.push_back(pattern.place(i));
-      std::sort(row.begin() + start.back(), row.end());
+      inner::sort(row.data() + start.back(), row.data() + row.size());
       start.push_back(Index(row.size()));
     }
   }
   /// The entry of a row in a column; it exists.
   Index find(Index at, Index column) const {
     const auto first = row.begin() + start[column], last = row.begin() + start[column + 1];
-    return Index(std::lower_bound(first, last, at) - row.begin());
+    return Index(inner::lower_bound(first, last, at) - row.begin());
   }
 };
 

@@ -4,6 +4,7 @@
 #include <delassus/core/clock.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/step/stage.hpp>
 
 #include <algorithm>
@@ -64,7 +65,7 @@ class BasicRealTimePace {
   Statistics statistics() const {
     Statistics s = sums_;
     std::vector<double> sorted = work_;
-    std::sort(sorted.begin(), sorted.end());
+    inner::sort(sorted);
     const auto share = [&](double p) {
       return sorted.empty() ? 0 : sorted[std::size_t(std::ceil(p * double(sorted.size()))) - 1];
     };

@@ -7,8 +7,8 @@ namespace delassus {
 
 /// Mean over the step, N and N·m; b has the opposite of both.
 struct Reaction {
-  Vec3 force = Vec3::Zero();
-  Vec3 moment = Vec3::Zero();  ///< about the joint's point, x_b
+  Vec3 force = zero<Vec3>();
+  Vec3 moment = zero<Vec3>();  ///< about the joint's point, x_b
 };
 
 namespace inner {

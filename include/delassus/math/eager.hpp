@@ -267,19 +267,62 @@ inline T dot(const Eigen::Matrix<T, R, C>& a, const Eigen::Matrix<T, R, C>& b) {
   return sum;
 }
 template <class T, int R, int C>
-inline T squared_norm(const Eigen::Matrix<T, R, C>& a) {
+  requires inner::SmallSizes<R, C>
+[[gnu::always_inline]] inline T squared_norm(const Eigen::Matrix<T, R, C>& a) {
   return dot(a, a);
 }
 template <class T, int R, int C>
-inline T norm(const Eigen::Matrix<T, R, C>& a) {
+  requires inner::SmallSizes<R, C>
+[[gnu::always_inline]] inline T norm(const Eigen::Matrix<T, R, C>& a) {
   return std::sqrt(dot(a, a));
+}
+
+/// a × b.
+template <class T>
+[[gnu::always_inline]] inline Eigen::Matrix<T, 3, 1> cross(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
+  const T *x = a.data(), *y = b.data();
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+
+/// a / |a|; a vector of zeros stays what it is.
+template <class T>
+inline Eigen::Matrix<T, 3, 1> normalized(const Eigen::Matrix<T, 3, 1>& a) {
+  const T square = dot(a, a), length = square > T(0) ? std::sqrt(square) : T(1);
+  const T* x = a.data();
+  return {x[0] / length, x[1] / length, x[2] / length};
+}
+
+// The same names for what is no plain matrix of such a size: blocks, larger and dynamic ones.
+template <class A, class B>
+inline typename A::Scalar dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.dot(b);
+}
+template <class A>
+inline typename A::Scalar squared_norm(const Eigen::MatrixBase<A>& a) {
+  return a.squaredNorm();
+}
+template <class A>
+inline typename A::Scalar norm(const Eigen::MatrixBase<A>& a) {
+  return a.norm();
+}
+template <class A, class B>
+inline Eigen::Matrix<typename A::Scalar, 3, 1> cross(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.cross(b);
+}
+template <class A>
+inline typename A::PlainObject normalized(const Eigen::MatrixBase<A>& a) {
+  return a.normalized();
 }
 
 /// Sets every entry.
 template <class T, int R, int C>
-inline void set_all(Eigen::Matrix<T, R, C>& a, T value) {
+inline void set_all(Eigen::Matrix<T, R, C>& a, std::type_identity_t<T> value) {
   DELASSUS_UNROLL
   for (int i = 0; i < R * C; ++i) a.data()[i] = value;
+}
+template <class T, int R, int C>
+[[gnu::always_inline]] inline void set_zero(Eigen::Matrix<T, R, C>& a) {
+  set_all(a, T(0));
 }
 
 /// The matrix with `value` on its diagonal and zeros elsewhere, and of zeros alone.
@@ -291,10 +334,14 @@ inline Eigen::Matrix<T, R, R> diagonal_of(T value) {
   return a;
 }
 template <class M>
-inline M zero() {
+[[gnu::always_inline]] inline M zero() {
   M a;
-  for (int i = 0; i < M::RowsAtCompileTime * M::ColsAtCompileTime; ++i) a.data()[i] = 0;
+  set_all(a, 0);
   return a;
+}
+template <class M>
+[[gnu::always_inline]] inline M identity() {
+  return diagonal_of<int(M::RowsAtCompileTime)>(typename M::Scalar(1));
 }
 
 }  // namespace delassus

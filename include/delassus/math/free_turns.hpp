@@ -26,7 +26,7 @@ Eigen::Quaternion<T> turn_freely(const Mat<3, 3, T>& inverse_inertia, Eigen::Qua
   T rate[3];
   for (int k = 0; k < 3; ++k) {
     rate[k] = K(k, k);
-    axis[k].setZero();
+    set_zero(axis[k]);
     for (int i = k; i < 3; ++i) axis[k][i] = K(i, k) / rate[k];
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) K(i, j) -= rate[k] * axis[k][i] * axis[k][j];
@@ -37,13 +37,13 @@ Eigen::Quaternion<T> turn_freely(const Mat<3, 3, T>& inverse_inertia, Eigen::Qua
     const Vec<3, T> a = q * axis[k];
     const T share = time * rate[k];
     if (response) {
-      const Vec<3, T> across = a.cross(L);
+      const Vec<3, T> across = cross(a, L);
       Vec<3, T> row;
-      for (int j = 0; j < 3; ++j) row[j] = share * (a[j] + across.dot(Vec<3, T>(response->col(j))));
+      for (int j = 0; j < 3; ++j) row[j] = share * (a[j] + dot(across, Vec<3, T>(response->col(j))));
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i) (*response)(i, j) += a[i] * row[j];
     }
-    const Vec<3, T> turn = (share * a.dot(L)) * a;
+    const Vec<3, T> turn = (share * dot(a, L)) * a;
     q = exponential<T>(turn) * q;
   }
   return unit_again(q);

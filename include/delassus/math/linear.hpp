@@ -79,8 +79,8 @@ inline Mat<3, 3, T> skew(const Vec<3, T>& a) {
 template <class T>
 inline Mat<3, 3, T> inverse(const Mat<3, 3, T>& A) {
   const Vec<3, T> x(A(0, 0), A(1, 0), A(2, 0)), y(A(0, 1), A(1, 1), A(2, 1)), z(A(0, 2), A(1, 2), A(2, 2));
-  const Vec<3, T> yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);  // the rows of adj(A)
-  return T(1) / x.dot(yz) * columns<T>({yz[0], zx[0], xy[0]}, {yz[1], zx[1], xy[1]}, {yz[2], zx[2], xy[2]});
+  const Vec<3, T> yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);  // the rows of adj(A)
+  return T(1) / dot(x, yz) * columns<T>({yz[0], zx[0], xy[0]}, {yz[1], zx[1], xy[1]}, {yz[2], zx[2], xy[2]});
 }
 
 /// Adds to the diagonal.

@@ -7,7 +7,7 @@ namespace delassus {
 
 /// x_world = position + rotation · x_local. Lengths in m; `rotation` is orthonormal.
 struct Pose {
-  Vec3 position = Vec3::Zero();
+  Vec3 position = zero<Vec3>();
   Mat3 rotation = Mat3::Identity();
 
   Vec3 to_world(const Vec3& local) const { return position + rotation * local; }

@@ -26,9 +26,9 @@ inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
 template <class T>
 inline Vec<3, T> rotated(const Eigen::Quaternion<T>& q, const Vec<3, T>& v) {
   const Vec<3, T> axis(q.x(), q.y(), q.z());
-  Vec<3, T> twice = axis.cross(v);
+  Vec<3, T> twice = cross(axis, v);
   twice += twice;
-  return v + q.w() * twice + axis.cross(twice);
+  return v + q.w() * twice + cross(axis, twice);
 }
 
 /// 1 − |q|², of a unit quaternion nearly without rounding.
@@ -66,7 +66,7 @@ template <class T>
 /// The quaternion of a turn by the vector θ (rad): exp(θ/2).
 template <class T>
 Eigen::Quaternion<T> exponential(const Vec<3, T>& theta) {
-  const T angle = theta.norm();
+  const T angle = norm(theta);
   // sin(x/2)/x to rounding for small x: the next term of the series is x⁴/3840.
   const T s = angle < T(1e-3) ? T(0.5) - angle * angle / T(48) : std::sin(angle / 2) / angle;
   return {std::cos(angle / 2), s * theta[0], s * theta[1], s * theta[2]};
@@ -77,7 +77,7 @@ template <class T>
 Vec<3, T> logarithm(const Eigen::Quaternion<T>& q) {
   const T sign = q.w() < 0 ? T(-1) : T(1);
   const Vec<3, T> v(sign * q.x(), sign * q.y(), sign * q.z());
-  const T s = v.norm();
+  const T s = norm(v);
   return s < T(1e-12) ? T(2) * v : T(2) * std::atan2(s, sign * q.w()) / s * v;
 }
 
@@ -122,9 +122,9 @@ struct MidpointRate {
 template <class T>
 MidpointRate<T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a, const Vec<3, T>& c, T h) {
   Vec<3, T> mid = rate, sum = T(2) * (inertia * mid) - a + c;
-  Vec<3, T> residual = sum - T(2) * c + (h / 2) * mid.cross(sum);
-  T size = residual.norm();
-  const T floor = std::numeric_limits<T>::epsilon() * std::sqrt(std::max(a.squaredNorm(), c.squaredNorm()));
+  Vec<3, T> residual = sum - T(2) * c + (h / 2) * cross(mid, sum);
+  T size = norm(residual);
+  const T floor = std::numeric_limits<T>::epsilon() * std::sqrt(std::max(squared_norm(a), squared_norm(c)));
   for (int iteration = 0; iteration < 20 && size > floor; ++iteration) {
     const Mat<3, 3, T> slope = T(2) * inertia + (h / 2) * (T(2) * skew(mid) * inertia - skew(sum));
     // Scaled by tr I, so that the determinant of a small body's moments does not underflow in single precision.
@@ -134,8 +134,8 @@ MidpointRate<T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate
     for (int halving = 0;; ++halving, step /= 2) {
       const Vec<3, T> trial = mid - step * move;
       const Vec<3, T> trial_sum = T(2) * (inertia * trial) - a + c;
-      const Vec<3, T> trial_residual = trial_sum - T(2) * c + (h / 2) * trial.cross(trial_sum);
-      const T trial_size = trial_residual.norm();
+      const Vec<3, T> trial_residual = trial_sum - T(2) * c + (h / 2) * cross(trial, trial_sum);
+      const T trial_size = norm(trial_residual);
       if (trial_size < size) {
         mid = trial;
         sum = trial_sum;
@@ -160,7 +160,7 @@ template <class T>
 /// kept as ever, and a free step can be turned back. s is 2 at most: beyond √12 rad a step it tells nothing.
 template <class T>
 T lengthened(T h, const Vec<3, T>& rate, const Vec<3, T>& momentum) {
-  const T square = momentum.squaredNorm(), twice = rate.dot(momentum);
+  const T square = squared_norm(momentum), twice = dot(rate, momentum);
   const T turn = square > T(0) ? (h * twice) * (h * (twice / square)) : T(0);
   return turn < T(12) ? h * (T(1) + turn / T(12)) : T(2) * h;
 }
@@ -171,7 +171,7 @@ Eigen::Quaternion<T> turn_about_momentum(const Vec<3, T>& rate, const Vec<3, T>&
   const T largest = std::abs(c[largest_entry(c)]);
   const Vec<3, T> scaled = largest > T(0) ? Vec<3, T>(c / largest) : c;
   const Vec<3, T> axis = largest > T(0) ? Vec<3, T>(scaled / norm(scaled)) : c;
-  return exponential<T>(std::remainder(h * rate.dot(axis), T(4 * EIGEN_PI)) * axis);
+  return exponential<T>(std::remainder(h * dot(rate, axis), T(4 * EIGEN_PI)) * axis);
 }
 
 /// `midpoint_turn` of a step that may be halved `halvings` times more.
@@ -183,9 +183,9 @@ Eigen::Quaternion<T> midpoint_turn_halving(const Mat<3, 3, T>& inertia, const Ve
   // The products that make the residual are of size h |Ω̄| |c|, and as many roundings off.
   const T enough = T(128) * mid.rounding;
   if (mid.residual <= enough && enough <= std::numeric_limits<T>::max()) [[likely]] return cayley<T>(longer * mid.rate);
-  const T fastest = std::max(rate.norm(), rate_of<T>(inertia, c).norm());
+  const T fastest = std::max(norm(rate), norm(rate_of<T>(inertia, c)));
   if (!(h * fastest <= T(1024))) return turn_about_momentum<T>(rate, c, h);
-  if (mid.residual <= enough * (T(1) + longer * mid.rate.norm())) return cayley<T>(longer * mid.rate);
+  if (mid.residual <= enough * (T(1) + longer * norm(mid.rate))) return cayley<T>(longer * mid.rate);
   if (halvings == 0) return turn_about_momentum<T>(rate, c, h);
   return midpoint_turn_in_halves<T>(inertia, rate, a, c, h, halvings - 1);
 }

@@ -41,8 +41,8 @@ inline constexpr int pairs_of_three[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 /// A unit vector at right angles to the unit vector u.
 inline Vec3 any_normal(const Vec3& u) {
   const Vec3 e = unit_axis((largest_entry(u) + 1) % 3);
-  const Vec3 n = e - u.dot(e) * u;
-  return n / n.norm();
+  const Vec3 n = e - dot(u, e) * u;
+  return n / norm(n);
 }
 
 }  // namespace inner
@@ -57,7 +57,7 @@ inline SingularValues singular_values(const Mat3& F) {
     is_turning = false;
     for (const auto& [p, q] : inner::pairs_of_three) {
       const Vec3 x = B.col(p), y = B.col(q);
-      const double a = x.dot(x), b = y.dot(y), g = x.dot(y);
+      const double a = dot(x, x), b = dot(y, y), g = dot(x, y);
       if (!(std::abs(g) > 4e-16 * std::sqrt(a * b)) || !(std::abs(g) > 1e-300)) continue;
       const inner::JacobiTurn turn(a, b, g);
       turn.turn(B, p, q);
@@ -67,17 +67,17 @@ inline SingularValues singular_values(const Mat3& F) {
   }
   for (const auto& [p, q] : inner::pairs_of_three) {
     const Vec3 x = B.col(p), y = B.col(q);
-    if (x.dot(x) >= y.dot(y)) continue;
+    if (dot(x, x) >= dot(y, y)) continue;
     for (Mat3* A : {&B, &V})
       for (int i = 0; i < 3; ++i) std::swap((*A)(i, p), (*A)(i, q)), (*A)(i, q) = -(*A)(i, q);
   }
   const Vec3 b[3] = {B.col(0), B.col(1), B.col(2)};
-  const double longest = b[0].norm();
+  const double longest = norm(b[0]);
   const Vec3 u0 = longest > 0 ? Vec3(b[0] / longest) : unit_axis(0);
-  const Vec3 rest = b[1] - u0.dot(b[1]) * u0;
-  const double length = rest.norm();
-  const Vec3 u1 = length > 1e-14 * longest ? Vec3(rest / length) : inner::any_normal(u0), u2 = u0.cross(u1);
-  return {columns(u0, u1, u2), V, scale * Vec3(u0.dot(b[0]), u1.dot(b[1]), u2.dot(b[2]))};
+  const Vec3 rest = b[1] - dot(u0, b[1]) * u0;
+  const double length = norm(rest);
+  const Vec3 u1 = length > 1e-14 * longest ? Vec3(rest / length) : inner::any_normal(u0), u2 = cross(u0, u1);
+  return {columns(u0, u1, u2), V, scale * Vec3(dot(u0, b[0]), dot(u1, b[1]), dot(u2, b[2]))};
 }
 
 /// The symmetric positive semidefinite matrix next to a symmetric A: eigenvalues below zero become zero.

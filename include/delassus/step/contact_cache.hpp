@@ -18,7 +18,7 @@ namespace delassus {
 /// A contact as a host reads it after the step: `impulse` (N·s, world) is what body B received from A.
 struct ContactResult {
   ContactRecord record;
-  Vec3 impulse = Vec3::Zero();
+  Vec3 impulse = zero<Vec3>();
   bool starts_cold = false;  ///< the impulse is no start for the next step
   bool is_sliding = false;   ///< the friction impulse is as large as the cone allows
 };
@@ -52,7 +52,7 @@ class BasicContactCache {
     const auto& v = set.velocity()[b];
     c.velocity = linear_part(v).template cast<double>();
     if constexpr (Set::width == 6) c.angular_velocity = angular_part(v).template cast<double>();
-    else c.angular_velocity.setZero();
+    else set_zero(c.angular_velocity);
     c.is_movable = is_movable;
     c.group = set.group(b);
     c.collides_with = set.collides_with(b);
@@ -67,7 +67,7 @@ class BasicContactCache {
     results.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const ContactPoint& p = points[i];
-      results[i].impulse.setZero();
+      set_zero(results[i].impulse);
       results[i].starts_cold = false;
       results[i].record = {.a = anchors_[p.a],
                            .b = anchors_[p.b],
@@ -97,7 +97,7 @@ class BasicContactCache {
     const auto entries = memory_.renew(results.size());
     for (std::size_t i = 0; i < results.size(); ++i)
       entries[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
-                    results[i].starts_cold ? Vec3(Vec3::Zero()) : results[i].impulse};
+                    results[i].starts_cold ? Vec3(zero<Vec3>()) : results[i].impulse};
     memory_.sort();
   }
   void memory(auto& archive) { archive(memory_); }

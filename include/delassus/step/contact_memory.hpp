@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -38,8 +39,8 @@ class BasicContactMemory {
     const auto before = [](const Entry& x, const Entry& y) {
       return x.pair != y.pair ? x.pair < y.pair : x.feature < y.feature;
     };
-    if (!std::is_sorted(entries_.begin(), entries_.end(), before))
-      std::sort(entries_.begin(), entries_.end(), before);
+    if (!inner::is_sorted(entries_.data(), entries_.data() + entries_.size(), before))
+      inner::sort(entries_, before);
   }
 
   /// The impulse of the contact of this name, or the nearest unclaimed one of its pair within `reach()`, m,
@@ -49,11 +50,11 @@ class BasicContactMemory {
     const auto is_before = [](const Entry& e, const std::pair<std::uint64_t, std::uint32_t>& name) {
       return e.pair != name.first ? e.pair < name.first : e.feature < name.second;
     };
-    for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(pair, feature), is_before);
+    for (auto e = inner::lower_bound(entries_.data(), entries_.data() + entries_.size(), std::pair(pair, feature), is_before);
          e != entries_.end() && e->pair == pair && e->feature == feature; ++e)
       if (!e->is_taken) return claim(*e);
     Entry* const nearest = find_near(pair, point, reach());
-    return nearest ? claim(*nearest) : Vec3::Zero();
+    return nearest ? claim(*nearest) : zero<Vec3>();
   }
 
   void memory(auto& archive) {
@@ -73,7 +74,7 @@ class BasicContactMemory {
     const auto is_lower = [&](Index i, Scalar x) { return entries_[i].point[axis_] < x; };
     Index found = -1;
     Scalar nearest = reach * reach;
-    for (auto i = std::lower_bound(order_.begin(), order_.end(), point[axis_] - reach, is_lower);
+    for (auto i = inner::lower_bound(order_.data(), order_.data() + order_.size(), point[axis_] - reach, is_lower);
          i != order_.end() && entries_[*i].point[axis_] <= point[axis_] + reach; ++i) {
       if (entries_[*i].is_taken) continue;
       const Scalar distance = squared_norm(Vec3(entries_[*i].point - point));
@@ -87,7 +88,7 @@ class BasicContactMemory {
     if (ordered_begin_ < ordered_end_ && entries_[ordered_begin_].pair == pair) return;
     const auto is_before = [](const Entry& e, std::uint64_t p) { return e.pair < p; };
     ordered_begin_ =
-        Index(std::lower_bound(entries_.begin(), entries_.end(), pair, is_before) - entries_.begin());
+        Index(inner::lower_bound(entries_.data(), entries_.data() + entries_.size(), pair, is_before) - entries_.begin());
     ordered_end_ = ordered_begin_;
     order_.clear();
     for (; ordered_end_ < Index(entries_.size()) && entries_[ordered_end_].pair == pair; ++ordered_end_)
@@ -97,7 +98,7 @@ class BasicContactMemory {
     for (const Index i : order_)
       for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], entries_[i].point[k]), high[k] = std::max(high[k], entries_[i].point[k]);
     axis_ = largest_entry(Vec3(high - low));
-    std::sort(order_.begin(), order_.end(), [&](Index i, Index j) {
+    inner::sort(order_, [&](Index i, Index j) {
       const Scalar x = entries_[i].point[axis_], y = entries_[j].point[axis_];
       return x != y ? x < y : i < j;
     });

@@ -49,7 +49,7 @@ class Supports {
     if constexpr (requires { set.gravity; })
       return set.gravity;
     else
-      return Vec3::Zero();
+      return zero<Vec3>();
   }
 
   void memory(auto& archive) { archive(gravity_, supports_); }

@@ -18,7 +18,7 @@ class ParticlePath {
 
   void resize(std::size_t n) { points_.resize(n); }
   void begin(const State& x, Index b, const Vector& v) {
-    points_[b] = {x[b], v, x[b], Vector::Zero(), Vector::Zero(), Vector::Zero(), Vector::Zero()};
+    points_[b] = {x[b], v, x[b], zero<Vector>(), zero<Vector>(), zero<Vector>(), zero<Vector>()};
   }
   const Vector& start_velocity(Index b) const { return points_[b].v; }
   void back(State& x, Index b) const { x[b] = points_[b].x; }
@@ -35,7 +35,7 @@ class ParticlePath {
     return h * set.template solve_block<C>(b, X);
   }
 
-  Vector gyroscopic(const State&, Index, const Vector&) const { return Vector::Zero(); }
+  Vector gyroscopic(const State&, Index, const Vector&) const { return zero<Vector>(); }
   Vector to_stage(State& x, Index b, T t, bool moves) const {
     const Point& p = points_[b];
     x[b] = moves ? Vector(p.x + t * p.slope_x) : p.x;

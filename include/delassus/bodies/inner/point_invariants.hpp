@@ -35,7 +35,7 @@ Vec3 momentum_of(const Set& set, Index b) {
 template <inner::PointMasses Set>
 double kinetic_energy(const Set& set) {
   double sum = 0;
-  inner::each_moving(set, [&](Index b) { sum += 0.5 * double(set.mass(b)) * double(set.velocity()[b].squaredNorm()); });
+  inner::each_moving(set, [&](Index b) { sum += 0.5 * double(set.mass(b)) * double(squared_norm(set.velocity()[b])); });
   return sum;
 }
 
@@ -47,14 +47,14 @@ double potential_energy(const Set& set) {
     sum = set.elastic_energy();
   else if constexpr (requires { set.spring_energy(); })
     sum = set.spring_energy();
-  inner::each_moving(set, [&](Index b) { sum -= double(set.mass(b)) * set.gravity.dot(set.position(set.handle(b))); });
+  inner::each_moving(set, [&](Index b) { sum -= double(set.mass(b)) * dot(set.gravity, set.position(set.handle(b))); });
   return sum;
 }
 
 /// Σ m v of all that moves, kg·m/s.
 template <inner::HasMasses Set>
 Vec3 momentum(const Set& set) {
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = zero<Vec3>();
   inner::each_moving(set, [&](Index b) { sum += inner::momentum_of(set, b); });
   return sum;
 }
@@ -62,8 +62,8 @@ Vec3 momentum(const Set& set) {
 /// Σ x × m v about the world's origin, kg·m²/s.
 template <inner::PointMasses Set>
 Vec3 angular_momentum(const Set& set) {
-  Vec3 sum = Vec3::Zero();
-  inner::each_moving(set, [&](Index b) { sum += set.pose(b).position.cross(inner::momentum_of(set, b)); });
+  Vec3 sum = zero<Vec3>();
+  inner::each_moving(set, [&](Index b) { sum += cross(set.pose(b).position, inner::momentum_of(set, b)); });
   return sum;
 }
 

@@ -18,7 +18,7 @@ struct QuarantineRecord {
   [[gnu::cold, gnu::noinline]] void leave(const Load* first_load, Load& load) {
     ++count;
     note(Index(&load - first_load), is_finite(load));
-    load.setZero();
+    set_zero(load);
   }
   void note(Index block, bool has_finite_load) {
     if (first < 0) first = block;

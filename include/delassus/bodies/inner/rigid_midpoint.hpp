@@ -12,7 +12,7 @@ template <class T>
 Mat<3, 3, T> cayley_matrix(const Vec<3, T>& t) {
   const Mat<3, 3, T> S = skew(t);
   const Mat<3, 3, T> both = S + T(0.5) * (S * S);
-  Mat<3, 3, T> Q = T(1) / (T(1) + t.squaredNorm() / 4) * both;
+  Mat<3, 3, T> Q = T(1) / (T(1) + squared_norm(t) / 4) * both;
   for (int k = 0; k < 3; ++k) Q(k, k) += T(1);
   return Q;
 }
@@ -20,8 +20,8 @@ Mat<3, 3, T> cayley_matrix(const Vec<3, T>& t) {
 /// ∂(cay(t) y)/∂t, by the quotient rule: cay(t) y = y + n/d, n = t × y + ½ t × (t × y), d = 1 + |t|²/4.
 template <class T>
 Mat<3, 3, T> cayley_slope(const Vec<3, T>& t, const Vec<3, T>& y) {
-  const T over = T(1) / (T(1) + t.squaredNorm() / 4);
-  const Vec<3, T> ty = t.cross(y), n = ty + T(0.5) * t.cross(ty), half = (T(0.5) * over) * t;
+  const T over = T(1) / (T(1) + squared_norm(t) / 4);
+  const Vec<3, T> ty = cross(t, y), n = ty + T(0.5) * cross(t, ty), half = (T(0.5) * over) * t;
   const Mat<3, 3, T> slope = skew(y) + T(0.5) * (skew(ty) + skew(t) * skew(y));
   Mat<3, 3, T> out;
   for (int c = 0; c < 3; ++c)
@@ -85,9 +85,9 @@ class RigidMidpoint {
     body.momentum = I * Vector(T(2) * body.mean_rate - body.rate);
     body.missing = (T(2) * s.mass[b]) * (body.mean - body.velocity) - linear_part(impulse);
     body.missing_moment = body.turn * body.momentum - I * body.rate - body.R.transpose() * angular_part(impulse);
-    body.stiffness.setZero();
+    set_zero(body.stiffness);
     const Vector rate = s.inverse_inertia[b] * body.missing_moment;
-    return std::sqrt((body.missing.squaredNorm() * s.inverse_mass[b] + body.missing_moment.dot(rate)) *
+    return std::sqrt((squared_norm(body.missing) * s.inverse_mass[b] + dot(body.missing_moment, rate)) *
                      s.inverse_mass[b]);
   }
   /// A force (N·s over the step, world axes) at the body's own point r, after `balance`.
@@ -99,13 +99,13 @@ class RigidMidpoint {
   void differentiate(const RigidState<T>& s, Index b, T h) {
     Body& body = bodies_[b];
     const Matrix slope = T(2) * (body.turn * s.inertia[b]) + h * cayley_slope(body.t, body.momentum) + body.stiffness;
-    const T scale = T(1) / slope.norm();
+    const T scale = T(1) / norm(slope);
     body.inverse = scale * inverse(Matrix(scale * slope));
     // δθ₊ = h R (1 + t^/2)/d δΩ̄
     Matrix turned = skew(Vector(T(0.5) * body.t));
     for (int k = 0; k < 3; ++k) turned(k, k) += T(1);
     body.response =
-        (h / (T(1) + body.t.squaredNorm() / 4)) * (body.R * (turned * (body.inverse * body.R.transpose())));
+        (h / (T(1) + squared_norm(body.t) / 4)) * (body.R * (turned * (body.inverse * body.R.transpose())));
     body.over_mass = h * T(0.5) * s.inverse_mass[b];
   }
 

@@ -64,7 +64,7 @@ class RigidPath {
   /// −ω × R I Rᵀ ω, which a set of rigid bodies leaves out of its forces.
   Twist gyroscopic(const RigidState<T>& s, Index b, const Twist& v) const {
     const Vector rate = s.R[b].transpose() * angular_part(v);
-    return twist<T>(Vector::Zero(), s.R[b] * Vector(s.inertia[b] * rate).cross(rate));
+    return twist<T>(zero<Vector>(), s.R[b] * cross(Vector(s.inertia[b] * rate), rate));
   }
   /// q ← q₀ + t q̇ of the last slope; returns v there.
   Twist to_stage(RigidState<T>& s, Index b, T t, bool moves) {
@@ -100,9 +100,9 @@ class RigidPath {
 
  private:
   struct Slope {
-    Vector x = Vector::Zero();
-    Four q = Four::Zero();
-    Vector v = Vector::Zero(), rate = Vector::Zero();
+    Vector x = zero<Vector>();
+    Four q = zero<Four>();
+    Vector v = zero<Vector>(), rate = zero<Vector>();
   };
   struct Body {
     Vec3 x, stage_x;
@@ -119,7 +119,7 @@ class RigidPath {
   Twist place(RigidState<T>& s, Index b, const Slope& slope, T t) {
     const Body& body = bodies_[b];
     const Four q = body.q + t * slope.q;
-    put(s, b, body.x + Vector(t * slope.x).template cast<double>(), q / q.norm());
+    put(s, b, body.x + Vector(t * slope.x).template cast<double>(), q / norm(q));
     const Vector rate = body.rate + t * slope.rate;
     return twist<T>(linear_part(body.v) + t * slope.v, s.R[b] * rate);
   }

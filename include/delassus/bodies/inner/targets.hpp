@@ -48,7 +48,7 @@ class Targets {
 
  private:
   struct Target {
-    Vec3 position = Vec3::Zero();
+    Vec3 position = zero<Vec3>();
     Quat orientation = Quat::Identity();
     bool is_set = false;
   };

@@ -57,10 +57,10 @@ class FaceClipper {
   /// Height above side j, m: positive outside.
   void heights(int j, std::array<double, ClipPolygon::capacity>& height) const {
     const Vec3 along = clip_.point[(j + 1) % clip_.count] - clip_.point[j];
-    const Vec3 out = along.cross(n_);
-    const double length = out.norm();
+    const Vec3 out = cross(along, n_);
+    const double length = norm(out);
     for (int i = 0; i < polygon_.count; ++i)
-      height[i] = length > 0 ? out.dot(polygon_.corner[i].point - clip_.point[j]) / length - slack_ : -slack_;
+      height[i] = length > 0 ? dot(out, polygon_.corner[i].point - clip_.point[j]) / length - slack_ : -slack_;
   }
 
   void cut(int j) {

@@ -17,20 +17,20 @@ namespace delassus::inner {
 
 /// Where the stretch from p to q passes through the triangle.
 inline bool passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t, Vec3& x) {
-  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double from = n.dot(p - t[0]), to = n.dot(q - t[0]);
+  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
+  const double from = dot(n, p - t[0]), to = dot(n, q - t[0]);
   if ((from > 0) == (to > 0) || !(from != to)) return false;
   x = p + (from / (from - to)) * (q - p);
   for (int k = 0; k < 3; ++k)
-    if (n.dot((t[(k + 1) % 3] - t[k]).cross(x - t[k])) < 0) return false;
+    if (dot(n, cross(t[(k + 1) % 3] - t[k], x - t[k])) < 0) return false;
   return true;
 }
 
 /// Whether all corners of s are on one side of the plane of t.
 inline bool is_beside(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t) {
-  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const bool is_above = n.dot(s[0] - t[0]) > 0;
-  return (n.dot(s[1] - t[0]) > 0) == is_above && (n.dot(s[2] - t[0]) > 0) == is_above;
+  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
+  const bool is_above = dot(n, s[0] - t[0]) > 0;
+  return (dot(n, s[1] - t[0]) > 0) == is_above && (dot(n, s[2] - t[0]) > 0) == is_above;
 }
 
 /// The curve in which two surfaces cut each other: stretches along n_A × n_B, one of every two triangles that
@@ -56,8 +56,8 @@ void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, Array<Cut>& c
       add(S[k], S[(k + 1) % 3], T);
     }
     if (count < 2) return;
-    const Vec3 along = (T[1] - T[0]).cross(T[2] - T[0]).cross((S[1] - S[0]).cross(S[2] - S[0]));
-    const bool is_forward = along.dot(end[1] - end[0]) > 0;
+    const Vec3 along = cross(cross(T[1] - T[0], T[2] - T[0]), cross(S[1] - S[0], S[2] - S[0]));
+    const bool is_forward = dot(along, end[1] - end[0]) > 0;
     cuts.push_back({end[is_forward ? 0 : 1], end[is_forward ? 1 : 0], x.t, y.t});
   });
 }
@@ -65,7 +65,7 @@ void find_cuts(const PosedSurface<A>& a, const PosedSurface<B>& b, Array<Cut>& c
 /// The point of a surface next to x, m, and the normal there: of the triangles that have it, the one that
 /// looks most towards x or away, which tells the two sides apart also beside edges and corners.
 struct NearestPoint {
-  Vec3 foot = Vec3::Zero(), normal = Vec3::Zero();
+  Vec3 foot = zero<Vec3>(), normal = zero<Vec3>();
   double distance = std::numeric_limits<double>::infinity(), height = 0;
 };
 template <class Surface>
@@ -73,12 +73,12 @@ NearestPoint nearest_point(const PosedSurface<Surface>& of, const Vec3& x) {
   const Vec3 local = of.pose.to_local(x);
   NearestPoint best;
   const auto meets = [&](const Bounds& box) {
-    return !(box.beyond(local).squaredNorm() > best.distance * best.distance);
+    return !(squared_norm(box.beyond(local)) > best.distance * best.distance);
   };
   of.surface.visit(meets, [&](Index t) {
     const Triangle triangle = of.plain(t);
     const Vec3 foot = nearest_on(triangle, local);
-    const double distance = (local - foot).norm(), height = triangle.height(local);
+    const double distance = norm(local - foot), height = triangle.height(local);
     const double same = 1e-12 * distance;
     if (distance > best.distance + same ||
         (distance >= best.distance - same && std::abs(height) <= std::abs(best.height)))
@@ -120,7 +120,7 @@ bool add_enclosed(const PosedSurface<Inside>& inside, const PosedSurface<Around>
     const std::size_t begin = out.size();
     double deepest = 0;
     each_vertex(inside, [&](const Vec3& x, Index t, int k) {
-      const double gap = n.dot(x - gate.foot);
+      const double gap = dot(n, x - gate.foot);
       deepest = std::min(deepest, gap);
       const Index v = inside.surface.triangle(t).corner[k];
       out.push_back(vertex_contact(is_inside_a, v, x, x - gap * n, gap, n, t, 0));
@@ -138,7 +138,7 @@ void stretch(const PosedSurface<Inside>& inside, const PosedSurface<Around>& aro
              double& low, double& high) {
   const Bounds hall = around.bounds(around.surface.bounds());
   each_vertex(inside, [&](const Vec3& x, Index, int) {
-    const double along = n.dot(x);
+    const double along = dot(n, x);
     if ((along >= low && along <= high) || !hall.meets({x, x}) || !(nearest_point(around, x).height < 0))
       return;
     low = std::min(low, along);
@@ -155,23 +155,23 @@ void stretch(const PosedSurface<Inside>& inside, const PosedSurface<Around>& aro
 template <class A, class B>
 void add_cut(const PosedSurface<A>& a, const PosedSurface<B>& b, const Array<Cut>& cuts, double scale,
              std::vector<FeatureContact>& out) {
-  Vec3 area = Vec3::Zero(), open = Vec3::Zero();
+  Vec3 area = zero<Vec3>(), open = zero<Vec3>();
   for (const Cut& c : cuts) {
-    area += 0.5 * (c.from - cuts[0].from).cross(c.to - cuts[0].from);
+    area += 0.5 * cross(c.from - cuts[0].from, c.to - cuts[0].from);
     open += c.to - c.from;
   }
-  if (!(area.norm() > 0) || open.norm() > 1e-6 * scale) return;
-  const Vec3 n = area / area.norm();
-  double low = n.dot(cuts[0].from), high = low;
+  if (!(norm(area) > 0) || norm(open) > 1e-6 * scale) return;
+  const Vec3 n = area / norm(area);
+  double low = dot(n, cuts[0].from), high = low;
   for (const Cut& c : cuts) {
-    low = std::min({low, n.dot(c.from), n.dot(c.to)});
-    high = std::max({high, n.dot(c.from), n.dot(c.to)});
+    low = std::min({low, dot(n, c.from), dot(n, c.to)});
+    high = std::max({high, dot(n, c.from), dot(n, c.to)});
   }
   stretch(a, b, n, low, high);
   stretch(b, a, n, low, high);
   if (!(high > low)) return;
   for (const Cut& c : cuts) {
-    const Vec3 x = c.from - n.dot(c.from) * n;
+    const Vec3 x = c.from - dot(n, c.from) * n;
     out.push_back({{x + high * n, x + low * n, low - high, edges_name(c.triangle_a, 0, c.triangle_b, 0)},
                    n,
                    c.triangle_a,

@@ -8,7 +8,7 @@ namespace delassus::inner {
 /// Whether the ray from the origin along d passes the triangle, whose corners run counter-clockwise about d.
 bool is_pierced(const std::array<DifferencePoint, 3>& corner, const std::same_as<Vec3> auto& d) {
   for (int k = 0; k < 3; ++k)
-    if (d.dot(corner[k].w.cross(corner[(k + 1) % 3].w)) < 0) return false;
+    if (dot(d, cross(corner[k].w, corner[(k + 1) % 3].w)) < 0) return false;
   return true;
 }
 
@@ -21,7 +21,7 @@ std::array<DifferencePoint, 3> pierced_face(const std::same_as<Polytope> auto& p
   bool is_through = false;
   for (int f = 0; f < polytope.face_count(); ++f) {
     const auto& face = polytope.face(f);
-    const double slope = face.normal.dot(d);
+    const double slope = dot(face.normal, d);
     if (!(slope > 0) || face.offset == infinity) continue;
     const bool passes = is_pierced(polytope.corners(f), d);
     if (passes < is_through || (passes == is_through && face.offset / slope >= least)) continue;
@@ -37,7 +37,7 @@ std::array<DifferencePoint, 3> pierced_face(const std::same_as<Polytope> auto& p
 template <class Scalar>
 bool narrow(const DifferencePoint& q, const Vec<3, Scalar>& d, std::array<DifferencePoint, 3>& portal) {
   std::array<Scalar, 3> side;
-  for (int k = 0; k < 3; ++k) side[k] = d.dot(q.w.cross(portal[k].w));
+  for (int k = 0; k < 3; ++k) side[k] = dot(d, cross(q.w, portal[k].w));
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
     if (side[k] < 0 || side[next] > 0) continue;
@@ -56,17 +56,17 @@ void descend(const D& difference, Vec3 d, std::array<DifferencePoint, 3> portal,
   for (int turn = 0; turn < 12; ++turn) {
     Vec3 normal = d;
     for (int iteration = 0; iteration < 40; ++iteration) {
-      const Vec3 across = (portal[1].w - portal[0].w).cross(portal[2].w - portal[0].w);
-      const double area2 = across.norm();
+      const Vec3 across = cross(portal[1].w - portal[0].w, portal[2].w - portal[0].w);
+      const double area2 = norm(across);
       const double edge2 =
-          std::max((portal[1].w - portal[0].w).squaredNorm(), (portal[2].w - portal[0].w).squaredNorm());
+          std::max(squared_norm(portal[1].w - portal[0].w), squared_norm(portal[2].w - portal[0].w));
       if (!(area2 > 1e-12 * edge2)) break;
-      normal = across.dot(d) < 0 ? Vec3(-across / area2) : Vec3(across / area2);
+      normal = dot(across, d) < 0 ? Vec3(-across / area2) : Vec3(across / area2);
       const DifferencePoint q = difference.core(normal);
       visit(portal, normal, q);
-      if (normal.dot(q.w - portal[0].w) <= tolerance || !narrow(q, d, portal)) break;
+      if (dot(normal, q.w - portal[0].w) <= tolerance || !narrow(q, d, portal)) break;
     }
-    if ((normal - d).squaredNorm() < 1e-20) return;
+    if (squared_norm(normal - d) < 1e-20) return;
     d = normal;
   }
 }

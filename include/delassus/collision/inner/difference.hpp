@@ -30,7 +30,7 @@ struct Difference {
 
   /// h(n) = max n · (A − B) for a unit n: the depth along n. min over n is the depth; −h(n) bounds the
   /// distance below.
-  double reach(const Vec3& n) const { return n.dot(core(n).w) + radius(); }
+  double reach(const Vec3& n) const { return dot(n, core(n).w) + radius(); }
 };
 
 template <class A, class B>

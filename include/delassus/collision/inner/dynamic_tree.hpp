@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
@@ -178,7 +179,7 @@ class BasicDynamicTree {
     const int axis = largest_entry(Vec3(centres.max() - centres.min()));
     const Index middle = (first + last) / 2;
     const auto centre = [&](Index leaf) { return node_[leaf].box.min()[axis] + node_[leaf].box.max()[axis]; };
-    std::nth_element(leaves_.begin() + first, leaves_.begin() + middle, leaves_.begin() + last,
+    inner::select(leaves_.data() + first, leaves_.data() + middle, leaves_.data() + last,
                      [&](Index x, Index y) { return centre(x) < centre(y); });
     const Index n = take_node({.box = whole, .parent = parent});
     surface_ += half_surface(whole);

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/manifold.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <array>
@@ -48,9 +49,9 @@ class HullOfPatch {
   };
 
   void project(std::span<const SurfaceContact> points, const Vec3& n) {
-    const Vec3 u = n.cross(unit_axis(std::abs(n[0]) < 0.6 ? 0 : 1)).normalized(), v = n.cross(u);
+    const Vec3 u = normalized(cross(n, unit_axis(std::abs(n[0]) < 0.6 ? 0 : 1))), v = cross(n, u);
     place_.clear();
-    for (const SurfaceContact& p : points) place_.push_back({u.dot(p.point.a), v.dot(p.point.a)});
+    for (const SurfaceContact& p : points) place_.push_back({dot(u, p.point.a), dot(v, p.point.a)});
   }
 
   /// Twice the area of the triangle of three points, positive when they turn left.
@@ -61,7 +62,7 @@ class HullOfPatch {
 
   /// Andrew's monotone chain over `order_` [Andrew1979].
   void find_hull() {
-    std::sort(order_.begin(), order_.end(), [&](Index i, Index j) {
+    inner::sort(order_, [&](Index i, Index j) {
       const Place &p = place_[i], &q = place_[j];
       return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : i < j;
     });
@@ -103,7 +104,7 @@ class HullOfPatch {
       const Index i = hull_[k * hull_.size() / count];
       bool is_twin = false;
       for (int j = 0; j < patch.count; ++j)
-        is_twin = is_twin || (patch.point[j].a - points[i].point.a).squaredNorm() < 1e-6 * scale * scale;
+        is_twin = is_twin || squared_norm(patch.point[j].a - points[i].point.a) < 1e-6 * scale * scale;
       if (is_twin) continue;
       source[patch.count] = i;
       patch.add(points[i].point);

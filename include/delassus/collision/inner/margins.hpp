@@ -47,7 +47,7 @@ inline double widest_margin(double speed, double scale, double h, const Collisio
 inline double margin_along(const Collider& a, const Collider& b, const Vec3& n, const Vec3& point,
                            double scale, double h, const CollisionSettings& s) {
   if (s.margin >= 0) return s.margin;
-  return limited_margin(std::abs(n.dot(b.velocity_at(point) - a.velocity_at(point))) * h, scale);
+  return limited_margin(std::abs(dot(n, b.velocity_at(point) - a.velocity_at(point))) * h, scale);
 }
 
 /// The tight box, wider by the collider's share of any margin: a pair within its margin has boxes that touch.
@@ -73,9 +73,9 @@ inline bool may_touch(const Collider& half_space, const Aabb& box, double h, con
   const Vec3 sizes = box.max() - box.min(), centre = (box.min() + box.max()) / 2;
   double reach = 0;
   for (int k = 0; k < 3; ++k) reach += std::abs(plane.normal[k]) * sizes[k];
-  const double lowest = plane.normal.dot(centre) - 0.5 * reach;
+  const double lowest = dot(plane.normal, centre) - 0.5 * reach;
   const double share =
-      s.margin >= 0 ? 0.5 * s.margin : std::max(half_space.velocity.norm() * h, 0.5 * sizes.maxCoeff());
+      s.margin >= 0 ? 0.5 * s.margin : std::max(norm(half_space.velocity) * h, 0.5 * sizes.maxCoeff());
   return lowest - plane.offset <= s.contact_distance + share;
 }
 

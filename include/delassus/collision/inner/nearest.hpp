@@ -12,15 +12,15 @@ namespace delassus::inner {
 
 /// Where the shape offers no direction (its centre, its axis), the one nearest to `wish` is taken.
 NearestSurface nearest_surface_of_ball(double radius, const std::same_as<Vec3> auto& p, const Vec3& wish) {
-  const double length = p.norm();
+  const double length = norm(p);
   if (length > 0) return {p / length, length - radius};
-  return {wish.squaredNorm() > 0 ? wish.normalized() : unit_axis(2), -radius};
+  return {squared_norm(wish) > 0 ? normalized(wish) : unit_axis(2), -radius};
 }
 
 NearestSurface nearest_surface_of_box(const Vec3& half, const std::same_as<Vec3> auto& p) {
   Vec3 beyond;
   for (int k = 0; k < 3; ++k) beyond[k] = p[k] - std::clamp(p[k], -half[k], half[k]);
-  const double length = beyond.norm();
+  const double length = norm(beyond);
   if (length > 0) return {beyond / length, length};
   int nearest = 0;
   double inside = std::numeric_limits<double>::infinity();
@@ -34,7 +34,7 @@ NearestSurface nearest_surface_of_box(const Vec3& half, const std::same_as<Vec3>
 NearestSurface nearest_surface_of_capsule(double radius, double half, const std::same_as<Vec3> auto& p,
                                           const Vec3& wish) {
   const Vec3 from_axis = p - Vec3(0, 0, std::clamp(p[2], -half, half));
-  const double length = from_axis.norm();
+  const double length = norm(from_axis);
   if (length > 0) return {from_axis / length, length - radius};
   return {perpendicular(unit_axis(2), wish), -radius};
 }
@@ -65,7 +65,7 @@ NearestSurface nearest_surface_of_cone(double radius, double height, const std::
   if (up_mantle > 0 && up_mantle < slant) return {mantle, above_mantle};
   const Vec3 from_corner = up_mantle > 0 ? Vec3(rho * outward + (z - height) * up)
                                          : Vec3((rho - radius) * outward + z * up);
-  const double length = from_corner.norm();
+  const double length = norm(from_corner);
   return length > 0 ? NearestSurface{from_corner / length, length} : NearestSurface{mantle, 0};
 }
 

@@ -64,7 +64,7 @@ NearestSurface nearest_surface_of_ellipsoid(const Vec3& axes, const std::same_as
   Vec3 gradient;
   for (int k = 0; k < 3; ++k)
     gradient[k] = std::copysign(x[k] / (a[k] * a[k]), point[k] != 0 ? point[k] : wish[k]);
-  const double steepness = gradient.norm();
+  const double steepness = norm(gradient);
   return {gradient / steepness, size * (s - a[least] * a[least]) * steepness};
 }
 

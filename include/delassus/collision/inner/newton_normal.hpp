@@ -25,8 +25,8 @@ struct NewtonNormal {
     Vec3 n = start;
     for (int round = 0; round < 8; ++round) {
       const Vec3 next = turned(n);
-      if (!(next.dot(start) > nearby)) return start;
-      const double turn2 = (next - n).squaredNorm();
+      if (!(dot(next, start) > nearby)) return start;
+      const double turn2 = squared_norm(next - n);
       n = next;
       if (turn2 < 1e-14) break;  // the next step is its square
     }
@@ -41,23 +41,23 @@ struct NewtonNormal {
   struct Edge {
     Vec3 from, to;
     Vec3 along() const { return to - from; }
-    double length2() const { return along().squaredNorm(); }
+    double length2() const { return squared_norm(along()); }
     Vec3 at(double share) const { return from + share * along(); }
   };
 
 
   Vec3 turned(const Vec3& n) const {
-    const Vec3 x = unit_across(n), y = n.cross(x);
+    const Vec3 x = unit_across(n), y = cross(n, x);
     const std::array<DifferencePoint, 5> p{difference.core(n), difference.core(n + look * x),
                                            difference.core(n - look * x), difference.core(n + look * y),
                                            difference.core(n - look * y)};
     const Edge a = widest(p, &DifferencePoint::a), b = widest(p, &DifferencePoint::b);
     // A point moves by its radius of curvature times 1e-6; an edge is longer than 1e-3 of all.
-    const double shortest2 = 1e-6 * (p[0].a.squaredNorm() + p[0].w.squaredNorm());
+    const double shortest2 = 1e-6 * (squared_norm(p[0].a) + squared_norm(p[0].w));
     const bool has_a = a.length2() > shortest2, has_b = b.length2() > shortest2;
-    const Vec3 both = a.along().cross(b.along());
-    if (has_a && has_b && both.squaredNorm() > 1e-12 * a.length2() * b.length2())
-      return both.normalized() * (both.dot(n) < 0 ? -1.0 : 1.0);
+    const Vec3 both = cross(a.along(), b.along());
+    if (has_a && has_b && squared_norm(both) > 1e-12 * a.length2() * b.length2())
+      return normalized(both) * (dot(both, n) < 0 ? -1.0 : 1.0);
     if (has_a) return on_ridge(&DifferencePoint::a, &DifferencePoint::b, 1, n, a);
     if (has_b) return on_ridge(&DifferencePoint::b, &DifferencePoint::a, -1, n, b);
     return on_smooth(n, x, y, p);
@@ -75,12 +75,12 @@ struct NewtonNormal {
   /// `p`: support points along n, n ± look x, n ± look y.
   Vec3 on_smooth(const Vec3& n, const Vec3& x, const Vec3& y, const std::array<DifferencePoint, 5>& p) const {
     const Vec3 by_x = (p[1].w - p[2].w) / (2 * look), by_y = (p[3].w - p[4].w) / (2 * look);
-    const double level = n.dot(p[0].w);  // of the cores: their radius adds as much to K as to h
-    const double xx = x.dot(by_x) - level, yy = y.dot(by_y) - level, xy = 0.5 * (x.dot(by_y) + y.dot(by_x)),
+    const double level = dot(n, p[0].w);  // of the cores: their radius adds as much to K as to h
+    const double xx = dot(x, by_x) - level, yy = dot(y, by_y) - level, xy = 0.5 * (dot(x, by_y) + dot(y, by_x)),
                  determinant = xx * yy - xy * xy;
     if (!(xx > 0 && determinant > 0)) return n;
-    const double u = x.dot(p[0].w), v = y.dot(p[0].w);
-    return (n - (yy * u - xy * v) / determinant * x - (xx * v - xy * u) / determinant * y).normalized();
+    const double u = dot(x, p[0].w), v = dot(y, p[0].w);
+    return normalized(n - (yy * u - xy * v) / determinant * x - (xx * v - xy * u) / determinant * y);
   }
 
   /// `edged` are the points of the body with the edge, `other` those of the other one; `sign` is +1 where the
@@ -89,22 +89,22 @@ struct NewtonNormal {
                 Edge e) const {
     // The ends as they are along n: those of a cone turn with n, though not when n turns along the edge.
     const auto ridge = [&](const Vec3& n, Edge& edge) {
-      const Vec3 way = sign * look * edge.along().normalized();
+      const Vec3 way = sign * look * normalized(edge.along());
       edge = {difference.core(n - way).*edged, difference.core(n + way).*edged};
-      return Vec3((n - n.dot(edge.along()) / edge.length2() * edge.along()).normalized());
+      return Vec3(normalized(n - dot(n, edge.along()) / edge.length2() * edge.along()));
     };
     const auto w = [&](const Vec3& n, const Edge& edge, double share) {
       return Vec3(sign * (edge.at(share) - difference.core(n).*other));
     };
     const Vec3 n = ridge(start, e);
-    const double share = std::clamp(-sign * w(n, e, 0).dot(e.along()) / e.length2(), 0.0, 1.0);
-    const Vec3 t = n.cross(e.along()).normalized(), middle = w(n, e, share);
+    const double share = std::clamp(-sign * dot(w(n, e, 0), e.along()) / e.length2(), 0.0, 1.0);
+    const Vec3 t = normalized(cross(n, e.along())), middle = w(n, e, share);
     Edge before = e, after = e;
     const Vec3 n_before = ridge(n - look * t, before), n_after = ridge(n + look * t, after);
     const Vec3 by_t = (w(n_after, after, share) - w(n_before, before, share)) / (2 * look);
-    const double curvature = t.dot(by_t) - n.dot(middle);
+    const double curvature = dot(t, by_t) - dot(n, middle);
     if (!(curvature > 0)) return start;
-    return ridge(n - t.dot(middle) / curvature * t, e);
+    return ridge(n - dot(t, middle) / curvature * t, e);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 
 #include <algorithm>
@@ -41,7 +42,7 @@ class PatchDoubts {
   }
 
   /// Whether what the triangle said is not to be believed.
-  bool is_false(Index triangle) const { return std::binary_search(false_.begin(), false_.end(), triangle); }
+  bool is_false(Index triangle) const { return inner::is_listed(false_, triangle); }
 
  private:
   struct Answer {
@@ -57,7 +58,7 @@ class PatchDoubts {
   void judge(const auto& surface, const Shape& shape, const Pose& pose, double scale) {
     const auto is_doubtful = [](const Answer& a) { return a.trust == PatchTrust::doubtful; };
     if (std::none_of(answers_.begin(), answers_.end(), is_doubtful)) return;
-    std::sort(answers_.begin(), answers_.end(), [](const Answer& a, const Answer& b) {
+    inner::sort(answers_, [](const Answer& a, const Answer& b) {
       return a.gap != b.gap ? a.gap > b.gap : a.triangle < b.triangle;
     });
     const double slack = 5e-3 * scale;
@@ -66,14 +67,14 @@ class PatchDoubts {
       if (!is_doubtful(a)) limit = a.gap;
     const auto depth_along = [&](const Answer& a) {
       const Vec3 lowest = pose.to_world(support(shape, Vec3(-(pose.rotation.transpose() * a.normal))));
-      return a.normal.dot(core_support(surface.triangle(a.triangle), a.normal) - lowest);
+      return dot(a.normal, core_support(surface.triangle(a.triangle), a.normal) - lowest);
     };
     pushes_.clear();
     for (const Answer& a : answers_) {
       const bool is_deep = is_doubtful(a) && a.gap < limit - slack;
       const double depth = is_deep ? depth_along(a) : 0;
       const auto frees = [&](const Answer& push) {
-        const bool is_steep = push.normal.dot(a.normal) < 0.7;
+        const bool is_steep = dot(push.normal, a.normal) < 0.7;
         const double way = is_steep ? depth_along(push) : -push.gap;
         if (!(way < (is_steep ? depth : -a.gap) - slack)) return false;
         const Vec3 by = (std::max(way, 0.0) + slack) * push.normal;
@@ -82,7 +83,7 @@ class PatchDoubts {
       if (is_deep && std::any_of(pushes_.begin(), pushes_.end(), frees)) false_.push_back(a.triangle);
       keep_push(a);
     }
-    std::sort(false_.begin(), false_.end());
+    inner::sort(false_);
   }
 
   /// Whether the shape is off the triangle, and has not got below it by another one's way.
@@ -98,7 +99,7 @@ class PatchDoubts {
   /// Of pushes within 5° the deepest stays, which is the last.
   void keep_push(const Answer& a) {
     for (Answer& push : pushes_)
-      if (push.normal.dot(a.normal) > 0.9962) {
+      if (dot(push.normal, a.normal) > 0.9962) {
         push = a;
         return;
       }

@@ -26,8 +26,8 @@ class BasicPolytope {
   /// Pre: four points that span a volume.
   explicit BasicPolytope(const std::array<DifferencePoint, 4>& corner) : points_count_(4) {
     for (int i = 0; i < 4; ++i) points_[i] = corner[i];
-    const Vec3 normal = (corner[1].w - corner[0].w).cross(corner[2].w - corner[0].w);
-    if (normal.dot(corner[3].w - corner[0].w) > 0) std::swap(points_[1], points_[2]);
+    const Vec3 normal = cross(corner[1].w - corner[0].w, corner[2].w - corner[0].w);
+    if (dot(normal, corner[3].w - corner[0].w) > 0) std::swap(points_[1], points_[2]);
     for (const auto& [i, j, k] : {std::array{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}) add_face(i, j, k);
   }
 
@@ -57,7 +57,7 @@ class BasicPolytope {
     for (int f = 0; f < faces_count_; ++f) {
       const Face& face = faces_[f];
       const bool is_seen = face.offset == std::numeric_limits<double>::infinity() ||
-                           face.normal.dot(q.w) - face.offset > tolerance;
+                           dot(face.normal, q.w) - face.offset > tolerance;
       if (!is_seen) {
         if (kept != f) faces_[kept] = face;
         ++kept;
@@ -78,16 +78,16 @@ class BasicPolytope {
     Face& face = faces_[faces_count_++];
     face.v = {std::uint8_t(i), std::uint8_t(j), std::uint8_t(k)};
     const Vec3 &a = points_[i].w, &b = points_[j].w, &c = points_[k].w;
-    face.normal = (b - a).cross(c - a);
-    const Scalar area2 = face.normal.norm();
+    face.normal = cross(b - a, c - a);
+    const Scalar area2 = norm(face.normal);
     // The normal of a sliver holds no digits below this: its height is lost in the rounding of its edges.
-    const Scalar edge2 = std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+    const Scalar edge2 = std::max(squared_norm(b - a), squared_norm(c - a));
     if (!(area2 > 1e-12 * edge2)) {
       face.offset = std::numeric_limits<double>::infinity();
       return;
     }
     face.normal /= area2;
-    face.offset = face.normal.dot(a);
+    face.offset = dot(face.normal, a);
   }
 
   /// Keeps the edges that only one of the removed faces has: an edge meets its reverse and both go.

@@ -33,7 +33,7 @@ struct PosedSurface {
   }
   SharpEdge edge(Index t, const Triangle& triangle, int k) const {
     const Index other = surface.neighbour(t, k);
-    return {triangle, k, other < 0 ? Vec3(Vec3::Zero()) : Vec3(pose.rotation * surface.normal(other))};
+    return {triangle, k, other < 0 ? Vec3(zero<Vec3>()) : Vec3(pose.rotation * surface.normal(other))};
   }
   /// A box that holds one of the surface's own frame.
   Bounds bounds(const Bounds& own) const {
@@ -51,8 +51,8 @@ struct PosedSurface {
     bool is_in_cone = true;
     surface.each_around(v, [&](Index w) {
       const Vec3 edge = surface.vertex(w) - at;
-      const double rise = own.dot(edge);
-      is_in_cone = is_in_cone && (rise <= 0 || rise * rise <= cone_slack * cone_slack * edge.squaredNorm());
+      const double rise = dot(own, edge);
+      is_in_cone = is_in_cone && (rise <= 0 || rise * rise <= cone_slack * cone_slack * squared_norm(edge));
     });
     return is_in_cone;
   }
@@ -61,7 +61,7 @@ struct PosedSurface {
   /// vertices move by themselves, each that looks that way.
   bool may_touch_along(Index v, const Vec3& n) const {
     if constexpr (requires { surface.outward_at(v); })
-      return n.dot(pose.rotation * surface.outward_at(v)) > 0;
+      return dot(n, pose.rotation * surface.outward_at(v)) > 0;
     else
       return is_farthest(v, n);
   }
@@ -76,9 +76,9 @@ struct PosedSurface {
                   [&](Index t) {
                     if (!is_shortest) return;
                     const Triangle other = plain(t);
-                    if ((at - nearest_on(other, at)).norm() >= 0.999 * depth) return;
+                    if (norm(at - nearest_on(other, at)) >= 0.999 * depth) return;
                     const Vec3 middle = (other.point[0] + other.point[1] + other.point[2]) / 3;
-                    is_shortest = normal.dot(middle - base) >= 0;
+                    is_shortest = dot(normal, middle - base) >= 0;
                   });
     return is_shortest;
   }
@@ -91,10 +91,10 @@ struct PosedSurface {
     bool is_near = false;
     surface.visit([&](const Bounds& box) { return !is_near && box.meets(near); },
                   [&](Index t) {
-                    if (is_near || !(normal.dot(surface.normal(t)) < 0)) return;
+                    if (is_near || !(dot(normal, surface.normal(t)) < 0)) return;
                     const Triangle other = plain(t);
-                    is_near = (at - nearest_on(other, at)).norm() < 0.999 * depth &&
-                              (base - nearest_on(other, base)).norm() > 1e-3 * depth;
+                    is_near = norm(at - nearest_on(other, at)) < 0.999 * depth &&
+                              norm(base - nearest_on(other, base)) > 1e-3 * depth;
                   });
     return is_near;
   }

@@ -30,8 +30,8 @@ inline double spread(const Patch& patch, const Choice& c, const Vec3& n) {
       const Vec3 &p = patch.point[c.index[i]].a, &q = patch.point[c.index[j]].a;
       bool is_hull_edge = i != j;
       for (int k = 0; k < c.count && is_hull_edge; ++k)
-        is_hull_edge = k == i || k == j || (q - p).cross(patch.point[c.index[k]].a - p).dot(n) >= 0;
-      if (is_hull_edge) area2 += p.cross(q).dot(n);
+        is_hull_edge = k == i || k == j || dot(cross(q - p, patch.point[c.index[k]].a - p), n) >= 0;
+      if (is_hull_edge) area2 += dot(cross(p, q), n);
     }
   return area2;
 }
@@ -45,7 +45,7 @@ inline void fill(const Patch& patch, int limit, Choice& c) {
       if (c.has(i)) continue;
       double distance = std::numeric_limits<double>::infinity();
       for (int k = 0; k < c.count; ++k)
-        distance = std::min(distance, (patch.point[i].a - patch.point[c.index[k]].a).squaredNorm());
+        distance = std::min(distance, squared_norm(patch.point[i].a - patch.point[c.index[k]].a));
       if (distance > best_distance) best_distance = distance, best = i;
     }
     if (best < 0) return;
@@ -59,12 +59,12 @@ inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
   c.add(deepest(patch));
   fill(patch, 2, c);
   const Vec3 &p = patch.point[c.index[0]].a, &q = patch.point[c.index[1]].a;
-  const Vec3 across = n.cross(q - p);
+  const Vec3 across = cross(n, q - p);
   for (const double side : {1.0, -1.0}) {
     int best = -1;
     double reach = 0;
     for (int i = 0; i < patch.count && c.count < limit; ++i) {
-      const double r = side * across.dot(patch.point[i].a - p);
+      const double r = side * dot(across, patch.point[i].a - p);
       if (!c.has(i) && r > reach) reach = r, best = i;
     }
     if (best >= 0) c.add(best);
@@ -79,7 +79,7 @@ inline void drop_crowded(const Patch& patch, Choice& c) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < c.count; ++i)
     for (int j = 0; j < c.count; ++j) {
-      const double apart = (patch.point[c.index[i]].a - patch.point[c.index[j]].a).squaredNorm();
+      const double apart = squared_norm(patch.point[c.index[i]].a - patch.point[c.index[j]].a);
       if (i != j && apart < least) least = apart, crowded = i;
     }
   c.index[crowded] = c.index[--c.count];

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <delassus/collision/pair_memory.hpp>
+#include <delassus/core/sort.hpp>
 
-#include <algorithm>
 
 namespace delassus::inner {
 
@@ -21,7 +21,7 @@ struct RestingPair : PairMemory {
 
   double margin = -1;        ///< up to this gap there are no other points; negative: not to be repeated
   std::uint64_t shapes = 0;  ///< fingerprint of both, and of the most points asked for
-  Vec3 normal_a = Vec3::Zero(), normal_b = Vec3::Zero();  ///< as A sees it, as B does
+  Vec3 normal_a = zero<Vec3>(), normal_b = zero<Vec3>();  ///< as A sees it, as B does
   std::array<double, capacity> gap{};                     ///< when the points were made, m
   std::array<std::uint8_t, capacity> by_id{};             ///< the points' places in the order of their ids
 
@@ -33,10 +33,10 @@ struct RestingPair : PairMemory {
     normal_a = n;
     normal_b = b_in_a.rotation.transpose() * n;
     for (int k = 0; k < count; ++k) {
-      gap[k] = n.dot(b_in_a.to_world(point[k].local_b) - point[k].local_a);
+      gap[k] = dot(n, b_in_a.to_world(point[k].local_b) - point[k].local_a);
       by_id[k] = std::uint8_t(k);
     }
-    std::sort(by_id.begin(), by_id.begin() + count,
+    inner::sort(by_id.data(), by_id.data() + count,
               [this](std::uint8_t i, std::uint8_t k) { return point[i].id < point[k].id; });
   }
 
@@ -48,13 +48,13 @@ struct RestingPair : PairMemory {
     const bool is_a = owner == NormalOwner::a;
     const Vec3 turned = b_in_a.rotation * normal_b;
     n = is_a ? normal_a : turned;
-    if (!((turned - normal_a).squaredNorm() <= stillness * stillness)) return false;
+    if (!(squared_norm(turned - normal_a) <= stillness * stillness)) return false;
     const double still = stillness * scale;
     for (int k = 0; k < count; ++k) {
       const RememberedPoint& p = point[by_id[k]];
       const Vec3 &a = p.local_a, b = b_in_a.to_world(p.local_b), apart = b - a;
-      const double g = n.dot(apart);
-      if (!((apart - g * n).squaredNorm() <= still * still) || !(std::abs(g - gap[by_id[k]]) <= still))
+      const double g = dot(n, apart);
+      if (!(squared_norm(apart - g * n) <= still * still) || !(std::abs(g - gap[by_id[k]]) <= still))
         return false;
       now[k] = is_a ? PatchPoint{b - g * n, b, g, p.id} : PatchPoint{a, a + g * n, g, p.id};
     }

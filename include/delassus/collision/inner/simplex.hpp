@@ -34,7 +34,7 @@ struct BasicSimplex {
     count = 2;
   }
   Vec3 mix(Vec3 DifferencePoint::*member) const {
-    Vec3 sum = Vec3::Zero();
+    Vec3 sum = zero<Vec3>();
     for (int i = 0; i < count; ++i) sum += weight[i] * (p[i].*member);
     return sum;
   }
@@ -45,7 +45,7 @@ using Simplex = BasicSimplex<double>;
 /// Nearest point of the segment (p₀, p₁).
 Vec3 nearest_on_segment(std::same_as<Simplex> auto& s) {
   const Vec3 ab = s.p[1].w - s.p[0].w;
-  const double t = -s.p[0].w.dot(ab), length2 = ab.squaredNorm();
+  const double t = -dot(s.p[0].w, ab), length2 = squared_norm(ab);
   if (!(t > 0)) {
     s.keep(0);
   } else if (t >= length2) {
@@ -62,7 +62,7 @@ void begin_with_short_edges(std::same_as<Simplex> auto& s) {
   int first = 0;
   double longest = -1;
   for (int i = 0; i < 3; ++i) {
-    const double length2 = (s.p[(i + 1) % 3].w - s.p[(i + 2) % 3].w).squaredNorm();
+    const double length2 = squared_norm(s.p[(i + 1) % 3].w - s.p[(i + 2) % 3].w);
     if (length2 > longest) longest = length2, first = i;
   }
   std::rotate(s.p.begin(), s.p.begin() + first, s.p.begin() + 3);
@@ -74,8 +74,8 @@ void begin_with_short_edges(std::same_as<Simplex> auto& s) {
 Vec3 nearest_on_triangle(std::same_as<Simplex> auto& s) {
   begin_with_short_edges(s);
   const Vec3 a = s.p[0].w, b = s.p[1].w, c = s.p[2].w, ab = b - a, ac = c - a;
-  const double d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c),
-               d6 = -ac.dot(c);
+  const double d1 = -dot(ab, a), d2 = -dot(ac, a), d3 = -dot(ab, b), d4 = -dot(ac, b), d5 = -dot(ab, c),
+               d6 = -dot(ac, c);
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
   if (d1 <= 0 && d2 <= 0) {
     s.keep(0);
@@ -92,14 +92,14 @@ Vec3 nearest_on_triangle(std::same_as<Simplex> auto& s) {
     s.keep(1, 2, sum > 0 ? (d4 - d3) / sum : 0.0);
   } else {
     const double sum = va + vb + vc;
-    const Vec3 normal = ab.cross(ac);
-    const double area2 = normal.squaredNorm();
+    const Vec3 normal = cross(ab, ac);
+    const double area2 = squared_norm(normal);
     if (!(sum > 0) || !(area2 > 0)) {
       s.count = 2;
       return nearest_on_segment(s);
     }
     s.weight = {1 - vb / sum - vc / sum, vb / sum, vc / sum, 0};
-    return normal * (normal.dot(a) / area2);
+    return normal * (dot(normal, a) / area2);
   }
   return s.mix(&DifferencePoint::w);
 }
@@ -109,16 +109,16 @@ Vec3 nearest_on_triangle(std::same_as<Simplex> auto& s) {
 Vec3 nearest_on_tetrahedron(std::same_as<Simplex> auto& s, bool& is_inside) {
   constexpr int faces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
   Simplex best;
-  Vec3 nearest = Vec3::Zero();
+  Vec3 nearest = zero<Vec3>();
   is_inside = true;
   for (const auto& f : faces) {
     const Vec3 a = s.p[f[0]].w;
-    const Vec3 normal = (s.p[f[1]].w - a).cross(s.p[f[2]].w - a);
-    const double origin = -a.dot(normal), opposite = (s.p[f[3]].w - a).dot(normal);
+    const Vec3 normal = cross(s.p[f[1]].w - a, s.p[f[2]].w - a);
+    const double origin = -dot(a, normal), opposite = dot(s.p[f[3]].w - a, normal);
     if (origin * opposite > 0) continue;
     Simplex face{.p = {s.p[f[0]], s.p[f[1]], s.p[f[2]]}, .count = 3};
     const Vec3 v = nearest_on_triangle(face);
-    if (is_inside || v.squaredNorm() < nearest.squaredNorm()) best = face, nearest = v;
+    if (is_inside || squared_norm(v) < squared_norm(nearest)) best = face, nearest = v;
     is_inside = false;
   }
   if (!is_inside) s = best;

@@ -23,18 +23,18 @@ NormalOwner snap_normal_to_face(const std::same_as<Shape> auto& a, const Shape& 
   NormalOwner owner = NormalOwner::kernel;
   double best = kernel.distance - advance;
   const auto consider = [&](const Vec3& normal, NormalOwner who) {
-    if (!(normal.dot(kernel.normal) > 0.9998)) return;
+    if (!(dot(normal, kernel.normal) > 0.9998)) return;
     SignedPair trial = kernel;
     trial.normal = normal;
     const Vec3 reach_a = support(a, normal);
     const Vec3 reach_b = b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * normal))));
-    trial.distance = normal.dot(reach_b - reach_a);
+    trial.distance = dot(normal, reach_b - reach_a);
     if (!(trial.distance >= kernel.distance - advance)) return;
     const double value = trial.distance + (who == last ? advance : 0.0);
     if (owner != NormalOwner::kernel && !(value > best)) return;
     best = value;
     owner = who;
-    put_witnesses(normal.dot(reach_a), normal.dot(reach_b), trial);
+    put_witnesses(dot(normal, reach_a), dot(normal, reach_b), trial);
     r = trial;
   };
   const Face face_a = face_towards(a, kernel.normal);

@@ -8,6 +8,7 @@
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -49,7 +50,7 @@ class SoftPairs {
 
   /// Makes the names of the contacts differ, in their order.
   void name_apart() {
-    std::sort(found.begin(), found.end(), goes_before);
+    inner::sort(found, goes_before);
     for (std::size_t i = 1; i < found.size(); ++i)
       if (found[i].point.name <= found[i - 1].point.name) found[i].point.name = found[i - 1].point.name + 1;
   }
@@ -92,12 +93,12 @@ class SoftPairs {
   /// Both triangles of an edge find what touches it: of points nearer than 1e-3 L with normals within 5° the
   /// first stays.
   void drop_twins_of_edges(double scale) {
-    std::sort(found.begin(), found.end(), goes_before);
+    inner::sort(found, goes_before);
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (found[i].edge_a < 0) continue;
       for (std::size_t j = i; j-- > 0 && found[j].point.name == found[i].point.name;)
-        if (!found[j].is_dropped && found[j].edge_a >= 0 && found[j].normal.dot(found[i].normal) > 0.9962 &&
-            (found[j].point.a - found[i].point.a).squaredNorm() < 1e-6 * scale * scale)
+        if (!found[j].is_dropped && found[j].edge_a >= 0 && dot(found[j].normal, found[i].normal) > 0.9962 &&
+            squared_norm(found[j].point.a - found[i].point.a) < 1e-6 * scale * scale)
           found[i].is_dropped = true;
     }
     drop();

@@ -50,7 +50,7 @@ class SoftSurface : public TriangleSurface {
     }
     topology_ = SurfaceTopology(corners_, Index(block_.size()));
     vertices_ = rest_;
-    velocities_.assign(block_.size(), Vec3::Zero());
+    velocities_.assign(block_.size(), zero<Vec3>());
     moves_.assign(block_.size(), 0);
     normals_.resize(corners_.size());
     outward_ = vertices_;
@@ -69,7 +69,7 @@ class SoftSurface : public TriangleSurface {
   template <class Set>
   void follow(const Set& nodes) {
     radius_ = nodes.shape(block_[0]).size[0];
-    Vec3 mean = Vec3::Zero();
+    Vec3 mean = zero<Vec3>();
     is_sound_ = true;
     is_movable_ = false;
     for (std::size_t v = 0; v < block_.size(); ++v) {
@@ -82,8 +82,8 @@ class SoftSurface : public TriangleSurface {
     }
     top_speed_ = inner_speed_ = 0;
     for (const Vec3& v : velocities_) {
-      top_speed_ = std::max(top_speed_, v.norm());
-      inner_speed_ = std::max(inner_speed_, (v - mean).norm());
+      top_speed_ = std::max(top_speed_, norm(v));
+      inner_speed_ = std::max(inner_speed_, norm(v - mean));
     }
     find_normals();
     refit();
@@ -111,12 +111,12 @@ class SoftSurface : public TriangleSurface {
   /// Shares w ≥ 0, Σ w = 1, of the point of triangle t next to x; a corner within 1e-6 is that corner.
   Vec3 shares(Index t, const Vec3& x) const {
     const auto [a, b, c] = points_of(t);
-    const Vec3 area = (b - a).cross(c - a);
-    const double size2 = area.squaredNorm();
-    Vec3 w(-(x - a).squaredNorm(), -(x - b).squaredNorm(), -(x - c).squaredNorm());
+    const Vec3 area = cross(b - a, c - a);
+    const double size2 = squared_norm(area);
+    Vec3 w(-squared_norm(x - a), -squared_norm(x - b), -squared_norm(x - c));
     if (size2 > 0) {
-      w = Vec3(area.dot((c - b).cross(x - b)), area.dot((a - c).cross(x - c)),
-               area.dot((b - a).cross(x - a))) /
+      w = Vec3(dot(area, cross(c - b, x - b)), dot(area, cross(a - c, x - c)),
+               dot(area, cross(b - a, x - a))) /
           size2;
       for (int k = 0; k < 3; ++k) w[k] = w[k] > 1e-6 ? w[k] : 0.0;
       w /= w[0] + w[1] + w[2];
@@ -162,7 +162,7 @@ class SoftSurface : public TriangleSurface {
     return false;
   }
   void find_normals() {
-    for (Vec3& o : outward_) o.setZero();
+    for (Vec3& o : outward_) set_zero(o);
     for (std::size_t t = 0; t < corners_.size(); ++t) {
       const auto [a, b, c] = points_of(Index(t));
       normals_[t] = triangle_normal(a, b, c);

@@ -49,9 +49,9 @@ struct BasicStraighten {
 
   /// Takes a normal that is near and, but for rounding, proves as much.
   bool take(const Vec3& n, SignedPair& r) const {
-    if (!(n.dot(r.normal) > nearby)) return false;
+    if (!(dot(n, r.normal) > nearby)) return false;
     const Scalar distance = proven(n),
-                 rounding = 1e-15 * (r.point_a.norm() + r.point_b.norm() + b_in_a.position.norm());
+                 rounding = 1e-15 * (norm(r.point_a) + norm(r.point_b) + norm(b_in_a.position));
     if (!(distance >= r.distance - rounding)) return false;
     r.normal = n;
     r.distance = distance;
@@ -65,7 +65,7 @@ struct BasicStraighten {
 
   /// Of flat bodies the kernel found the face itself.
   static bool is_face(const Face& face, const Vec3& n) {
-    return face.count >= 3 && (face.normal - n).squaredNorm() < 1e-30;
+    return face.count >= 3 && squared_norm(face.normal - n) < 1e-30;
   }
 
   /// Where the one body's lowest point is over a face of the other, both bounds meet: no normal nearby is
@@ -83,7 +83,7 @@ struct BasicStraighten {
   static bool is_over(const Face& face, const Vec3& p) {
     for (int i = 0; i < face.count; ++i) {
       const Vec3& from = face.point[i];
-      if ((face.point[(i + 1) % face.count] - from).cross(p - from).dot(face.normal) < 0) return false;
+      if (dot(cross(face.point[(i + 1) % face.count] - from, p - from), face.normal) < 0) return false;
     }
     return true;
   }
@@ -105,8 +105,8 @@ struct BasicStraighten {
     Vec3 n = r.normal;
     for (int round = 0; round < 2; ++round) {
       const GjkResult q = apart(n, 1e-2 * scale - proven(n));
-      if (!q.is_apart || !(q.normal.dot(r.normal) > nearby)) break;
-      const Scalar turn2 = (q.normal - n).squaredNorm();
+      if (!q.is_apart || !(dot(q.normal, r.normal) > nearby)) break;
+      const Scalar turn2 = squared_norm(q.normal - n);
       n = q.normal;
       if (turn2 < 1e-14) break;
     }

@@ -25,7 +25,7 @@ inline std::uint64_t fingerprint(const Shape& s) {
 
 /// No point of the body is faster than this, m/s.
 inline double top_speed(const Collider& c) {
-  return c.velocity.norm() + c.angular_velocity.norm() * outer_radius(c.shape);
+  return norm(c.velocity) + norm(c.angular_velocity) * outer_radius(c.shape);
 }
 
 /// The size that a shape brings to its pairs, m, of which the smaller one counts: a half-space leaves it to

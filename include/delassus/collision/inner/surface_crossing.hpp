@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/posed_surface.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <array>
@@ -79,10 +80,10 @@ class SurfaceCrossing {
  private:
   /// A vertex beside a triangle, or over an edge of flat ones, is found by all that share what it touches.
   void drop_twins() {
-    std::sort(out_.begin(), out_.end(), goes_before);
+    inner::sort(out_, goes_before);
     for (std::size_t i = 1; i < out_.size(); ++i)
       for (std::size_t j = i; j-- > 0 && out_[j].point.name == out_[i].point.name;)
-        if ((out_[j].normal - out_[i].normal).squaredNorm() < 1e-12 &&
+        if (squared_norm(out_[j].normal - out_[i].normal) < 1e-12 &&
             std::abs(out_[j].point.gap - out_[i].point.gap) < 1e-9 * range_.scale)
           out_[i].is_dropped = true;
     std::erase_if(out_, [](const FeatureContact& c) { return c.is_dropped; });
@@ -99,8 +100,8 @@ class SurfaceCrossing {
 
   /// The least height of the points over the plane.
   static double lowest(const std::array<Vec3, 3>& points, const Vec3& normal, const Vec3& on_plane) {
-    double least = normal.dot(points[0] - on_plane);
-    for (int k = 1; k < 3; ++k) least = std::min(least, normal.dot(points[k] - on_plane));
+    double least = dot(normal, points[0] - on_plane);
+    for (int k = 1; k < 3; ++k) least = std::min(least, dot(normal, points[k] - on_plane));
     return least;
   }
 
@@ -158,7 +159,7 @@ class SurfaceCrossing {
                     f = b_.edge(c.triangle_b, b_.triangle(c.triangle_b), c.edge_b);
     EdgeTouch touch;
     for (const FeatureContact& o : out_) {
-      if (!(o.point.gap < 0 && o.point.gap > 0.999 * c.point.gap) || o.normal.dot(c.normal) > 0.9) continue;
+      if (!(o.point.gap < 0 && o.point.gap > 0.999 * c.point.gap) || dot(o.normal, c.normal) > 0.9) continue;
       SharpEdge moved = f;
       const Vec3 way = -1.001 * o.point.gap * o.normal;
       moved.from += way;

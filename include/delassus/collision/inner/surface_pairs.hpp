@@ -11,6 +11,7 @@
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 
 #include <algorithm>
@@ -109,7 +110,7 @@ class SurfacePairs {
       const Triangle triangle = surface.triangle(t);
       for (int k = 0; k < 3; ++k) {
         const Vec3& corner = triangle.point[k];
-        const double gap = plane.normal.dot(corner) - plane.offset;
+        const double gap = dot(plane.normal, corner) - plane.offset;
         if (!(gap <= reach)) continue;
         const Vec3 foot = corner - gap * plane.normal;
         points_.push_back({{corner, foot, gap, vertex_name(true, triangle.corner[k])}, -plane.normal});
@@ -120,7 +121,7 @@ class SurfacePairs {
 
   void find_last(std::uint64_t key) {
     const auto less = [](const PairMemory& m, std::uint64_t k) { return m.pair < k; };
-    last_ = std::size_t(std::lower_bound(memory_.begin(), memory_.end(), key, less) - memory_.begin());
+    last_ = std::size_t(inner::lower_bound(memory_.data(), memory_.data() + memory_.size(), key, less) - memory_.begin());
     is_claimed_.clear();
     for (std::size_t i = last_; i < memory_.size() && memory_[i].pair == key; ++i)
       is_claimed_.push_back(false);
@@ -134,7 +135,7 @@ class SurfacePairs {
       split_group();
       emit_group(pair, first_out, out);
     }
-    std::sort(out.begin() + std::ptrdiff_t(first_out), out.end(),
+    inner::sort(out.data() + first_out, out.data() + out.size(),
               [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
   }
 
@@ -143,7 +144,7 @@ class SurfacePairs {
     const Vec3 n = points_[0].normal;
     group_.clear();
     erase_if(points_, [&](const SurfaceContact& p) {
-      if (p.normal.dot(n) < 0.9962) return false;
+      if (dot(p.normal, n) < 0.9962) return false;
       group_.push_back(p);
       return true;
     });
@@ -154,7 +155,7 @@ class SurfacePairs {
     int best = -1;
     double closeness = 0.9;
     for (std::size_t i = 0; i < is_claimed_.size(); ++i) {
-      const double c = memory_[last_ + i].normal.dot(n);
+      const double c = dot(memory_[last_ + i].normal, n);
       if (!is_claimed_[i] && c > closeness) closeness = c, best = int(i);
     }
     if (best < 0) return {};

@@ -15,7 +15,7 @@ inline bool is_turning(const Collider& c) {
 struct Swing {
   bool is_found = false;
   double time = 0;          ///< s from now
-  Vec3 arm = Vec3::Zero();  ///< from the body's middle to the point then
+  Vec3 arm = zero<Vec3>();  ///< from the body's middle to the point then
 };
 
 /// When the lowest point of a body along `up` first sinks under the plane up · x = height by `target` more
@@ -25,10 +25,10 @@ inline Swing swing_to_plane(const Collider& body, const Vec3& up, double height,
   const auto lowest = [&](double t) {
     const Pose pose = pose_after(body, t);
     s.arm = pose.rotation * support(body.shape, Vec3(-(pose.rotation.transpose() * up)));
-    return up.dot(pose.position + s.arm) - height;
+    return dot(up, pose.position + s.arm) - height;
   };
   const double level = std::min(lowest(0), 0.0) - target;
-  const int looks = int(std::clamp(body.angular_velocity.norm() * h / 0.05, 1.0, 200.0)) + 1;
+  const int looks = int(std::clamp(norm(body.angular_velocity) * h / 0.05, 1.0, 200.0)) + 1;
   for (int look = 1; look <= looks && !s.is_found; ++look) {
     s.time = h * look / looks;
     s.is_found = lowest(s.time) < level;
@@ -51,7 +51,7 @@ inline bool meets(const Collider& other, const Collider& body, const Swing& swin
   const Pose point{.position = body.pose.position + swing.time * body.velocity + swing.arm};
   Patch patch;
   const SignedPair r =
-      distance_of(other.shape, Sphere{near}, other.pose.to_local(point), scale, near, Vec3::Zero(), patch);
+      distance_of(other.shape, Sphere{near}, other.pose.to_local(point), scale, near, zero<Vec3>(), patch);
   return r.status == PairStatus::near && r.distance < near;
 }
 

@@ -49,7 +49,7 @@ struct Impact {
   bool is_now = false;  ///< within the target from the start: not found, but `normal_in_a` holds
   double time = 0;      ///< s from now
   Pose a, b;            ///< where both are then
-  Vec3 normal_in_a = Vec3::Zero();
+  Vec3 normal_in_a = zero<Vec3>();
 };
 
 /// Conservative advancement [Mirtich1996]: no point closes in along n faster than
@@ -61,10 +61,10 @@ struct Impact {
 /// `target` now.
 inline Impact time_of_impact(const Collider& a, const Collider& b, double h, double scale, double target) {
   Impact hit;
-  const auto spin = [](const Collider& c) { return c.angular_velocity.norm() * outer_radius(c.shape); };
+  const auto spin = [](const Collider& c) { return norm(c.angular_velocity) * outer_radius(c.shape); };
   const double turning = spin(a) + spin(b);
   Patch patch;
-  Vec3 guess = Vec3::Zero();
+  Vec3 guess = zero<Vec3>();
   for (int look = 0; look < 200; ++look) {
     hit.a = pose_after(a, hit.time);
     hit.b = pose_after(b, hit.time);
@@ -77,7 +77,7 @@ inline Impact time_of_impact(const Collider& a, const Collider& b, double h, dou
       hit.is_now = look == 0;
       return hit;
     }
-    const double closing = (hit.a.rotation * r.normal).dot(a.velocity - b.velocity) + turning;
+    const double closing = dot(hit.a.rotation * r.normal, a.velocity - b.velocity) + turning;
     if (!(closing > 0)) return {};
     hit.time += r.distance / closing;
     if (!(hit.time < h)) return {};

@@ -3,9 +3,9 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/core/wrapping.hpp>
 
-#include <algorithm>
 #include <vector>
 
 namespace delassus::inner {
@@ -59,7 +59,7 @@ void place_ends(const Backend& backend, Results& results) {
 
 /// The order in which every backend answers: by pair, then by feature.
 inline void sort_by_name(std::vector<ContactPoint>& contacts) {
-  std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& p, const ContactPoint& q) {
+  inner::sort(contacts, [](const ContactPoint& p, const ContactPoint& q) {
     return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
   });
 }

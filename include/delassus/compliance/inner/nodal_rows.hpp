@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -49,7 +49,7 @@ class NodalRows<RowSystem<T, Widths<w...>, R...>> {
       for (const Index b : std::get<s>(rows.template pool<p>().sets).block)
         if (std::exchange(t.slot[b], 0) < 0) t.nodes.emplace_back(set.body_of(b), b);
     });
-    std::sort(t.nodes.begin(), t.nodes.end());
+    inner::sort(t.nodes);
     t.bodies.clear();
     t.blocks.clear();
     t.owner.clear();
@@ -129,10 +129,10 @@ class NodalRows<RowSystem<T, Widths<w...>, R...>> {
     for (Index i = 0; i + 1 < Index(blocks.offset.size()); ++i)
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         if (!is_repeated(blocks, t, i, e)) items.emplace_back(t.owner[t.slot[blocks.block[e]]], i);
-    std::sort(items.begin(), items.end());
+    inner::sort(items);
   }
   static auto first_of(const Array<std::pair<Index, Index>>& items, Index owner) {
-    return std::lower_bound(items.begin(), items.end(), std::pair<Index, Index>(owner, -1));
+    return inner::lower_bound(items.data(), items.data() + items.size(), std::pair<Index, Index>(owner, -1));
   }
 
   /// Σ_f V_fᵀ H_fᵀ over the entries f of an item on one body.

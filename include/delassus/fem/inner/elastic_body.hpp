@@ -3,13 +3,13 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/handle.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/fem/elasticity/material.hpp>
 #include <delassus/fem/inner/held_nodes.hpp>
 #include <delassus/fem/inner/node_matrix.hpp>
 #include <delassus/math/lanes.hpp>
 #include <delassus/rows/body_set.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -187,7 +187,7 @@ class ElasticBody {
       const Index e = element_at(Index(k));
       const auto& t = mesh_.cells()[e];
       for (int a = 0; a < E::nodes; ++a) order_[k][a] = a;
-      std::sort(order_[k].begin(), order_[k].end(), [&](int a, int b) { return t[a] < t[b]; });
+      inner::sort(order_[k], [&](int a, int b) { return t[a] < t[b]; });
       for (int a = 0; a < E::nodes; ++a) nodes_[k][a] = t[order_[k][a]];
       if constexpr (LaneElement<E, M>)
         if (Index(k) < batched())

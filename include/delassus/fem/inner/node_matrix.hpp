@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/fem/inner/tie.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/math/lanes.hpp>
@@ -48,10 +49,10 @@ class NodeMatrix {
       for (const auto& [a, b] : pairs_of_nodes<corners>) pairs_.emplace_back(t[a], t[b]);
     const auto all = pairs_;
     for (const Tie& tie : ties) pairs_.emplace_back(tie.i, tie.j);
-    std::sort(pairs_.begin(), pairs_.end());
-    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    inner::sort(pairs_);
+    inner::drop_repeats(pairs_);
     const auto place_of = [&](const std::pair<Index, Index>& pair) {
-      return Index(std::lower_bound(pairs_.begin(), pairs_.end(), pair) - pairs_.begin());
+      return Index(inner::lower_bound(pairs_.data(), pairs_.data() + pairs_.size(), pair) - pairs_.begin());
     };
     places_.resize(elements.size());
     for (std::size_t e = 0; e < elements.size(); ++e)

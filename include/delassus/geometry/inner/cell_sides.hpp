@@ -3,6 +3,7 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <array>
@@ -37,11 +38,11 @@ std::vector<CellSide<N>> sorted_sides(const Mesh& mesh, const int (&faces)[F][N]
       for (std::size_t k = 0; k < N; ++k) around[k] = face[k] = mesh.cells()[e][corners[k]];
       const auto least = std::min_element(around.begin(), around.end()) - around.begin();
       face[N] = around[(least + 1) % N] < around[(least + N - 1) % N] ? 0 : 1;
-      std::sort(face.begin(), face.end() - 1);
+      inner::sort(face.data(), face.data() + face.size() - 1);
       number = Index(sides.size()) - 1;
       element = e;
     }
-  std::sort(sides.begin(), sides.end(), [](const auto& a, const auto& b) {
+  inner::sort(sides, [](const auto& a, const auto& b) {
     return a.face != b.face ? a.face < b.face : a.number < b.number;
   });
   return sides;
@@ -56,7 +57,7 @@ std::vector<CellSide<N>> outer_sides(const Mesh& mesh, const int (&faces)[F][N])
     for (next = k; next < sides.size() && sides[next].has_points_of(sides[k]);) ++next;
     if (next == k + 1) outer.push_back(sides[k]);
   }
-  std::sort(outer.begin(), outer.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  inner::sort(outer, [](const auto& a, const auto& b) { return a.number < b.number; });
   return outer;
 }
 

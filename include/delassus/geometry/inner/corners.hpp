@@ -26,14 +26,14 @@ double longest_edge(const Mesh& mesh, Index e) {
   const auto x = corners(mesh, e);
   double longest = 0;
   for (std::size_t a = 0; a < x.size(); ++a)
-    for (std::size_t b = a + 1; b < x.size(); ++b) longest = std::max(longest, (x[a] - x[b]).norm());
+    for (std::size_t b = a + 1; b < x.size(); ++b) longest = std::max(longest, norm(x[a] - x[b]));
   return longest;
 }
 
 /// ∂x/∂ξ = Σ x_a ⊗ slope(a), slope(a) = ∂N_a/∂ξ.
 template <std::size_t N>
 Mat3 jacobian_of(const std::array<Vec3, N>& x, const auto& slope) {
-  Mat3 J = Mat3::Zero();
+  Mat3 J = zero<Mat3>();
   for (std::size_t a = 0; a < N; ++a) {
     const Vec3 s = slope(int(a));
     for (int k = 0; k < 3; ++k)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -53,7 +54,7 @@ class FlatTree {
   template <class BoundsOf>
   void build(Index count, const BoundsOf& bounds_of) {
     item_.resize(std::size_t(count));
-    std::vector<Vec3> centre(std::size_t(count), Vec3::Zero());
+    std::vector<Vec3> centre(std::size_t(count), zero<Vec3>());
     for (Index i = 0; i < count; ++i) {
       const Bounds b = bounds_of(i);
       item_[i] = i;
@@ -131,7 +132,7 @@ class FlatTree {
   std::span<const Index> items(const Node& leaf) const {
     return std::span<const Index>(item_).subspan(std::size_t(leaf.first), std::size_t(leaf.count));
   }
-  static double length2(const Bounds& b) { return (b.high - b.low).squaredNorm(); }
+  static double length2(const Bounds& b) { return squared_norm(b.high - b.low); }
 
   /// Halves the items across the axis along which their centres spread most.
   void split(Index first, Index last, const std::vector<Vec3>& centre) {
@@ -147,7 +148,7 @@ class FlatTree {
       const auto is_before = [&](Index i, Index j) {
         return centre[i][axis] < centre[j][axis] || (centre[i][axis] == centre[j][axis] && i < j);
       };
-      std::nth_element(item_.begin() + first, item_.begin() + middle, item_.begin() + last, is_before);
+      inner::select(item_.data() + first, item_.data() + middle, item_.data() + last, is_before);
       split(first, middle, centre);
       split(middle, last, centre);
     }

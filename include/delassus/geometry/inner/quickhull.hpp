@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace delassus::inner {
 /// cover.
 struct HullTriangle {
   std::array<Index, 3> v{};
-  Vec3 normal = Vec3::Zero();
+  Vec3 normal = zero<Vec3>();
   double offset = 0, area = 0;
   Array<Index> outside{};
   Index farthest = -1;
@@ -27,10 +28,10 @@ struct HullTriangle {
 
 HullTriangle hull_triangle(const auto& points, Index a, Index b, Index c) {
   HullTriangle t{.v = {a, b, c}};
-  t.normal = (points[b] - points[a]).cross(points[c] - points[a]);
-  t.area = 0.5 * t.normal.norm();
+  t.normal = cross(points[b] - points[a], points[c] - points[a]);
+  t.area = 0.5 * norm(t.normal);
   if (t.area > 0) t.normal /= 2 * t.area;
-  t.offset = t.normal.dot(points[a] + points[b] + points[c]) / 3;
+  t.offset = dot(t.normal, points[a] + points[b] + points[c]) / 3;
   return t;
 }
 
@@ -39,7 +40,7 @@ void hand_out(const auto& points, Index p, double tolerance, std::span<HullTrian
   HullTriangle* best = nullptr;
   double best_distance = tolerance;
   for (HullTriangle& t : triangles) {
-    const double distance = t.normal.dot(points[p]) - t.offset;
+    const double distance = dot(t.normal, points[p]) - t.offset;
     if (distance > best_distance) best_distance = distance, best = &t;
   }
   if (!best) return;
@@ -57,13 +58,13 @@ bool first_tetrahedron(const auto& points, double thin, std::array<Index, 4>& co
     return best;
   };
   const Index a = farthest([](const Vec3& p) { return -p[0]; });
-  const Index b = farthest([&](const Vec3& p) { return (p - points[a]).squaredNorm(); });
-  const Vec3 along = (points[b] - points[a]).normalized();
-  const Index c = farthest([&](const Vec3& p) { return (p - points[a]).cross(along).squaredNorm(); });
-  if ((points[c] - points[a]).cross(along).norm() <= thin) return false;
-  const Vec3 across = along.cross(points[c] - points[a]).normalized();
-  const Index d = farthest([&](const Vec3& p) { return std::abs((p - points[a]).dot(across)); });
-  const double height = (points[d] - points[a]).dot(across);
+  const Index b = farthest([&](const Vec3& p) { return squared_norm(p - points[a]); });
+  const Vec3 along = normalized(points[b] - points[a]);
+  const Index c = farthest([&](const Vec3& p) { return squared_norm(cross(p - points[a], along)); });
+  if (norm(cross(points[c] - points[a], along)) <= thin) return false;
+  const Vec3 across = normalized(cross(along, points[c] - points[a]));
+  const Index d = farthest([&](const Vec3& p) { return std::abs(dot(p - points[a], across)); });
+  const double height = dot(points[d] - points[a], across);
   corner = height < 0 ? std::array<Index, 4>{a, b, c, d} : std::array<Index, 4>{a, c, b, d};
   return std::abs(height) > thin;
 }
@@ -75,7 +76,7 @@ void add_hull_point(const auto& points, Index p, double tolerance, std::vector<H
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     HullTriangle& t = triangles[i];
-    if (t.normal.dot(points[p]) - t.offset <= tolerance) {
+    if (dot(t.normal, points[p]) - t.offset <= tolerance) {
       if (kept != i) triangles[kept] = std::move(t);
       ++kept;
       continue;
@@ -84,10 +85,10 @@ void add_hull_point(const auto& points, Index p, double tolerance, std::vector<H
     orphans.append(t.outside.begin(), t.outside.end());
   }
   triangles.resize(kept);
-  std::sort(edges.begin(), edges.end());
-  std::sort(orphans.begin(), orphans.end());
+  inner::sort(edges);
+  inner::sort(orphans);
   for (const auto& [u, v] : edges)
-    if (!std::binary_search(edges.begin(), edges.end(), std::pair(v, u)))
+    if (!inner::is_listed(edges, std::pair(v, u)))
       triangles.push_back(hull_triangle(points, u, v, p));
   const std::span<HullTriangle> fan(triangles.data() + kept, triangles.size() - kept);
   for (const Index q : orphans)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <array>
@@ -67,7 +68,7 @@ class SurfaceTopology {
         const Index u = triangles[t][k], v = triangles[t][(k + 1) % 3];
         edges.push_back({std::min(u, v), std::max(u, v), t, k, u < v});
       }
-    std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+    inner::sort(edges, [](const Edge& x, const Edge& y) {
       return std::array{x.low, x.high, x.triangle} < std::array{y.low, y.high, y.triangle};
     });
     neighbours_.assign(triangles.size(), {-1, -1, -1});

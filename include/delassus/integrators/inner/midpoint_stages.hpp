@@ -26,7 +26,7 @@ Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& 
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
       is_led = is_led || (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]]));
   });
-  if (is_led) return Vec<R, T>::Zero();
+  if (is_led) return zero<Vec<R, T>>();
   return rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
 }
 
@@ -35,7 +35,7 @@ Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& 
 template <class V>
 V joint_velocity_damping(const V& u, const V& s) {
   using T = typename V::Scalar;
-  const T at_start = u.squaredNorm(), in_middle = s.squaredNorm();
+  const T at_start = squared_norm(u), in_middle = squared_norm(s);
   return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
 }
 
@@ -73,7 +73,7 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
     constexpr auto kinds = row_kinds<Law>();
     for (Index i = 0; i < pool.items(); ++i) {
       auto& own = std::get<p>(fade.pools)[i];
-      own.setZero();
+      set_zero(own);
       if constexpr (ContactLaw<Law>) continue;
       const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
       const auto fades = inner::joint_velocity_damping(inner::rate_at_start(at_start.template pool<p>(), i, world), u);
@@ -105,7 +105,7 @@ bool reject_damping(Rows& rows, const Operator& W, const Islands<pools>& islands
   if (!(work > 0)) return false;
   inner::each_item(islands, island, [&](auto p, Index i) {
     const auto& pool = rows.template pool<p>();
-    effort += 0.5 * double(pool.lambda[i].dot(W.template residual<p>(rows, i) - pool.d[i]));
+    effort += 0.5 * double(dot(pool.lambda[i], W.template residual<p>(rows, i) - pool.d[i]));
   });
   if (!(work > 0.01 * effort)) return false;
   inner::each_item(islands, island, [&](auto p, Index i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_layout.hpp>
 #include <delassus/linear/supernodes.hpp>
@@ -27,8 +28,8 @@ struct BasicFrontPlan {
                std::span<const Vec3> positions = {}) {
     Array<std::pair<Index, Index>> unique;
     for (auto [i, j] : pairs) unique.emplace_back(std::minmax(i, j));
-    std::sort(unique.begin(), unique.end());
-    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
+    inner::sort(unique);
+    inner::drop_repeats(unique);
     const NodeGraph graph(blocks, unique);
     pattern.analyse(graph, NestedDissection{}.order(graph, positions));
     entries.analyse(graph, pattern);

@@ -31,8 +31,8 @@ struct ItemRows {
   Vec<R> phi, stiffness, damping;
 
   ItemRows() {
-    for (int k = 0; k < R; ++k) a[std::size_t(k)].setZero(), b[std::size_t(k)].setZero();
-    phi.setZero(), stiffness.setZero(), damping.setZero();
+    for (int k = 0; k < R; ++k) set_zero(a[std::size_t(k)]), set_zero(b[std::size_t(k)]);
+    set_zero(phi), set_zero(stiffness), set_zero(damping);
   }
 };
 
@@ -58,7 +58,7 @@ class ItemEnd {
     add(k, [&](const auto& set) {
       using Set = std::remove_cvref_t<decltype(set)>;
       if constexpr (requires { set.about(anchor_, 0, axis); }) return set.about(anchor_, 0, axis);
-      else return Mat<Set::width, 1, typename Set::Scalar>::Zero().eval();
+      else return zero<Mat<Set::width, 1, typename Set::Scalar>>().eval();
     });
   }
 

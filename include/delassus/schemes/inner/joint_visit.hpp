@@ -30,7 +30,7 @@ class JointVisit {
   JointVisit(World& world, const Law& law, const typename Law::Item& item, const S& stabilisation, double h) {
     ItemRows<R> H;
     law.linearize(item, std::as_const(world), ItemWriter<World, R>(world, H, item.a, item.b));
-    W_.setZero();
+    set_zero(W_);
     answer(world, item.a, H.a, a_);
     answer(world, item.b, H.b, b_);
     for (int k = 0; k < R; ++k) make_bias(law, item, H, k, stabilisation, h);
@@ -105,11 +105,11 @@ class JointVisit {
         end.next = set.v_next[block].data();
         for (int k = 0; k < R; ++k) {
           auto& G = end.G[std::size_t(k)];
-          G.setZero();
+          set_zero(G);
           G.template head<3>() = double(set.inverse_mass(block)) * H[std::size_t(k)].template head<3>();
           if constexpr (Set::width == 6)
             G.template tail<3>() = set.inverse_inertia(block).template cast<double>() * H[std::size_t(k)].template tail<3>();
-          for (int l = 0; l <= k; ++l) W_(k, l) += H[std::size_t(l)].dot(G);
+          for (int l = 0; l <= k; ++l) W_(k, l) += dot(H[std::size_t(l)], G);
           for (int l = 0; l < k; ++l) W_(l, k) = W_(k, l);
         }
       }

@@ -166,7 +166,7 @@ class JointVisits {
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
       note(visit, sums);
       auto& impulse = pool.impulse[place];
-      if (!see(world, visit) || pool.starts_cold[place]) impulse.setZero();
+      if (!see(world, visit) || pool.starts_cold[place]) set_zero(impulse);
       else impulse *= step_ratio;
       visit.push(impulse);
     });

@@ -125,7 +125,7 @@ class PointVisit {
       const auto& v = which == VisitVelocity::free ? set.v_free[end.block] : set.v_next[end.block];
       const Vec3 linear = linear_part(v).template cast<double>();
       if constexpr (!turns<s>) return linear;
-      else return linear + Vec3(angular_part(v).template cast<double>()).cross(end.r);
+      else return linear + cross(Vec3(angular_part(v).template cast<double>()), end.r);
     }
   }
   template <int s>

@@ -41,20 +41,20 @@ void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
                     "delassus: CollisionsFirst makes a Penalty contact a force with the friction of Coulomb, or with none; take "
                     "Coulomb in place of RollingCoulomb or Pyramid, or the default scheme");
       if constexpr (is_force) for (const auto& item : pool.items) {
-        Vec<rows> u = Vec<rows>::Zero();
+        Vec<rows> u = zero<Vec<rows>>();
         inner::each_block_of<rows>(world, item, [&](double side, auto& set, Index b, const auto& J) {
           u += side * J * set.velocity()[b].template cast<double>();
         });
         // w = t · J A⁻¹ Jᵀ t along the slip t.
         Vec<rows> t = u;
         t[0] = 0;
-        const double slip = t.norm();
+        const double slip = norm(t);
         double w = 0;
         if (slip > 0)
           inner::each_block_of<rows>(world, item, [&](double, auto& set, Index b, const auto& J) {
             using T = typename std::remove_reference_t<decltype(set)>::Scalar;
             const auto along = (J.transpose() * (t / slip)).eval();
-            if (set.moves(b)) w += along.dot(set.template solve_block<1>(b, along.template cast<T>()).template cast<double>());
+            if (set.moves(b)) w += dot(along, set.template solve_block<1>(b, along.template cast<T>()).template cast<double>());
           });
         const Vec<rows> f = pool.law.law.force(item.parameters, item.gap, u, w, h);
         const Vec3 force = item.frame.template topRows<rows>().transpose() * f;

@@ -84,7 +84,7 @@ class StepParts<World, Constraints<L...>> {
       for (Index i = 0; i < pool.count(); ++i) {
         auto& item = pool.items[i];
         item.gap += part * closing<p>(step, i);
-        Vec3 way = Vec3::Zero();
+        Vec3 way = zero<Vec3>();
         int count = 0;
         for (const Anchor* end : {&item.record->a, &item.record->b})
           world.visit(end->set, [&](const auto& set, auto) {
@@ -107,7 +107,7 @@ class StepParts<World, Constraints<L...>> {
   void add(Sum& sum, const From& from, const Impulse& impulse) const {
     sum.resize(from.size());
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      if (is_first_) sum[i].setZero();
+      if (is_first_) set_zero(sum[i]);
       sum[i] += impulse(from[i]);
     }
   }
@@ -122,7 +122,7 @@ class StepParts<World, Constraints<L...>> {
         auto v = set.v_next[b];
         if constexpr (requires { step.template state<role::Stabilisation>().displacement; })
           v += std::get<s>(step.template state<role::Stabilisation>().displacement)[b];
-        u += double(blocks.H[e].row(0).dot(v.transpose()));
+        u += double(dot(blocks.H[e].row(0), v.transpose()));
       }
     });
     return u;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/linear/block_lu.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/solvers/inner/island_matrices.hpp>
@@ -165,8 +166,8 @@ class NewtonSystem {
   }
   bool finish(Index island) {
     balance();
-    std::sort(pairs_.begin(), pairs_.end());
-    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    inner::sort(pairs_);
+    inner::drop_repeats(pairs_);
     matrix_ = &matrices_.of(island, Index(blocks()), pairs_);
     return true;
   }
@@ -293,7 +294,7 @@ class NewtonSystem {
           }
         }
     }
-    std::sort(blocks_.begin(), blocks_.end());
+    inner::sort(blocks_);
     for (std::size_t k = 0; k < blocks_.size(); ++k) number(blocks_[k].first, blocks_[k].second) = Index(k);
   }
 
