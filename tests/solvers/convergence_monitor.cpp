@@ -13,13 +13,8 @@ using namespace delassus;
 
 namespace {
 
-struct Quiet {
-  static constexpr bool every_sweep = false;
-};
-
 /// An error for each number of sweeps, and who asks for it.
 struct Given {
-  using Observes = Quiet;
   std::function<double(int)> error;
   int sweeps = 0, measures = 0, saved = 0;
 
@@ -31,6 +26,7 @@ struct Given {
   void save(int& to) const { to = sweeps; }
   void load(int) {}
   void notify(int, const Measure&) const {}
+  static constexpr bool observes_sweeps() { return false; }
   static constexpr bool is_out_of_time() { return false; }
   static constexpr bool is_measure_due() { return false; }
 };

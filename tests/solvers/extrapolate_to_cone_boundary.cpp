@@ -118,28 +118,25 @@ TEST_CASE("a capsule with like gaps sticks at both ends, after a few sweeps") {
 TEST_CASE("the reach of a way is to where it leaves a cone first") {
   FrictionProblem p = lying({{0, 0}});
   auto& lambda = p.rows.pool<0>().lambda;
-  Impulses<FrictionProblem::Rows> before;
-  before.resize_like(p.rows);
-  std::get<0>(before.pools) = {Vec3(1, 0.1, 0), Vec3(1, 0, 0)};
+  Array<double> before{1, 0.1, 0, 1, 0, 0};
   lambda[0] = Vec3(1, 0.101, 0), lambda[1] = Vec3(1, -0.001, 0);
   LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double> book(p.laws);
   book.prepare(p.W, p.rows, p.h);
   NoObserver nobody;
   const IslandProblem problem(book, p.rows, p.W, p.islands, 0, p.h, nobody);
   double length = 0;
-  for (int i = 0; i < 2; ++i) length += std::pow(problem.root_of_weight<0>(i) * 0.001, 2);
+  for (int i = 0; i < 2; ++i) length += std::pow(problem.root_of_weight(*problem.begin(), i) * 0.001, 2);
   length = std::sqrt(length);
   // To 1e-4 of the way beyond the edge, across which the cone leans, and 1e-4 of the bisection.
   REQUIRE(inner::reach(problem, before, length, 1e15) == Approx(399).epsilon(4e-4));
   REQUIRE(inner::reach(problem, before, length, 100) == 0);  // no law ends it
-  std::get<0>(before.pools)[0] = Vec3(1, 0.6, 0), lambda[0] = Vec3(1, 0.601, 0);
+  before[1] = 0.6, lambda[0] = Vec3(1, 0.601, 0);
   REQUIRE(inner::reach(problem, before, length, 1e15) == 0);  // outside already
 }
 
 TEST_CASE("sweeps that have ended do not drift") {
   FrictionProblem p = lying({{1e-6, 1e-6}});
-  Impulses<FrictionProblem::Rows> before;
-  before.resize_like(p.rows);
+  Array<double> before;
   LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double> book(p.laws);
   book.prepare(p.W, p.rows, p.h);
   NoObserver nobody;

@@ -1,5 +1,5 @@
 // One row of blocks times a vector, in the ways that it is done.
-#include <delassus/compliance/inner/block_row.hpp>
+#include <delassus/rows/block_row.hpp>
 
 #include "catch.hpp"
 
@@ -35,9 +35,9 @@ TEST_CASE("a row of 3 x 3 blocks is the sum of its products, and its first entry
           size[row] += std::abs(W[e](row, k) * x[column[e]][k]);
         }
     Vec3 r = start;
-    inner::add_row(r, count, W.data(), column.data(), x.data());
+    inner::add_row<3>(r.data(), 0, count, W.empty() ? nullptr : W[0].data(), column.data(), x[0].data());
     for (int row = 0; row < 3; ++row) REQUIRE(std::abs(r[row] - expected[row]) <= 80 * 2.3e-16 * size[row]);
-    const double first = start[0] + inner::first_of_row(count, W.data(), column.data(), x.data());
+    const double first = start[0] + inner::first_of_row(0, count, W.empty() ? nullptr : W[0].data(), column.data(), x[0].data(), 3);
     REQUIRE(std::abs(first - expected[0]) <= 80 * 2.3e-16 * size[0]);
   }
 }
