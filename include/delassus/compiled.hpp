@@ -23,29 +23,72 @@ struct CompiledWithAlignment {
 extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 [[gnu::used]] static const int* const asks_for_alignment = &CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>::bytes;
 
-/// The islands of contacts with Coulomb's friction between rigid bodies.
-using ContactRowsOfBodies = RowSystem<double, Widths<6>, 3>;
-using ContactIsland = IslandProblem<LawSet<Constraints<Contact<Coulomb>>, double>, ContactRowsOfBodies,
-                                    AssembledCompliance::Operator<ContactRowsOfBodies>>;
-
-extern template bool RigidState<double>::drift(Index, Velocity&, const Velocity&, double, double);
-
 }  // namespace inner
 
-extern template RigidBodies::Handle BasicRigidBodies<double>::add(const RigidBody&);
-extern template Anchor anchor(const RigidBodies&, RigidBodies::Handle, const Vec3&, const Quat&);
-extern template MidpointRate<double> midpoint_rate(const Mat3&, const Vec3&, const Vec3&, const Vec3&, double);
+// One list, of which each entry is declared here and compiled by `compile_here.hpp`: what a loop calls once a step, a span of
+// constraints, a pair or a body at the most.
 
-extern template CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(
-    std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&);
-extern template void CollisionEngine<GjkEpa, BoxTree>::recall_pairs();
-extern template void CollisionEngine<GjkEpa, BoxTree>::collide(std::span<const Collider>, const Job&, double,
-                                                               const CollisionSettings&, RestingPair&,
-                                                               std::vector<ContactPoint>&);
-extern template Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
+#define DELASSUS_COMPILED_LAW(KIND, ...)              \
+  KIND struct inner::LawLoops<__VA_ARGS__, double>;   \
+  KIND struct inner::LawTangents<__VA_ARGS__, double>;
 
-extern template SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(
-    inner::ContactIsland&, Workspace<inner::ContactRowsOfBodies>&) const;
-extern template void BlockLu<6, double>::analyse(Index, std::span<const std::pair<Index, Index>>);
+#define DELASSUS_COMPILED_LAWS(KIND)                                     \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Coulomb>)                          \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Frictionless>)                     \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Pyramid>)                          \
+  DELASSUS_COMPILED_LAW(KIND, Contact<RollingCoulomb>)                   \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Restitution<Coulomb>>)             \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Penalty<Coulomb>>)                 \
+  DELASSUS_COMPILED_LAW(KIND, Contact<SequentialRestitution<Coulomb>>)   \
+  DELASSUS_COMPILED_LAW(KIND, BallJoint)                                 \
+  DELASSUS_COMPILED_LAW(KIND, Cylindrical)                               \
+  DELASSUS_COMPILED_LAW(KIND, DistanceJoint)                             \
+  DELASSUS_COMPILED_LAW(KIND, Hinge)                                     \
+  DELASSUS_COMPILED_LAW(KIND, Planar)                                    \
+  DELASSUS_COMPILED_LAW(KIND, PointOnLine)                               \
+  DELASSUS_COMPILED_LAW(KIND, Screw)                                     \
+  DELASSUS_COMPILED_LAW(KIND, Slider)                                    \
+  DELASSUS_COMPILED_LAW(KIND, Universal)                                 \
+  DELASSUS_COMPILED_LAW(KIND, Weld)                                      \
+  DELASSUS_COMPILED_LAW(KIND, VirtualCoupling)                           \
+  DELASSUS_COMPILED_LAW(KIND, Gear)                                      \
+  DELASSUS_COMPILED_LAW(KIND, Rack)                                      \
+  DELASSUS_COMPILED_LAW(KIND, Limit<Turn>)                               \
+  DELASSUS_COMPILED_LAW(KIND, Limit<Slide>)                              \
+  DELASSUS_COMPILED_LAW(KIND, Motor<Turn>)                               \
+  DELASSUS_COMPILED_LAW(KIND, Motor<Slide>)                              \
+  DELASSUS_COMPILED_LAW(KIND, Drive<Turn>)                               \
+  DELASSUS_COMPILED_LAW(KIND, Drive<Slide>)
+
+#define DELASSUS_COMPILED_SOLVERS(KIND)                                                                                           \
+  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(                                                      \
+      Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const;                                          \
+  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(                                                      \
+      Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const;                                          \
+  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, SweepsAlone>::solve(                                                     \
+      Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const;                                          \
+  KIND class BlockLu<6, double>;
+
+#define DELASSUS_COMPILED_BODIES(KIND)                                                                     \
+  KIND bool inner::RigidState<double>::drift(Index, Velocity&, const Velocity&, double, double);           \
+  KIND RigidBodies::Handle BasicRigidBodies<double>::add(const RigidBody&);                                \
+  KIND Anchor anchor(const RigidBodies&, RigidBodies::Handle, const Vec3&, const Quat&);                   \
+  KIND MidpointRate<double> midpoint_rate(const Mat3&, const Vec3&, const Vec3&, const Vec3&, double);
+
+#define DELASSUS_COMPILED_COLLISION(KIND)                                                                                        \
+  KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&,   \
+                                                                const NoFilter&);                                                \
+  KIND void CollisionEngine<GjkEpa, BoxTree>::recall_pairs();                                                                    \
+  KIND void CollisionEngine<GjkEpa, BoxTree>::collide(std::span<const Collider>, const Job&, double, const CollisionSettings&,   \
+                                                      RestingPair&, std::vector<ContactPoint>&);                                 \
+  KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
+
+#define DELASSUS_COMPILED_PARTS(KIND) \
+  DELASSUS_COMPILED_LAWS(KIND)        \
+  DELASSUS_COMPILED_SOLVERS(KIND)     \
+  DELASSUS_COMPILED_BODIES(KIND)      \
+  DELASSUS_COMPILED_COLLISION(KIND)
+
+DELASSUS_COMPILED_PARTS(extern template)
 
 }  // namespace delassus

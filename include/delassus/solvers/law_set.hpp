@@ -22,8 +22,8 @@ namespace inner {
 template <class Law, Needs needs, class T>
 void show_law(const Law& law, const void* items, const Index* places, void* memory, PoolView<T>& view) {
   view.table = &LawLoops<Law, T>::table;
-  if constexpr (needs != Needs::sweeps && Differentiable<Law>) view.tangent = &LawLoops<Law, T>::tangent;
-  if constexpr (needs == Needs::convex_tangents && Differentiable<Law>) view.convex_tangent = &LawLoops<Law, T>::convex_tangent;
+  if constexpr (needs != Needs::sweeps && Differentiable<Law>) view.tangent = &LawTangents<Law, T>::tangent;
+  if constexpr (needs == Needs::convex_tangents && Differentiable<Law>) view.convex_tangent = &LawTangents<Law, T>::convex_tangent;
   view.law = &law;
   view.law_items = items;
   view.places = places;

@@ -175,30 +175,9 @@ struct LawLoops {
     const Mat<R, R, T> own = diagonal_of<R>(w);
     add(Items(pool), i, own.data(), w, load<R>(u), load<R>(lambda), load<R>(pool.d + std::ptrdiff_t(R) * i), sums);
   }
-  static double friction(const PoolView<T>& pool, Index i) { return double(Items(pool).item(i).parameters.friction); }
-
-  static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
-    const Items of(pool);
-    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
-    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
-    Mat<R, R> S;
-    if constexpr (requires { of.law.tangent(of.item(i), c); }) S = of.law.tangent(of.item(i), c);
-    else S = of.law.tangent(of.item(i), c, of.memory[i]);
-    for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
-    store(c.lambda, lambda);
-  }
-  static void convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
-                             double* slope) {
-    const Items of(pool);
-    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
-    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
-    if constexpr (requires { of.law.convex_tangent(of.item(i), c, slip); }) {
-      const Mat<R, R> S = of.law.convex_tangent(of.item(i), c, slip);
-      for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
-      store(c.lambda, lambda);
-    } else {
-      tangent(pool, i, w, d, lambda, slope);
-    }
+  static double friction(const PoolView<T>& pool, Index i) {
+    if constexpr (is_round_cone<Law>()) return double(Items(pool).item(i).parameters.friction);
+    else return 0;
   }
 
   static constexpr LawTable<T> make_table() {
@@ -251,6 +230,37 @@ struct LawLoops {
     sums.u += double(squared_norm(u));
     sums.lambda += size;
     sums.reach = std::max(sums.reach, double(weight * weight) * size);
+  }
+};
+
+/// What Newton's method asks of a law: apart from the loops, since naming a table compiles all of it.
+template <class Law, class T>
+struct LawTangents {
+  using Items = LawItems<Law, T>;
+  static constexpr int R = Law::rows;
+
+  static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
+    const Items of(pool);
+    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
+    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
+    Mat<R, R> S;
+    if constexpr (requires { of.law.tangent(of.item(i), c); }) S = of.law.tangent(of.item(i), c);
+    else if constexpr (Differentiable<Law>) S = of.law.tangent(of.item(i), c, of.memory[i]);
+    for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+    store(c.lambda, lambda);
+  }
+  static void convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
+                             double* slope) {
+    const Items of(pool);
+    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
+    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
+    if constexpr (requires { of.law.convex_tangent(of.item(i), c, slip); }) {
+      const Mat<R, R> S = of.law.convex_tangent(of.item(i), c, slip);
+      for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+      store(c.lambda, lambda);
+    } else {
+      tangent(pool, i, w, d, lambda, slope);
+    }
   }
 };
 
