@@ -3,8 +3,7 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
-#include <delassus/solvers/inner/direct_system.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/linearize.hpp>
 
@@ -96,10 +95,7 @@ class Equalities {
       each_row(rows, [](auto& pool, Index i, int k) {
         if (is_soft(pool, i, k)) pool.compliance[i][k] = T(1e30);
       });
-      system_.begin();
-      each_pool(rows, [&](auto p, const auto& pool) {
-        for (Index i = 0; i < pool.items(); ++i) system_.template take<p>(rows, i, true);
-      });
+      system_.take_all(rows);
       system_.analyse(0);
       return system_.factor(1e-12);
     } else {
@@ -153,7 +149,7 @@ class Equalities {
     });
   }
 
-  [[no_unique_address]] std::conditional_t<has_rows, inner::DirectSystem<Rows>, std::tuple<>> system_;
+  [[no_unique_address]] std::conditional_t<has_rows, inner::DirectRows<Rows>, std::tuple<>> system_;
 };
 
 }  // namespace delassus

@@ -5,8 +5,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/math/twist.hpp>
-#include <delassus/solvers/inner/direct_system.hpp>
-#include <delassus/solvers/island_problem.hpp>
+#include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
@@ -244,10 +243,7 @@ class MidpointNewton {
   template <class Answer>
   void assemble(World& world, Rows& rows, const Answer& answer) {
     inner::answer_ends(world, rows, middle_, answer);
-    system_.begin();
-    each_pool(rows, [&](auto p, const auto& pool) {
-      for (Index i = 0; i < pool.items(); ++i) system_.template take<p>(rows, i, true);
-    });
+    system_.take_all(rows);
     system_.analyse(0);
   }
   /// φ + R λ + c − H₊ C (P − h f − Hᵀλ).
@@ -289,7 +285,7 @@ class MidpointNewton {
   typename World::template PerSet<VelocitiesOf> force_, impulse_;
   Rows middle_;
   Impulses<Rows> start_, yield_;
-  inner::DirectSystem<Rows> system_;
+  inner::DirectRows<Rows> system_;
   double apart_ = 0, speed_ = 0, load_ = 0;  ///< load: of the impulses over the masses, in units of the speed
 };
 

@@ -2,7 +2,7 @@
 /// finite impulse closes them, and share the least impulses.
 #pragma once
 
-#include <delassus/solvers/inner/direct_system.hpp>
+#include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/least_impulses.hpp>
@@ -58,7 +58,7 @@ class YieldingMidpoint : public MidpointNewton<World, Laws, Rows> {
                    [](const auto& set, auto, Index b, const auto& X) { return set.solve_block(b, X); });
   }
 
-  LeastImpulses<inner::DirectSystem<Rows>> least_;
+  LeastImpulses<inner::DirectRows<Rows>> least_;
 };
 
 }  // namespace delassus
