@@ -102,7 +102,7 @@ TEST_CASE("FCL's tree finds the pairs that brute force finds, while boxes move a
     std::sort(pairs.begin(), pairs.end());
     for (Index i = 0; i < Index(boxes.size()); ++i)
       for (Index j = i + 1; j < Index(boxes.size()); ++j)
-        if (!boxes[i].isEmpty() && !boxes[j].isEmpty() && boxes[i].intersects(boxes[j]))
+        if (!boxes[i].is_empty() && !boxes[j].is_empty() && boxes[i].intersects(boxes[j]))
           expected.push_back({i, j});
     CHECK(pairs == expected);
   }

@@ -39,7 +39,7 @@ TEST_CASE("the tree finds every pair once and sorted, while boxes move, come, go
       if (step % 10 == 0) boxes.resize(std::size_t(50 + 30 * (step % 40) / 10));
       for (std::size_t i = 0; i < boxes.size(); ++i) {
         const Vec3 move = speed * any(random);
-        if (boxes[i].isEmpty()) {
+        if (boxes[i].is_empty()) {
           const Vec3 centre = 4 * any(random), half = Vec3::Constant(0.6) + 0.5 * any(random);
           boxes[i] = Aabb(centre - half, centre + half);
         } else if (i % 17 == std::size_t(step % 17)) {

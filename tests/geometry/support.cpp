@@ -52,7 +52,7 @@ TEST_CASE("the tight box touches the body on all six sides") {
       CHECK(box.min()[k] == Approx(pose.to_world(support(s, Vec3(-axis)))[k]).epsilon(1e-14));
     }
   }
-  CHECK(tight_box(Shape{}, Pose{}).isEmpty());
+  CHECK(tight_box(Shape{}, Pose{}).is_empty());
   CHECK(std::isinf(tight_box(HalfSpace{}, Pose{}).max()[0]));
 }
 

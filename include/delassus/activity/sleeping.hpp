@@ -79,7 +79,7 @@ class Sleepers {
     });
     supports_.look(world, h, [&](const Aabb& near) {
       for (const auto& body : dormant_.bodies())
-        if (is_empty(near) || is_empty(body.box) || !is_apart(near, body.box)) call(body.group);
+        if (near.is_empty() || body.box.is_empty() || !near.is_apart(body.box)) call(body.group);
     });
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
@@ -95,9 +95,9 @@ class Sleepers {
     Aabb near;
     for (const Collider& c : book.colliders)
       if (c.is_movable) near.extend(Dormant<World, Laws>::box_of(c.shape, c.pose));
-    if (is_empty(near)) return false;
+    if (near.is_empty()) return false;
     for (const auto& body : dormant_.bodies())
-      if (!is_empty(body.box) && !is_apart(body.box, near))
+      if (!body.box.is_empty() && !body.box.is_apart(near))
         world.visit(body.set, [&](const auto& set, auto s) { book.add(set, s, body.block, false); });
     return true;
   }

@@ -29,7 +29,7 @@ class FclTree {
     if (proxies_.size() != boxes.size()) resize(boxes.size());
     present_.clear();
     for (Index i = 0; i < Index(boxes.size()); ++i) {
-      if (boxes[i].isEmpty()) continue;
+      if (boxes[i].is_empty()) continue;
       present_.push_back(i);
       place(*proxies_[i], boxes[i]);
     }

@@ -49,7 +49,7 @@ bool is_positive_definite(const Mat<3, 3, T>& m) {
 /// The power of two next to the largest moment: products of three scaled moments neither overflow nor vanish.
 template <class T>
 T scale_of(const Mat<3, 3, T>& inertia) {
-  return std::exp2(std::ilogb(std::max({inertia(0, 0), inertia(1, 1), inertia(2, 2)})));
+  return std::exp2(std::ilogb(std::max(std::max(inertia(0, 0), inertia(1, 1)), inertia(2, 2))));
 }
 
 /// I⁻¹, kg⁻¹·m⁻², for every size of body.
@@ -119,7 +119,7 @@ MassProperties check_mass(const RigidBody& body, const std::string& who) {
     DELASSUS_EXPECT(body.mass.has_value(), who + ": density needs a shape that has a volume");
     result.mass = *body.mass;
   }
-  if (body.inertia) result.inertia = *body.inertia;
+  if (body.inertia) assign(result.inertia, *body.inertia);
   DELASSUS_EXPECT(has_inverse<T>(result.mass), who + ": mass " + without_inverse<T>(text(result.mass), "kg"));
   check_inertia(result.inertia, who);
   const Mat3 inverse = inverse_of_inertia(result.inertia);

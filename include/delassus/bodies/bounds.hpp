@@ -19,7 +19,8 @@ Eigen::AlignedBox3d bounds(const World<Sets...>& world) {
       if (set.has_collider(b)) {
         const Shape shape = set.shape(b);
         if (shape.kind == ShapeKind::half_space) continue;
-        box.extend(tight_box(shape, pose));
+        const Aabb tight = tight_box(shape, pose);
+        if (!tight.is_empty()) box.extend(Eigen::AlignedBox3d(tight.min(), tight.max()));
       } else {
         box.extend(pose.position);
       }

@@ -193,14 +193,14 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     return {*this};
   }
   /// No force acts between bodies: every one moves by itself.
-  bool is_separable() const { return true; }
+  static constexpr bool is_separable() { return true; }
 
   /// Moves block b by a small displacement (m, rad) without touching its velocity.
   void displace(Index b, const Velocity& by) { state_.displace(b, linear_part(by), angular_part(by)); }
 
   /// The velocities of kinematic bodies for this step.
   void begin_step(double h) {
-    targets_.each_velocity(slots_.active(), state_, h, [&](Index b, const Velocity& v) { v_[b] = v; });
+    targets_.each_velocity(slots_.active(), state_, h, [&](Index b, const Velocity& v) { assign(v_[b], v); });
   }
 
   /// Moves q to q ⊕ h v and back: the configuration at which an integrator wants the constraints linearised.
@@ -223,7 +223,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
         advance_block(b, v_next[b], h, T(0));
         continue;
       }
-      if (is_finite(v_next[b])) v_[b] = v_next[b];
+      if (is_finite(v_next[b])) assign(v_[b], v_next[b]);
       else quarantine_.leave(load_.data(), load_[b]);
       set_all(load_[b], T(0));
     }
@@ -306,8 +306,8 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
   motion_.resize(n);
   targets_.resize(n);
   state_.mass[b] = T(mass.mass);
-  state_.inertia[b] = mass.inertia.template cast<T>();
-  if (is_dynamic) state_.inverse_inertia[b] = inner::inverse_of_inertia(mass.inertia).template cast<T>();
+  state_.inertia[b] = Mat<3, 3, T>(mass.inertia.template cast<T>());
+  if (is_dynamic) state_.inverse_inertia[b] = Mat<3, 3, T>(inner::inverse_of_inertia(mass.inertia).template cast<T>());
   state_.place(b, body.position, orientation);
   motion_[b] = body.motion;
   targets_.drop(b);

@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
+#include <delassus/core/pack.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -59,15 +60,15 @@ class World {
   World()
     requires(set_count > 0)
   = default;
-  explicit World(Sets... sets) : sets_{std::move(sets)...} {}
+  explicit World(Sets... sets) : sets_{{static_cast<Sets&&>(sets)}...} {}
 
   template <int s>
   auto& set() {
-    return std::get<s>(sets_);
+    return inner::part<s>(sets_);
   }
   template <int s>
   const auto& set() const {
-    return std::get<s>(sets_);
+    return inner::part<s>(sets_);
   }
   template <class Set>
   Set& get() {
@@ -80,20 +81,18 @@ class World {
 
   /// f(set, std::integral_constant<int, s>) for every set, in order.
   template <class F>
-  void each(F&& f) {
+  [[gnu::always_inline]] void each(F&& f) {
     each_of(*this, f, std::make_integer_sequence<int, set_count>{});
   }
   template <class F>
-  void each(F&& f) const {
+  [[gnu::always_inline]] void each(F&& f) const {
     each_of(*this, f, std::make_integer_sequence<int, set_count>{});
   }
 
   /// f(set, std::integral_constant<int, s>) for set number `s`; nothing for the world (s < 0).
   template <class F>
-  void visit(int s, F&& f) const {
-    each([&](const auto& set, auto k) {
-      if (k == s) f(set, k);
-    });
+  [[gnu::always_inline]] void visit(int s, F&& f) const {
+    visit_one(s, f, std::make_integer_sequence<int, set_count>{});
   }
 
   /// Where an anchor is in the world now, m. It may be one that no loop has seen, fresh from `anchor(set, body)`; those of
@@ -174,7 +173,7 @@ class World {
   template <class Set>
   static auto& the(auto& sets) {
     if constexpr (has_one<Set>())
-      return std::get<Set>(sets);
+      return inner::part_of_type<Set>(sets);
     else
       return inner::no_set<Set>();
   }
@@ -188,11 +187,16 @@ class World {
     return frame(a);
   }
   template <class Self, class F, int... s>
-  static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {
-    (f(std::get<s>(self.sets_), std::integral_constant<int, s>{}), ...);
+  [[gnu::always_inline]] static void each_of(Self& self, F& f, std::integer_sequence<int, s...>) {
+    (f(inner::part<s>(self.sets_), std::integral_constant<int, s>{}), ...);
   }
 
-  std::tuple<Sets...> sets_;
+  template <class F, int... k>
+  [[gnu::always_inline]] void visit_one(int s, F& f, std::integer_sequence<int, k...>) const {
+    ((k == s ? void(f(inner::part<k>(sets_), std::integral_constant<int, k>{})) : void()), ...);
+  }
+
+  inner::Pack<Sets...> sets_;
 };
 
 /// One velocity for every block of a set.

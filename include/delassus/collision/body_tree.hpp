@@ -72,7 +72,7 @@ class BodyTree : public inner::AskedBodies {
     }
     const Pose pose = set.pose(b);
     const Aabb box = tight_box(shape, pose);
-    if (!is_finite(pose.rotation) || !is_finite(Vec3(box.max() - box.min())) || box.isEmpty())
+    if (!is_finite(pose.rotation) || !is_finite(Vec3(box.max() - box.min())) || box.is_empty())
       return leave(leaf);
     if (leaf.node < 0)
       leaf.node = tree_.insert(box, number);

@@ -45,7 +45,6 @@ class BasicBoxTree {
  private:
   using Tree = inner::BasicDynamicTree<Scalar>;
   struct Leaf {
-    using CopiedByBytes = Leaf;
     std::uint32_t key = 0;
     bool is_movable = true, has_moved = false;
     Index node = -1;             ///< in its tree; −1 while its box is empty
@@ -117,13 +116,13 @@ class BasicBoxTree {
   /// Puts the box of a leaf where it is now.
   void follow(Index l, const Aabb& box, bool is_movable) {
     Leaf& leaf = leaf_[l];
-    if (box.isEmpty() || leaf.is_movable != is_movable) leave(leaf);
+    if (box.is_empty() || leaf.is_movable != is_movable) leave(leaf);
     leaf.is_movable = is_movable;
-    if (box.isEmpty()) return;
+    if (box.is_empty()) return;
     const Vec3 middle = (box.min() + box.max()) / 2;
     const Vec3 motion = leaf.node >= 0 ? Vec3(middle - leaf.middle) : zero<Vec3>();
     leaf.middle = middle;
-    const double edge = (box.max() - box.min()).maxCoeff();
+    const double edge = max_entry(Vec3(box.max() - box.min()));
     if (leaf.node >= 0 && leaf.box.contains(box) && !is_slack(leaf.box, box, edge)) return;
     leaf.box = fattened(box, margin * edge, lead * motion, 2 * edge);
     if (leaf.node >= 0)
@@ -136,7 +135,7 @@ class BasicBoxTree {
   /// True when the leaf is far larger than its box has use for: the box was fast, or has shrunk.
   bool is_slack(const Aabb& leaf, const Aabb& box, double edge) const {
     const Vec3 spare = (leaf.max() - leaf.min()) - (box.max() - box.min());
-    return spare.maxCoeff() > (6 * margin + 1) * edge;
+    return max_entry(spare) > (6 * margin + 1) * edge;
   }
 
   static Aabb fattened(const Aabb& box, double more, const Vec3& ahead, double limit) {

@@ -61,13 +61,13 @@ Pair coarse_pair(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3&
   };
   const auto consider_faces = [&](const Shape& s, const Mat3& turn) {
     for (int k = 0; k < 3; ++k)
-      for (const double sign : {1.0, -1.0}) consider(sign * Vec3(turn.col(k)));
+      for (const double sign : {1.0, -1.0}) consider(sign * column(turn, k));
     if (s.kind == ShapeKind::convex_hull)
       for (Index f = 0; f < s.hull->face_count(); ++f) consider(turn * s.hull->normal(f));
   };
   consider(guess);
   consider(b_in_a.to_world(middle(b)) - middle(a));
-  consider_faces(a, Mat3::Identity());
+  consider_faces(a, identity<Mat3>());
   consider_faces(b, Mat3(-R));
   r.point_a = support(a, r.normal);
   r.point_b = r.point_a + r.distance * r.normal;

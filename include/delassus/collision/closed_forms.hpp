@@ -37,7 +37,7 @@ void nearest_on_segments(const Vec<3, T>& u, const Vec<3, T>& v, const Vec<3, T>
 
 template <std::same_as<Shape> S>
 SignedPair two_capsules(const S& a, const S& b, const Pose& b_in_a, const Vec3& wish) {
-  const Vec3 u = a.size[1] * unit_axis(2), v = b.size[1] * Vec3(b_in_a.rotation.col(2));
+  const Vec3 u = a.size[1] * unit_axis(2), v = b.size[1] * column(b_in_a.rotation, 2);
   double s = 0, t = 0;
   nearest_on_segments(u, v, b_in_a.position, s, t);
   const Vec3 on_a = s * u, on_b = b_in_a.position + t * v, apart = on_b - on_a;

@@ -138,7 +138,7 @@ struct Continuous {
       box = Aabb(Vec3(c.pose.position - r), Vec3(c.pose.position + r));
     }
     Aabb later(Vec3(box.min() + h * c.velocity), Vec3(box.max() + h * c.velocity));
-    return later.merged(box);
+    return later.extend(box);
   }
 
   /// The backend's contact of a pair with the least gap, if it has any.

@@ -14,6 +14,7 @@
 #include <delassus/collision/pair_memory.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
@@ -71,7 +72,7 @@ class CollisionEngine {
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
     for (const Index plane : half_spaces_)
       for (Index i = 0; i < Index(colliders.size()); ++i)
-        if (!is_empty(boxes_[i]) && inner::may_touch(colliders[plane], boxes_[i], h, settings))
+        if (!boxes_[i].is_empty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
           add_job(colliders, plane, i, filter);
     inner::sort(jobs_);
     report_.pairs = Index(jobs_.size());
@@ -176,7 +177,7 @@ class CollisionEngine {
   std::vector<CandidatePair> pairs_;
   Array<Job> jobs_;
   Array<RestingPair> memory_, next_memory_;
-  std::array<PatchPoint, PairMemory::capacity> repeated_;
+  FixedArray<PatchPoint, PairMemory::capacity> repeated_;
 };
 
 template <NarrowKernel Kernel, BroadPhase Broad>

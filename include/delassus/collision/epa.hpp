@@ -3,6 +3,7 @@
 
 #include <delassus/collision/inner/descend.hpp>
 #include <delassus/collision/inner/polytope.hpp>
+#include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +31,7 @@ Vec3 perpendicular(const std::same_as<Vec3> auto& axis, const Vec3& wish) {
 /// Grows the simplex to one more dimension: takes the support point that lies farthest from its hull.
 /// False when the difference is flat there, to 1e-9 of `size`.
 template <class D>
-bool grow(const D& difference, std::array<DifferencePoint, 4>& p, int& count, double size) {
+bool grow(const D& difference, FixedArray<DifferencePoint, 4>& p, int& count, double size) {
   DifferencePoint best{};
   double best_height = 0;
   const auto consider = [&](const Vec3& direction, const auto& height) {
@@ -61,7 +62,7 @@ bool grow(const D& difference, std::array<DifferencePoint, 4>& p, int& count, do
 /// The depth of a flat difference is that of its plane, line or point: any normal perpendicular to it will
 /// do.
 template <class D>
-EpaResult flat_depth(const D& difference, const std::array<DifferencePoint, 4>& p, int count,
+EpaResult flat_depth(const D& difference, const FixedArray<DifferencePoint, 4>& p, int count,
                      const Vec3& guess) {
   EpaResult r;
   r.point_a = p[0].a;
@@ -80,7 +81,7 @@ EpaResult flat_depth(const D& difference, const std::array<DifferencePoint, 4>& 
 }
 
 /// The points of the simplex that span it: each adds a dimension of at least 1e-9 of `size`.
-int independent(const std::same_as<Simplex> auto& s, double size, std::array<DifferencePoint, 4>& p) {
+int independent(const std::same_as<Simplex> auto& s, double size, FixedArray<DifferencePoint, 4>& p) {
   int count = 0;
   for (int i = 0; i < s.count; ++i) {
     const Vec3 d = count > 0 ? Vec3(s.p[i].w - p[0].w) : zero<Vec3>();
@@ -108,7 +109,7 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
     size_a = std::max(size_a, norm(high.a - low.a));
     size_b = std::max(size_b, norm(high.b - low.b));
   }
-  std::array<DifferencePoint, 4> corner;
+  FixedArray<DifferencePoint, 4> corner;
   int count = independent(start, size, corner);
   while (count < 4)
     if (!grow(difference, corner, count, size)) return flat_depth(difference, corner, count, guess);
@@ -116,8 +117,8 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
   const double tolerance = std::max(3e-10 * std::min(size_a, size_b), 1e-14 * size);
   Polytope polytope(corner);
   EpaResult best;
-  std::array<DifferencePoint, 3> best_face;
-  const auto consider = [&](const std::array<DifferencePoint, 3>& face, const Vec3& normal,
+  FixedArray<DifferencePoint, 3> best_face;
+  const auto consider = [&](const FixedArray<DifferencePoint, 3>& face, const Vec3& normal,
                             const DifferencePoint& q) {
     const double h = dot(normal, q.w);
     if (!(h < best.h)) return;

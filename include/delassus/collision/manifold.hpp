@@ -3,6 +3,7 @@
 
 #include <delassus/collision/inner/clip.hpp>
 #include <delassus/collision/signed_pair.hpp>
+#include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ struct PatchPoint {
 struct Patch {
   static constexpr int capacity = inner::ClipPolygon::capacity + 1;
   static constexpr std::uint32_t witness = 0;  ///< the name of the kernel's own witness
-  std::array<PatchPoint, capacity> point;
+  FixedArray<PatchPoint, capacity> point;
   int count = 0;
   void add(const PatchPoint& p) {
     if (count < capacity) point[count++] = p;

@@ -3,8 +3,8 @@
 
 #include <delassus/collision/inner/snap_normal.hpp>
 #include <delassus/collision/manifold.hpp>
+#include <delassus/core/fixed_array.hpp>
 
-#include <array>
 #include <cstdint>
 
 namespace delassus {
@@ -20,7 +20,7 @@ struct PairMemory {
   static constexpr int capacity = 8;
   std::uint64_t pair = 0;
   Vec3 normal = zero<Vec3>();  ///< world frame
-  std::array<RememberedPoint, capacity> point;
+  FixedArray<RememberedPoint, capacity> point;
   std::uint8_t count = 0;
   inner::NormalOwner owner = inner::NormalOwner::kernel;
 };
@@ -32,11 +32,11 @@ namespace inner {
 /// where it is on its own. The lowest point of a rim that has come to lie flat leaves its place to the corner
 /// next to it, over which the body had tipped.
 struct Continuation {
-  std::array<std::int8_t, Patch::capacity> of;
+  FixedArray<std::int8_t, Patch::capacity> of;
 
   Continuation(const Patch& patch, const PairMemory& last, const Pose& b_in_a, double scale) {
     of.fill(-1);
-    std::array<bool, PairMemory::capacity> is_taken{};
+    FixedArray<bool, PairMemory::capacity> is_taken{};
     for (int i = 0; i < patch.count; ++i)
       for (int k = 0; k < last.count && of[i] < 0; ++k)
         if (!is_taken[k] && last.point[k].name == patch.point[i].name) take(i, k, is_taken);
@@ -56,7 +56,7 @@ struct Continuation {
   }
 
  private:
-  void take(int i, int k, std::array<bool, PairMemory::capacity>& is_taken) {
+  void take(int i, int k, FixedArray<bool, PairMemory::capacity>& is_taken) {
     of[i] = std::int8_t(k);
     is_taken[k] = true;
   }

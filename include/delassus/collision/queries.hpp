@@ -198,7 +198,7 @@ SurfacePoint closest_point(const World& world, const Bodies& bodies, const Vec3&
   SurfacePoint best;
   double limit = reach;
   const auto meets = [&](const Aabb& box) {
-    return box.exteriorDistance(point) <= std::max(limit, 0.0) + inner::box_slack * inner::farthest(box, point);
+    return box.distance(point) <= std::max(limit, 0.0) + inner::box_slack * inner::farthest(box, point);
   };
   bodies.visit(
       world, groups, kept, meets,

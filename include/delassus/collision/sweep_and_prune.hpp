@@ -19,11 +19,11 @@ class SweepAndPrune {
     sort(boxes);
     for (std::size_t s = 0; s < order_.size(); ++s) {
       const Index i = order_[s];
-      if (boxes[i].isEmpty()) continue;
+      if (boxes[i].is_empty()) continue;
       const double end = boxes[i].max()[axis];
       for (std::size_t t = s + 1; t < order_.size() && start(boxes, order_[t]) <= end; ++t) {
         const Index j = order_[t];
-        if (!boxes[j].isEmpty() && boxes[i].intersects(boxes[j]))
+        if (!boxes[j].is_empty() && boxes[i].intersects(boxes[j]))
           pairs.push_back({std::min(i, j), std::max(i, j)});
       }
     }
@@ -56,7 +56,7 @@ class SweepAndPrune {
     Vec3 squares = zero<Vec3>();
     Index count = 0;
     for (const Aabb& box : boxes) {
-      if (box.isEmpty()) continue;
+      if (box.is_empty()) continue;
       const Vec3 middle = (box.min() + box.max()) / 2;
       if (count++ == 0) low = middle;
       for (int k = 0; k < 3; ++k) {

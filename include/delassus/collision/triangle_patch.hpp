@@ -4,10 +4,10 @@
 
 #include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/manifold.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/triangle.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -23,12 +23,12 @@ inline Bounds bounds_around(const Shape& s, const Pose& pose, double more) {
 
 /// The corners of the triangle that lie farthest along n: three of a face, two of an edge, one of a corner.
 struct Rim {
-  std::array<int, 3> corner{};
-  std::array<bool, 3> has{};
+  FixedArray<int, 3> corner{};
+  FixedArray<bool, 3> has{};
   int count = 0;
 
   Rim(const Triangle& t, const Vec3& n) {
-    std::array<double, 3> reach;
+    FixedArray<double, 3> reach;
     double farthest = -std::numeric_limits<double>::infinity(), longest = 0;
     for (int k = 0; k < 3; ++k) {
       reach[k] = dot(n, t.point[k] - t.point[0]);

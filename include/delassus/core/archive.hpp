@@ -2,6 +2,8 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/core/fixed_array.hpp>
+#include <delassus/core/pack.hpp>
 
 #include <array>
 #include <cstddef>
@@ -34,9 +36,17 @@ template <class Archive, class E, std::size_t n>
 void walk(Archive& archive, std::array<E, n>& list) {
   for (E& e : list) walk(archive, e);
 }
+template <class Archive, class E, std::size_t n>
+void walk(Archive& archive, FixedArray<E, n>& list) {
+  for (E& e : list) walk(archive, e);
+}
 template <class Archive, class... E>
 void walk(Archive& archive, std::tuple<E...>& parts) {
   std::apply([&](E&... part) { (walk(archive, part), ...); }, parts);
+}
+template <class Archive, class Places, class... T>
+void walk(Archive& archive, PackOf<Places, T...>& parts) {
+  parts.each([&](auto& part) { walk(archive, part); });
 }
 
 }  // namespace inner

@@ -73,8 +73,8 @@ struct ArrayMemory {
   }
 };
 
-/// Whether copying its bytes copies a T: it has no destructor, or one that does nothing, as everything around an
-/// Eigen::AlignedBox has, and then says `using CopiedByBytes = T`.
+/// Whether copying its bytes copies a T: it has no destructor, or one that does nothing, and then says
+/// `using CopiedByBytes = T`.
 template <class T>
 inline constexpr bool is_copied_by_bytes = std::is_trivially_destructible_v<T>;
 template <class T>

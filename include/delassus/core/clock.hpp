@@ -1,8 +1,12 @@
 /// Clocks: what waits, limits or paces takes one as a parameter, so that a test can say what time it is.
 #pragma once
 
-#include <chrono>
 #include <concepts>
+#include <ctime>
+
+#ifndef CLOCK_MONOTONIC
+#include <chrono>  // ten MB of a compiler, so only where the C library has no such clock
+#endif
 
 namespace delassus {
 
@@ -15,7 +19,13 @@ concept Clock = std::copyable<C> && requires(const C clock) {
 /// The wall clock that no one sets.
 struct SteadyClock {
   double now() const {
+#ifdef CLOCK_MONOTONIC
+    std::timespec time;
+    ::clock_gettime(CLOCK_MONOTONIC, &time);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+#else
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+#endif
   }
 };
 

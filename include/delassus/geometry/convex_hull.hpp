@@ -5,6 +5,7 @@
 #include <delassus/core/bits.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/owning_array.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
 #include <delassus/math/linear.hpp>
@@ -15,7 +16,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 namespace delassus {
 
@@ -31,7 +31,7 @@ class BasicConvexHull {
   BasicConvexHull() = default;  ///< nothing yet: a checkpoint fills it
   explicit BasicConvexHull(std::span<const Vector> points) {
     const Scalar extent = check_points(points);
-    std::vector<inner::HullTriangle> triangles;
+    OwningArray<inner::HullTriangle> triangles;
     DELASSUS_EXPECT(
         inner::quickhull(points, extent, triangles),
         "the points of a convex hull lie in one plane or on one line (thickness <= 1e-6 of the extent " +

@@ -1,9 +1,9 @@
 /// The face, edge or vertex with which a shape meets a plane: what contact patches are cut from.
 #pragma once
 
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/geometry/support.hpp>
 
-#include <array>
 #include <cstdint>
 
 namespace delassus {
@@ -14,8 +14,8 @@ namespace delassus {
 struct Face {
   static constexpr int capacity = 16;
   static constexpr int lowest_of_rim = 0x8000;
-  std::array<Vec3, capacity> point;
-  std::array<std::uint16_t, capacity> corner;
+  FixedArray<Vec3, capacity> point;
+  FixedArray<std::uint16_t, capacity> corner;
   int count = 0;
   Vec3 normal = zero<Vec3>();  ///< outward and unit when count ≥ 3, else zero
 

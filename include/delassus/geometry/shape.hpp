@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/core/expect.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <array>
 #include <cstdint>
 #include <string>
 
@@ -93,7 +93,7 @@ struct KeptShape {
 /// A hull is pointed at, not owned: it must outlive the shape. Sets of bodies copy it when a body is added.
 struct Shape {
   ShapeKind kind = ShapeKind::none;
-  std::array<double, 4> size{};
+  FixedArray<double, 4> size{};
   const ConvexHull* hull = nullptr;
 
   constexpr Shape() = default;

@@ -1,7 +1,7 @@
 /// How far a shape reaches in a direction: support points, tight boxes, sizes.
 #pragma once
 
-#include <delassus/core/array.hpp>
+#include <delassus/geometry/aabb.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
 #include <delassus/math/pose.hpp>
@@ -14,27 +14,6 @@
 #include <span>
 
 namespace delassus {
-
-using Aabb = Eigen::AlignedBox3d;
-
-namespace inner {
-
-template <>
-inline constexpr bool is_copied_by_bytes<Aabb> = true;  // its destructor does nothing
-
-}  // namespace inner
-
-/// Whether there is no point in the box, or in both: asked axis by axis, since the first one mostly tells.
-inline bool is_empty(const Aabb& a) {
-  for (int k = 0; k < 3; ++k)
-    if (a.min()[k] > a.max()[k]) return true;
-  return false;
-}
-inline bool is_apart(const Aabb& a, const Aabb& b) {
-  for (int k = 0; k < 3; ++k)
-    if (a.min()[k] > b.max()[k] || b.min()[k] > a.max()[k]) return true;
-  return false;
-}
 
 /// A convex body, as distances and penetrations see it: a core, and all points within a radius of the core.
 template <class S>
@@ -183,8 +162,10 @@ Vec3 half_widths(const std::same_as<Shape> auto& s, const Mat3& R) {
     case ShapeKind::ellipsoid:
       return along(
           [&](int k) { return norm(Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2])); });
-    default:
-      return Vec3::Constant(std::numeric_limits<double>::infinity());
+    default: {
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      return {infinity, infinity, infinity};
+    }
   }
 }
 

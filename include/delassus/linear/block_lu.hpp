@@ -30,7 +30,7 @@ class BlockLu {
   template <class Ends = Never>
   void set_identity(Ends&& ends = {}) {
     for (Block& b : diagonal_) b = diagonal_of<w>(T(1));
-    for (auto* entries : {&lower_, &upper_}) entries->resize(pattern_.entries());
+    lower_.resize(pattern_.entries()), upper_.resize(pattern_.entries());
     for (auto* entries : {&lower_, &upper_})
       for (Block& b : *entries) {
         if (ends(1)) return;
@@ -87,7 +87,7 @@ class BlockLu {
   template <class Ends = Never>
   void solve(std::span<Vec<w, T>> x, Ends&& ends = {}) const {
     const Index n = Index(diagonal_.size());
-    for (Index i = 0; i < n; ++i) work_[pattern_.place(i)] = x[i];
+    for (Index i = 0; i < n; ++i) assign(work_[pattern_.place(i)], x[i]);
     for (Index j = 0; j < n; ++j) {
       if (ends(1)) return;
       pivot_[j].solve(work_[j]);
@@ -99,7 +99,7 @@ class BlockLu {
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
         add_product(upper_[e], work_[pattern_.row(e)], work_[j], T(-1));
     }
-    for (Index i = 0; i < n; ++i) x[i] = work_[pattern_.place(i)];
+    for (Index i = 0; i < n; ++i) assign(x[i], work_[pattern_.place(i)]);
   }
 
  private:

@@ -3,13 +3,13 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/owning_array.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus {
 
@@ -119,7 +119,7 @@ class BasicBlockPattern {
   }
 
   Array<Index> place_, start_, row_, merged_;
-  std::vector<Array<Index>> lists_;
+  OwningArray<Array<Index>> lists_;
   Array<std::uint64_t> queue_;  ///< a degree and its block
 };
 

@@ -5,6 +5,7 @@
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_triangle.hpp>
 #include <delassus/linear/node_compliance.hpp>
+#include <delassus/math/long_vectors.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -60,10 +61,10 @@ class MultifrontalCholesky {
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w, T>> x) const {
     y_.resize(std::size_t(w) * blocks());
-    for (Index i = 0; i < blocks(); ++i) Line(&y_[w * pattern().place(i)], w) = x[i].array();
+    for (Index i = 0; i < blocks(); ++i) for (int c = 0; c < w; ++c) y_[w * pattern().place(i) + c] = x[i][c];
     for (Index s = 0; s < fronts(); ++s) forward(s);
     for (Index s = fronts(); s-- > 0;) backward(s);
-    for (Index i = 0; i < blocks(); ++i) x[i] = ConstLine(&y_[w * pattern().place(i)], w).matrix();
+    for (Index i = 0; i < blocks(); ++i) for (int c = 0; c < w; ++c) x[i][c] = y_[w * pattern().place(i) + c];
   }
 
   /// The rows and columns of A⁻¹ of some nodes, each named once: C is (w n) × (w n) by columns. See
@@ -77,8 +78,6 @@ class MultifrontalCholesky {
  private:
   template <class U>
   using Columns = inner::Columns<U>;
-  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
-  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
   Index fronts() const { return plan_.fronts(); }
 
@@ -105,7 +104,7 @@ class MultifrontalCholesky {
     std::copy_n(&y_[w * x.first], width, gather_.begin());
     for (Index j = 0; j < width; ++j) {
       const T y = gather_[j] /= *L.at(j, j);
-      Line(gather_.data() + j + 1, height - j - 1) -= y * ConstLine(L.at(j, j) + 1, height - j - 1);
+      add_multiple<T>(-y, L.at(j, j) + 1, gather_.data() + j + 1, height - j - 1);
     }
     std::copy_n(gather_.begin(), width, &y_[w * x.first]);
     for (Index k = x.width; k < Index(x.rows.size()); ++k)
@@ -121,7 +120,7 @@ class MultifrontalCholesky {
       for (int c = 0; c < w; ++c) gather_[w * k + c] = y_[w * x.rows[k] + c];
     for (Index j = w * x.width; j-- > 0;) {
       const Index rest = height - j - 1;
-      const T below = (ConstLine(L.at(j, j) + 1, rest) * ConstLine(gather_.data() + j + 1, rest)).sum();
+      const T below = sum_of_products<T>(L.at(j, j) + 1, gather_.data() + j + 1, rest);
       gather_[j] = (gather_[j] - below) / *L.at(j, j);
     }
     std::copy_n(gather_.begin(), w * x.width, &y_[w * x.first]);

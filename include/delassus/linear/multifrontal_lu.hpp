@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_triangle.hpp>
+#include <delassus/math/long_vectors.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 
 #include <algorithm>
@@ -63,8 +64,6 @@ class MultifrontalLu {
  private:
   template <class U>
   using Columns = inner::Columns<U>;
-  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
-  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
   bool factor_front(Index s) {
     const Supernode& x = plan_.supernode(s);
@@ -104,7 +103,7 @@ class MultifrontalLu {
     for (int c = 0; c < w; ++c)
       for (int r = 0; r < w; ++r) D(r, c) = r >= c ? *L.at(r, c) : *U.at(c, r);
     if (!pivot.factor(D)) return false;
-    pivot.solve_rows([&](int k) { return Line(U.at(w, k), height - w); });
+    pivot.solve_rows([&](int k) { return U.at(w, k); }, height - w);
     return true;
   }
 
@@ -121,7 +120,7 @@ class MultifrontalLu {
       std::copy_n(&gather_[w * k], w, y.data());
       pivot_[x.first + k].solve(y);
       for (int c = 0; c < w; ++c)
-        Line(gather_.data() + next, rest) -= y[c] * ConstLine(L.at(next, w * k + c), rest);
+        add_multiple<T>(-y[c], L.at(next, w * k + c), gather_.data() + next, rest);
     }
     for (Index k = x.width; k < Index(x.rows.size()); ++k)
       for (int c = 0; c < w; ++c) y_[x.rows[k]][c] += gather_[w * k + c];
@@ -136,8 +135,7 @@ class MultifrontalLu {
     for (Index k = x.width; k-- > 0;) {
       const Index next = w * (k + 1), rest = height - next;
       for (int c = 0; c < w; ++c)
-        gather_[w * k + c] -=
-            (ConstLine(U.at(next, w * k + c), rest) * ConstLine(gather_.data() + next, rest)).sum();
+        gather_[w * k + c] -= sum_of_products<T>(U.at(next, w * k + c), gather_.data() + next, rest);
       std::copy_n(&gather_[w * k], w, y_[x.first + k].data());
     }
   }

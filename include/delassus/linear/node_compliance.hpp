@@ -5,6 +5,7 @@
 #include <delassus/core/sort.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/supernodes.hpp>
+#include <delassus/math/long_vectors.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -62,8 +63,6 @@ class NodeCompliance {
   }
 
  private:
-  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
-  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
 
   /// Y ← L⁻¹ Y and −C ← −C − Yᵀ Y, the share of one supernode. Y is stored transposed, one column a row of L,
   /// `used` of its columns from `first` on.
@@ -74,7 +73,7 @@ class NodeCompliance {
     const inner::Columns<T> G{gather_.data(), std::size_t(used)};
     kernel_.solve_and_multiply(Y, L, L.from(width, 0), G, minus, used, below, width);
     for (Index i = 0; i < below; ++i)
-      Line(line(x.rows[x.width + i / w], i % w, columns, first), used) += ConstLine(G.at(0, i), used);
+      add_multiple<T>(1, G.at(0, i), line(x.rows[x.width + i / w], i % w, columns, first), used);
   }
 
   /// The wanted nodes by place, the supernodes above them, and where the rows of those are kept.

@@ -1,17 +1,14 @@
 /// How long each stage takes.
 #pragma once
 
+#include <delassus/core/clock.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/step/stage.hpp>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -30,7 +27,7 @@ class BasicStopwatch {
   /// Milliseconds of each stage of one step, in the order of `names`.
   using Times = std::array<Real, stages>;
 
-  explicit BasicStopwatch(std::size_t keep = 100000) : keep_(keep) { laps_.reserve(std::min<std::size_t>(keep, 1024)); }
+  explicit BasicStopwatch(std::size_t keep = 100000) : keep_(keep) { laps_.reserve(keep < 1024 ? keep : 1024); }
 
   const std::vector<Times>& laps() const { return laps_; }
   const Times& last() const { return now_; }
@@ -38,7 +35,7 @@ class BasicStopwatch {
   /// ms, mean over all steps so far.
   Times mean() const {
     Times mean = sum_;
-    for (Real& m : mean) m /= Real(std::max<long>(steps_, 1));
+    for (Real& m : mean) m /= Real(steps_ > 1 ? steps_ : 1);
     return mean;
   }
 
@@ -55,22 +52,23 @@ class BasicStopwatch {
 
   /// Chrome's trace event format: open the file in a trace viewer. Throws InvalidArgument when it cannot be written.
   void write_trace(const std::string& path) const {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "w"), std::fclose);
+    std::FILE* const file = std::fopen(path.c_str(), "w");
     DELASSUS_EXPECT(file != nullptr, "trace: cannot write '" + path + "'; is its folder there?");
-    std::fprintf(file.get(), "[\n");
+    std::fprintf(file, "[\n");
     Real start = 0;
     for (std::size_t k = 0; k < laps_.size(); ++k)
       for (std::size_t s = 0; s < stages; ++s) {
-        std::fprintf(file.get(), "%s{\"name\":\"%s\",\"ph\":\"X\",\"pid\":1,\"tid\":1,\"ts\":%.3f,\"dur\":%.3f,\"args\":{\"step\":%zu}}",
+        std::fprintf(file, "%s{\"name\":\"%s\",\"ph\":\"X\",\"pid\":1,\"tid\":1,\"ts\":%.3f,\"dur\":%.3f,\"args\":{\"step\":%zu}}",
                      k + s == 0 ? "" : ",\n", names[s], start * 1e3, laps_[k][s] * 1e3, k);
         start += laps_[k][s];
       }
-    std::fprintf(file.get(), "\n]\n");
+    std::fprintf(file, "\n]\n");
+    std::fclose(file);
   }
 
   void after(stage::Begin, const auto&) {
     now_ = {};
-    mark_ = Clock::now();
+    mark_ = SteadyClock().now();
   }
   void after(stage::Detect, const auto&) { lap(0); }
   void after(stage::Linearize, const auto&) { lap(1); }
@@ -88,16 +86,14 @@ class BasicStopwatch {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void lap(std::size_t s) {
-    const Clock::time_point t = Clock::now();
-    now_[s] += std::chrono::duration<double, std::milli>(t - mark_).count();
+    const double t = SteadyClock().now();
+    now_[s] += 1e3 * (t - mark_);
     mark_ = t;
   }
 
   std::size_t keep_;
-  Clock::time_point mark_;
+  double mark_ = 0;  ///< s
   Times now_{}, sum_{};
   std::vector<Times> laps_;
   long steps_ = 0;

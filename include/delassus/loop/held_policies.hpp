@@ -1,6 +1,7 @@
 /// The policies of a loop, those that its arguments leave out included.
 #pragma once
 
+#include <delassus/core/pack.hpp>
 #include <delassus/core/roles.hpp>
 
 #include <tuple>
@@ -32,7 +33,7 @@ P& no_policy();
 template <class Defaults, class... Policies>
 class HeldPolicies {
  public:
-  explicit HeldPolicies(Policies... policies) : given_{std::move(policies)...} {}
+  explicit HeldPolicies(Policies... policies) : given_{{static_cast<Policies&&>(policies)}...} {}
 
   template <class P>
   static constexpr bool has = (std::is_same_v<P, Policies> || ...);
@@ -41,13 +42,13 @@ class HeldPolicies {
   template <class Role, class Part, class Self>
   static auto& policy(Self& self) {
     if constexpr (count_of<Role, Policies...> > 0) {
-      return std::get<Part>(self.given_);
+      return part_of_type<Part>(self.given_);
     } else {
       constexpr bool is_default = holds_type<Part, Defaults>;
       static_assert(is_default,
                     "delassus: this AnimationLoop has no policy of this role: without constraints, and under JointByJoint, there is no "
                     "solver and no compliance; do not ask for it, or take another scheme");
-      if constexpr (is_default) return std::get<Part>(self.defaults_);
+      if constexpr (is_default) return part_of_type<Part>(self.defaults_);
       else return no_policy<Part>();
     }
   }
@@ -57,23 +58,23 @@ class HeldPolicies {
     static_assert(has<P>,
                   "delassus: this AnimationLoop has no policy of this type; name it among the arguments, or ask for the policy "
                   "of a role, loop.policy<role::Solver>(), which finds the defaults too");
-    if constexpr (has<P>) return std::get<P>(self.given_);
+    if constexpr (has<P>) return part_of_type<P>(self.given_);
     else return no_policy<P>();
   }
   /// f(policy) for every argument, in their order.
   template <class F>
   void each(F&& f) {
-    std::apply([&](auto&... policy) { (f(policy), ...); }, given_);
+    given_.each(f);
   }
   void each_with_defaults(auto&& f) const {
-    std::apply([&](const auto&... policy) { (f(policy), ...); }, given_);
-    std::apply([&](const auto&... policy) { (f(policy), ...); }, defaults_);
+    given_.each(f);
+    defaults_.each(f);
   }
-  const std::tuple<Policies...>& given() const { return given_; }
+  const Pack<Policies...>& given() const { return given_; }
 
  private:
-  std::tuple<Policies...> given_;
-  [[no_unique_address]] Defaults defaults_{};
+  Pack<Policies...> given_;
+  [[no_unique_address]] typename pack_of<Defaults>::type defaults_{};
 };
 
 }  // namespace delassus::inner

@@ -1,6 +1,7 @@
 /// What the parts of a loop keep between the stages of a step, and from step to step.
 #pragma once
 
+#include <delassus/core/pack.hpp>
 #include <delassus/core/roles.hpp>
 
 #include <cstddef>
@@ -37,11 +38,11 @@ class States {
 
   template <class Key>
   auto& of() {
-    return std::get<place<Key>()>(states_);
+    return part<place<Key>()>(states_);
   }
   template <class Key>
   const auto& of() const {
-    return std::get<place<Key>()>(states_);
+    return part<place<Key>()>(states_);
   }
 
   /// What outlives a step, of all but the activity (false) or of it alone (true).
@@ -63,7 +64,7 @@ class States {
     return at;
   }
 
-  [[no_unique_address]] decltype(std::tuple_cat(std::declval<typename state_of<F, P>::type>()...)) states_;
+  [[no_unique_address]] typename pack_of<decltype(std::tuple_cat(std::declval<typename state_of<F, P>::type>()...))>::type states_;
 };
 
 }  // namespace delassus::inner

@@ -252,11 +252,11 @@ inline Eigen::Matrix<T, R, C> operator*(const inner::Fixed<T, R, K, O>& A, const
   return Y;
 }
 
-/// a · b of all entries. Of three, the last two are added first, as Eigen does.
+/// a · b of all entries, summed from left to right.
 template <class T>
 [[gnu::always_inline]] inline T dot(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
   const T *x = a.data(), *y = b.data();
-  return x[0] * y[0] + (x[1] * y[1] + x[2] * y[2]);
+  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 template <class T, int R, int C>
   requires inner::SmallSizes<R, C>
@@ -314,6 +314,16 @@ inline typename A::PlainObject normalized(const Eigen::MatrixBase<A>& a) {
   return a.normalized();
 }
 
+/// to = from, entry by entry: Eigen's own operator= between two names takes thirty functions for each size, and none where
+/// the right side is a value.
+template <class T, int R, int C, int O>
+[[gnu::always_inline]] inline void assign(inner::Fixed<T, R, C, O>& to, const inner::Fixed<T, R, C, O>& from) {
+  T* e = to.data();
+  const T* f = from.data();
+  DELASSUS_UNROLL
+  for (int i = 0; i < R * C; ++i) e[i] = f[i];
+}
+
 /// Sets every entry.
 template <class T, int R, int C>
 inline void set_all(Eigen::Matrix<T, R, C>& a, std::type_identity_t<T> value) {
@@ -323,6 +333,18 @@ inline void set_all(Eigen::Matrix<T, R, C>& a, std::type_identity_t<T> value) {
 template <class T, int R, int C>
 [[gnu::always_inline]] inline void set_zero(Eigen::Matrix<T, R, C>& a) {
   set_all(a, T(0));
+}
+
+/// The largest entry, and the column j.
+template <class T>
+[[gnu::always_inline]] inline T max_entry(const Eigen::Matrix<T, 3, 1>& a) {
+  const T *x = a.data(), two = x[0] < x[1] ? x[1] : x[0];
+  return two < x[2] ? x[2] : two;
+}
+template <class T>
+[[gnu::always_inline]] inline Eigen::Matrix<T, 3, 1> column(const Eigen::Matrix<T, 3, 3>& A, int j) {
+  const T* x = A.data() + 3 * j;
+  return {x[0], x[1], x[2]};
 }
 
 /// The matrix with `value` on its diagonal and zeros elsewhere, and of zeros alone.

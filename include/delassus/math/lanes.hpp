@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/math/packet.hpp>
+#include <delassus/math/packet_root.hpp>
 #include <delassus/math/singular_values.hpp>
 
 #include <cstddef>

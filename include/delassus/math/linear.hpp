@@ -33,6 +33,12 @@ struct double_in {
 template <class T>
 using DoubleIn = typename inner::double_in<T>::type;
 
+/// to = from.
+template <class T>
+[[gnu::always_inline]] inline void assign(Eigen::Quaternion<T>& to, const Eigen::Quaternion<T>& from) {
+  assign(to.coeffs(), from.coeffs());
+}
+
 /// The k-th axis.
 template <class T = double>
 Vec<3, T> unit_axis(int k) {

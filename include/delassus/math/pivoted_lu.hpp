@@ -1,9 +1,11 @@
 /// The LU factorization of one small matrix, with row pivots.
 #pragma once
 
+#include <delassus/core/fixed_array.hpp>
+#include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/math/long_vectors.hpp>
 
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -16,7 +18,7 @@ class PivotedLu {
  public:
   /// False when a pivot is zero or not finite.
   bool factor(const Mat<w, w, T>& A) {
-    lu_ = A;
+    assign(lu_, A);
     for (int k = 0; k < w; ++k) {
       int pivot = k;
       for (int i = k + 1; i < w; ++i)
@@ -50,15 +52,17 @@ class PivotedLu {
     }
   }
 
-  /// X ← X A⁻ᵀ for a matrix X of any height: column(k), k < w, are its columns, to be written to.
-  void solve_rows(const auto& column) const {
+  /// X ← X A⁻ᵀ for a matrix X of `height` rows: column(k), k < w, points at its columns.
+  void solve_rows(const auto& column, Index height) const {
     for (int k = 0; k < w; ++k)
-      if (swap_[k] != k) column(k).swap(column(swap_[k]));
+      if (swap_[k] != k)
+        for (Index r = 0; r < height; ++r) std::swap(column(k)[r], column(swap_[k])[r]);
     for (int k = 0; k < w; ++k)
-      for (int i = k + 1; i < w; ++i) column(i) -= lu_(i, k) * column(k);
+      for (int i = k + 1; i < w; ++i) add_multiple<T>(-lu_(i, k), column(k), column(i), height);
     for (int k = w; k-- > 0;) {
-      column(k) *= over_[k];
-      for (int i = 0; i < k; ++i) column(i) -= lu_(i, k) * column(k);
+      T* const x = column(k);
+      for (Index r = 0; r < height; ++r) x[r] *= over_[k];
+      for (int i = 0; i < k; ++i) add_multiple<T>(-lu_(i, k), x, column(i), height);
     }
   }
 
@@ -71,8 +75,8 @@ class PivotedLu {
 
  private:
   Mat<w, w, T> lu_;
-  std::array<T, w> over_;  ///< 1 / U_kk
-  std::array<int, w> swap_;
+  FixedArray<T, w> over_;  ///< 1 / U_kk
+  FixedArray<int, w> swap_;
 };
 
 }  // namespace delassus

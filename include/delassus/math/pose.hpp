@@ -8,7 +8,7 @@ namespace delassus {
 /// x_world = position + rotation · x_local. Lengths in m; `rotation` is orthonormal.
 struct Pose {
   Vec3 position = zero<Vec3>();
-  Mat3 rotation = Mat3::Identity();
+  Mat3 rotation = identity<Mat3>();
 
   Vec3 to_world(const Vec3& local) const { return position + rotation * local; }
   Vec3 to_local(const Vec3& world) const { return rotation.transpose() * (world - position); }

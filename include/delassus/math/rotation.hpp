@@ -13,13 +13,26 @@ inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
   const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const T size = std::sqrt((x * x + z * z) + (y * y + w * w));
   if (!(size <= std::numeric_limits<T>::max())) {
-    const T largest = std::max({std::abs(w), std::abs(x), std::abs(y), std::abs(z)});
+    const T largest = std::max(std::max(std::abs(w), std::abs(x)), std::max(std::abs(y), std::abs(z)));
     if (largest <= std::numeric_limits<T>::max()) {
       const T s = T(1) / largest;
       return unit(Eigen::Quaternion<T>(s * w, s * x, s * y, s * z));
     }
   }
   return {w / size, x / size, y / size, z / size};
+}
+
+/// The turn by b, and then by a. Sums as Eigen's operator* has them.
+template <class T>
+inline Eigen::Quaternion<T> product(const Eigen::Quaternion<T>& a, const Eigen::Quaternion<T>& b) {
+  const T *p = a.coeffs().data(), *q = b.coeffs().data();  // x, y, z, w
+  return {(p[3] * q[3] - p[1] * q[1]) - (p[2] * q[2] + p[0] * q[0]), (p[3] * q[0] + p[1] * q[2]) - (p[2] * q[1] - p[0] * q[3]),
+          (p[3] * q[1] + p[1] * q[3]) + (p[2] * q[0] - p[0] * q[2]), (p[3] * q[2] - p[1] * q[0]) + (p[2] * q[3] + p[0] * q[1])};
+}
+/// The turn back, of a unit quaternion.
+template <class T>
+inline Eigen::Quaternion<T> conjugate(const Eigen::Quaternion<T>& q) {
+  return {q.w(), -q.x(), -q.y(), -q.z()};
 }
 
 /// q v q*, of a unit quaternion.
@@ -137,9 +150,9 @@ MidpointRate<T> midpoint_rate(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate
       const Vec<3, T> trial_residual = trial_sum - T(2) * c + (h / 2) * cross(trial, trial_sum);
       const T trial_size = norm(trial_residual);
       if (trial_size < size) {
-        mid = trial;
-        sum = trial_sum;
-        residual = trial_residual;
+        assign(mid, trial);
+        assign(sum, trial_sum);
+        assign(residual, trial_residual);
         size = trial_size;
         break;
       }
@@ -195,9 +208,9 @@ template <class T>
 Eigen::Quaternion<T> midpoint_turn_in_halves(const Mat<3, 3, T>& inertia, const Vec<3, T>& rate, const Vec<3, T>& a,
                                              const Vec<3, T>& c, T h, int halvings) {
   const Eigen::Quaternion<T> first = midpoint_turn_halving<T>(inertia, rate, a, c, h / 2, halvings);
-  const Vec<3, T> momentum = rotated<T>(first.conjugate(), c);
+  const Vec<3, T> momentum = rotated<T>(conjugate(first), c);
   const Vec<3, T> then = rate_of<T>(inertia, momentum);
-  return unit_again(first * midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings));
+  return unit_again(product(first, midpoint_turn_halving<T>(inertia, then, momentum, momentum, h / 2, halvings)));
 }
 
 }  // namespace inner

@@ -61,15 +61,15 @@ struct RowSystem<T, Widths<w...>, R...> {
 
 /// Calls f(std::integral_constant<int, 0>{}), … in order: a loop over pools or sets, unrolled.
 template <int count, class F>
-constexpr void for_each_index(F&& f) {
-  [&]<int... i>(std::integer_sequence<int, i...>) {
+[[gnu::always_inline]] constexpr void for_each_index(F&& f) {
+  [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) {
     (f(std::integral_constant<int, i>{}), ...);
   }(std::make_integer_sequence<int, count>{});
 }
 
 /// f(p, pool) for every pool of rows, or of constraints.
-void each_pool(auto& all, auto&& f) {
-  [&]<int... p>(std::integer_sequence<int, p...>) {
+[[gnu::always_inline]] inline void each_pool(auto& all, auto&& f) {
+  [&]<int... p>(std::integer_sequence<int, p...>) __attribute__((always_inline)) {
     (f(std::integral_constant<int, p>{}, all.template pool<p>()), ...);
   }(std::make_integer_sequence<int, std::remove_cvref_t<decltype(all)>::pool_count>{});
 }

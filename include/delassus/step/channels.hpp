@@ -1,13 +1,14 @@
 /// What listeners keep for other threads, in the types of their loop.
 #pragma once
 
+#include <delassus/core/pack.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/problem.hpp>
 #include <delassus/step/row_types.hpp>
 
-#include <memory>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace delassus {
 
@@ -30,20 +31,42 @@ struct problem_of<Policies> {
   using type = void;
 };
 
-/// Each on the heap: other threads hold references to them while the loop may move.
+/// A T on the heap, so that it stays where it is when its owner moves.
+template <class T>
+class OnHeap {
+ public:
+  explicit OnHeap(const auto& from) : at_(new T(from)) {}
+  OnHeap(OnHeap&& other) noexcept : at_(other.at_) { other.at_ = nullptr; }
+  OnHeap& operator=(OnHeap&& other) noexcept {
+    std::swap(at_, other.at_);
+    return *this;
+  }
+  ~OnHeap() { delete at_; }
+  T& operator*() const { return *at_; }
+
+ private:
+  T* at_;
+};
+
+/// Other threads hold references to them while the loop may move.
 template <class Problem, class... Publishers>
 class Channels {
  public:
   explicit Channels([[maybe_unused]] const auto& policies)
-      : channels_{std::make_unique<typename Publishers::template Channel<Problem>>(std::get<Publishers>(policies))...} {}
+      : channels_{{OnHeap<typename Publishers::template Channel<Problem>>(part_of_type<Publishers>(policies))}...} {}
 
   template <class P>
   auto& of() const {
-    return *std::get<std::unique_ptr<typename P::template Channel<Problem>>>(channels_);
+    return *part_of_type<OnHeap<typename P::template Channel<Problem>>>(channels_);
   }
 
  private:
-  [[no_unique_address]] std::tuple<std::unique_ptr<typename Publishers::template Channel<Problem>>...> channels_;
+  Pack<OnHeap<typename Publishers::template Channel<Problem>>...> channels_;
+};
+template <class Problem>
+class Channels<Problem> {
+ public:
+  [[gnu::always_inline]] explicit Channels(const auto&) {}
 };
 
 /// The channels of the publishers among `Policies`.

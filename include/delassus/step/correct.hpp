@@ -22,7 +22,7 @@ template <class V>
 void drop_rounding(V& v_next, const V& v_free) {
   using T = typename V::Scalar;
   constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
-  const T least = rounding * std::max({std::abs(v_free[0]), std::abs(v_free[1]), std::abs(v_free[2])});
+  const T least = rounding * std::max(std::max(std::abs(v_free[0]), std::abs(v_free[1])), std::abs(v_free[2]));
   for (int k = 0; k < 3; ++k)
     if (std::abs(v_next[k]) <= least) v_next[k] = T(0);
 }
@@ -39,7 +39,7 @@ void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, cons
   for (std::size_t k = 0; k < std::min(reports.size(), is_nonfinite.size()); ++k)
     is_nonfinite[k] = reports[k].status == Status::quarantined;
   world.each([&](auto& set, auto s) {
-    for (const Index b : set.active()) set.v_next[b] = set.v_free[b];
+    for (const Index b : set.active()) assign(set.v_next[b], set.v_free[b]);
     add_impulses<s>(inner::inverse_of<s>(W, set, 1), rows, set.v_next, std::get<s>(scratch));
     for (const Index b : set.active()) {
       const Index island = islands.island_of(first + b);
@@ -51,7 +51,9 @@ void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, cons
     }
     first += set.blocks();
   });
-  if (std::find(is_nonfinite.begin(), is_nonfinite.end(), 1) == is_nonfinite.end()) return;
+  bool are_finite = true;
+  for (const char is : is_nonfinite) are_finite = are_finite && !is;
+  if (are_finite) return;
   first = 0;
   world.each([&](auto& set, auto) {
     using T = typename std::remove_reference_t<decltype(set)>::Scalar;

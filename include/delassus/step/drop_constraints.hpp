@@ -3,10 +3,10 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <array>
 #include <cstddef>
 
 namespace delassus::inner {
@@ -25,7 +25,7 @@ void drop_stale(const World& world, Laws& laws) {
 
 /// The same, where bodies may have gone since the last call: `seen` is what the sets were then.
 template <class World, class Laws>
-void drop_stale(const World& world, Laws& laws, std::array<SetVersion, std::size_t(World::set_count)>& seen) {
+void drop_stale(const World& world, Laws& laws, FixedArray<SetVersion, std::size_t(World::set_count)>& seen) {
   bool may_be_stale = false;
   world.each([&](const auto& set, auto s) {
     if constexpr (requires { set.version(); }) {

@@ -24,7 +24,7 @@ void free_motion(Set& set, Inverse&& inverse, const I& integrator, Array<typenam
     }
   } else {
     for (const Index b : set.active()) {
-      set.v_free[b] = v[b];
+      assign(set.v_free[b], v[b]);
       if (set.moves(b)) set.v_free[b] += set.template solve_block<1>(b, p[b]);
     }
   }

@@ -1,12 +1,13 @@
 /// FreeMotion, and with it Advance where there are no constraints, in one pass: each body alone.
 #pragma once
 
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/rows/body_set.hpp>
 #include <delassus/step/free_motion.hpp>
 
-#include <array>
 #include <concepts>
 #include <tuple>
+#include <type_traits>
 
 namespace delassus {
 
@@ -17,9 +18,9 @@ struct OneBlock {
   Index b;
   Velocity v_next;
 
-  std::array<Index, 1> active() const { return {0}; }  // the only place of p
-  void add_forces(std::array<Velocity, 1>& p) const { blocks.add_force(b, p[0]); }
-  void add_mass_times_velocity(std::array<Velocity, 1>& p, double s) const {
+  FixedArray<Index, 1> active() const { return {0}; }  // the only place of p
+  void add_forces(FixedArray<Velocity, 1>& p) const { blocks.add_force(b, p[0]); }
+  void add_mass_times_velocity(FixedArray<Velocity, 1>& p, double s) const {
     blocks.add_mass_times_velocity(b, p[0], s);
   }
   void advance(double h) { blocks.advance(b, v_next, h, 0); }
@@ -43,6 +44,10 @@ concept StepsByBlock = requires(S set, const S fixed, SystemScale scale) {
   { set.by_block(scale) } -> std::same_as<typename S::Blocks>;
 };
 
+/// A set of which that is so whatever its bodies are.
+template <class S>
+concept AlwaysSeparable = requires { requires std::bool_constant<S::is_separable()>::value; };
+
 namespace inner {
 
 template <class World>
@@ -57,9 +62,9 @@ void each_kicked(Set& set, const I& integrator, double h, F&& f) {
   for (const Index b : set.active()) {
     OneBlock<decltype(blocks), typename Set::Velocity> block{blocks, b, {}};
     if (!blocks.moves(b)) [[unlikely]] {
-      block.v_next = blocks.velocity(b);
+      assign(block.v_next, blocks.velocity(b));
     } else {
-      std::array<typename Set::Velocity, 1> p;
+      FixedArray<typename Set::Velocity, 1> p;
       set_all(p[0], typename Set::Scalar(-0.0));  // −0 + f is f for every f, 0 + f is not for f = −0
       integrator.impulse(block, p, h);
       block.v_next = blocks.velocity(b) + blocks.solve(b, p[0]);
@@ -81,7 +86,7 @@ void move_freely(Set& set, const I& integrator, double h) {
 template <class Set, class I>
 void kick(Set& set, const I& integrator, double h) {
   inner::each_kicked(set, integrator, h,
-                     [&](auto& block, Index b) { set.v_free[b] = set.v_next[b] = block.v_next; });
+                     [&](auto& block, Index b) { assign(set.v_free[b], block.v_next), assign(set.v_next[b], block.v_next); });
 }
 
 /// FreeMotion to Advance of a whole step at once.
@@ -89,7 +94,9 @@ template <class Step>
   requires requires(Step& step) { step.end_clock(); }
 void move_freely(Step& step) {
   step.world().each([&](auto& set, auto s) {
-    if (set.is_separable()) {
+    if constexpr (AlwaysSeparable<std::remove_reference_t<decltype(set)>>) {
+      move_freely(set, step.integrator(), step.h);
+    } else if (set.is_separable()) {
       move_freely(set, step.integrator(), step.h);
     } else {
       delassus::free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);

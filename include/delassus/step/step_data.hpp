@@ -6,6 +6,7 @@
 #include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/local.hpp>
@@ -18,7 +19,6 @@
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/step_report.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -40,7 +40,7 @@ struct RowData {
   typename P::Solver::template Workspace<Rows> solver_workspace;
   Array<SolveReport> reports;  ///< of the islands, in their order
   Array<char> is_nonfinite;         ///< islands with a velocity that is not finite
-  std::array<SetVersion, std::size_t(P::World::set_count)> versions;
+  FixedArray<SetVersion, std::size_t(P::World::set_count)> versions;
   ContactCache contact_cache;
   Materials material_pairs;
 };

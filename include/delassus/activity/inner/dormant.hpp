@@ -116,7 +116,8 @@ class Dormant {
   static Aabb box_of(const Shape& shape, const Pose& pose) {
     if (shape.kind == ShapeKind::half_space) return {};
     const Aabb box = tight_box(shape, pose);
-    const Vec3 more = Vec3::Constant(0.5 * box.sizes().maxCoeff());
+    const double half = 0.5 * max_entry(box.sizes());
+    const Vec3 more(half, half, half);
     return Aabb(box.min() - more, box.max() + more);
   }
 

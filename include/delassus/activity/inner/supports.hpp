@@ -28,7 +28,7 @@ class Supports {
           if (is_zero(v)) continue;
           Aabb box = now_.back().box;
           const Vec3 way = h * v.template head<3>().template cast<double>();
-          near(box.isEmpty() ? box : box.extend(Aabb(box).translate(way)));
+          near(box.is_empty() ? box : box.extend(Aabb(box.min() + way, box.max() + way)));
         }
     });
     compare(near);

@@ -9,7 +9,6 @@
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/body_set.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -45,8 +44,7 @@ class BodyStorage {
   /// Puts a body to sleep where it is: it is in no list of `active`, and its velocity reads zero.
   void put_to_sleep(Index b) {
     slots_.set_awake(b, false);
-    set_all(v_[b], typename Velocity::Scalar(0));
-    v_free[b] = v_next[b] = v_[b];
+    set_zero(v_[b]), set_zero(v_free[b]), set_zero(v_next[b]);
   }
   void wake(Index b) { slots_.set_awake(b, true); }
 
@@ -81,11 +79,10 @@ class BodyStorage {
   Index take(const auto& body, const Velocity& velocity) {
     const Index b = slots_.take();
     const std::size_t n = std::size_t(slots_.size());
-    for (auto* array : {&v_, &load_, &v_free, &v_next}) array->resize(n);
-    material_.resize(n);
-    for (auto* array : {&group_, &collides_with_}) array->resize(n);
-    v_[b] = v_free[b] = v_next[b] = velocity;
-    set_all(load_[b], typename Velocity::Scalar(0));
+    v_.resize(n), load_.resize(n), v_free.resize(n), v_next.resize(n);
+    material_.resize(n), group_.resize(n), collides_with_.resize(n);
+    assign(v_[b], velocity), assign(v_free[b], velocity), assign(v_next[b], velocity);
+    set_zero(load_[b]);
     material_[b] = body.material;
     note_material(body.material);
     group_[b] = body.group;
@@ -106,8 +103,8 @@ class BodyStorage {
 
  private:
   void note_material(Index material) {
-    least_material_ = std::min(least_material_, material);
-    most_material_ = std::max(most_material_, material);
+    if (material < least_material_) least_material_ = material;
+    if (material > most_material_) most_material_ = material;
   }
 
   std::uint32_t owner_ = next_owner();

@@ -48,7 +48,7 @@ class PointStorage : public BodyStorage<Set, T, 3> {
 
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
   Shape shape(Index b) const { return Sphere{radius_[b]}; }
-  Pose pose(Index b) const { return {x_[b].template cast<double>(), Mat3::Identity()}; }
+  Pose pose(Index b) const { return {x_[b].template cast<double>(), identity<Mat3>()}; }
 
  protected:
   /// A place for a point, with room for its state.

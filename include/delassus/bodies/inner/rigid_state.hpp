@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <type_traits>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -21,18 +20,18 @@ struct RigidState {
   using Matrix = Mat<3, 3, T>;
   using Velocity = Vec<6, T>;
 
-  std::vector<Vec3> x;
+  Array<Vec3> x;
   Array<Eigen::Quaternion<T>> q;
   Array<Matrix> R, inertia, inverse_inertia, inverse_inertia_world;  ///< the last is R I⁻¹ Rᵀ
   Array<T> mass, inverse_mass;
-  std::vector<Vec3> kept_x;
+  Array<Vec3> kept_x;
   Array<Eigen::Quaternion<T>> kept_q;
 
   void resize(std::size_t n) {
     x.resize(n);
     q.resize(n);
-    for (auto* array : {&R, &inertia, &inverse_inertia, &inverse_inertia_world}) array->resize(n);
-    for (auto* array : {&mass, &inverse_mass}) array->resize(n);
+    R.resize(n), inertia.resize(n), inverse_inertia.resize(n), inverse_inertia_world.resize(n);
+    mass.resize(n), inverse_mass.resize(n);
   }
 
   /// A body that is not dynamic answers to no impulse: A⁻¹ = 0.
@@ -73,8 +72,8 @@ struct RigidState {
   }
 
   void put(Index b, const Vec3& position, const Eigen::Quaternion<T>& orientation) {
-    x[b] = position;
-    q[b] = orientation;
+    assign(x[b], position);
+    assign(q[b], orientation);
     turn(b);
   }
   void place(Index b, const Vec3& position, const Quat& orientation) { put(b, position, orientation.template cast<T>()); }
@@ -92,7 +91,7 @@ struct RigidState {
   /// x + step, and the axes turned by the vector `turn_by`, rad. False when that is not finite: then nothing moves.
   bool displace(Index b, const Vector& step, const Vector& turn_by) {
     const Vec3 moved = x[b] + step.template cast<double>();
-    const Eigen::Quaternion<T> turned = unit_again(exponential<T>(turn_by) * q[b]);
+    const Eigen::Quaternion<T> turned = unit_again(product(exponential<T>(turn_by), q[b]));
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
     put(b, moved, turned);
     return true;
@@ -134,10 +133,10 @@ bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old
   if (old_share > T(0)) {
     const Vector start = R[b].transpose() * angular_part(v);
     x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
-    q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h));
+    q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h)));
   } else {
     x[b] += Vector(h * linear_part(next)).template cast<double>();
-    q[b] = unit_again(q[b] * midpoint_turn<T>(inertia[b], kicked, impulse, impulse, h));
+    q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], kicked, impulse, impulse, h)));
   }
   turn(b);
   // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small

@@ -3,11 +3,11 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/owning_array.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
 
 #include <cstddef>
-#include <deque>
 
 namespace delassus::inner {
 
@@ -52,7 +52,7 @@ class BasicShapes {
 
  private:
   Array<Shape> shape_;  ///< without their hulls
-  std::deque<Hull> hulls_;
+  OwningArray<Hull> hulls_;
   Array<Index> hull_, free_;
 };
 

@@ -12,7 +12,9 @@ class Targets {
  public:
   void resize(std::size_t n) { targets_.resize(n); }
   void set(Index b, const Vec3& position, const Quat& orientation) {
-    targets_[b] = {position, unit(orientation), true};
+    assign(targets_[b].position, position);
+    targets_[b].orientation = unit(orientation);
+    targets_[b].is_set = true;
     are_any_ = true;
   }
   void drop(Index b) { targets_[b].is_set = false; }
@@ -27,7 +29,7 @@ class Targets {
       are_any_ = true;
       const Quat now = state.q[b].template cast<double>();
       const Vec3 way = targets_[b].position - state.x[b],
-                 turn = logarithm<double>(targets_[b].orientation * now.conjugate());
+                 turn = logarithm<double>(product(targets_[b].orientation, conjugate(now)));
       f(b, twist<T>((way / h).template cast<T>(), (turn / h).template cast<T>()));
     }
   }

@@ -1,9 +1,9 @@
 /// Where two faces overlap, seen along the contact normal.
 #pragma once
 
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/geometry/face.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -19,7 +19,7 @@ struct ClipCorner {
 
 struct ClipPolygon {
   static constexpr int capacity = 2 * Face::capacity + 2;
-  std::array<ClipCorner, capacity> corner;
+  FixedArray<ClipCorner, capacity> corner;
   int count = 0;
   void add(const ClipCorner& c) {
     if (count < capacity) corner[count++] = c;
@@ -55,7 +55,7 @@ class FaceClipper {
 
  private:
   /// Height above side j, m: positive outside.
-  void heights(int j, std::array<double, ClipPolygon::capacity>& height) const {
+  void heights(int j, FixedArray<double, ClipPolygon::capacity>& height) const {
     const Vec3 along = clip_.point[(j + 1) % clip_.count] - clip_.point[j];
     const Vec3 out = cross(along, n_);
     const double length = norm(out);
@@ -64,7 +64,7 @@ class FaceClipper {
   }
 
   void cut(int j) {
-    std::array<double, ClipPolygon::capacity> height;
+    FixedArray<double, ClipPolygon::capacity> height;
     heights(j, height);
     ClipPolygon kept;
     const int count = polygon_.count, lines = count == 2 && subject_.count == 2 ? 1 : count;

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <delassus/collision/inner/polytope.hpp>
+#include <delassus/core/fixed_array.hpp>
 
 namespace delassus::inner {
 
 /// Whether the ray from the origin along d passes the triangle, whose corners run counter-clockwise about d.
-bool is_pierced(const std::array<DifferencePoint, 3>& corner, const std::same_as<Vec3> auto& d) {
+bool is_pierced(const FixedArray<DifferencePoint, 3>& corner, const std::same_as<Vec3> auto& d) {
   for (int k = 0; k < 3; ++k)
     if (dot(d, cross(corner[k].w, corner[(k + 1) % 3].w)) < 0) return false;
   return true;
@@ -14,7 +15,7 @@ bool is_pierced(const std::array<DifferencePoint, 3>& corner, const std::same_as
 
 /// Three points of A − B whose triangle the ray from the origin along `d` pierces; of several, which rounding makes of
 /// slivers, the nearest. Where rounding leaves none: the face with the least offset / (normal · d).
-std::array<DifferencePoint, 3> pierced_face(const std::same_as<Polytope> auto& polytope, const Vec3& d) {
+FixedArray<DifferencePoint, 3> pierced_face(const std::same_as<Polytope> auto& polytope, const Vec3& d) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   int best = 0;
   double least = infinity;
@@ -35,8 +36,8 @@ std::array<DifferencePoint, 3> pierced_face(const std::same_as<Polytope> auto& p
 /// Of the triangles that q makes with the sides of `portal`, keeps the one that the ray along d pierces.
 /// Sides run counter-clockwise about d. False when there is none.
 template <class Scalar>
-bool narrow(const DifferencePoint& q, const Vec<3, Scalar>& d, std::array<DifferencePoint, 3>& portal) {
-  std::array<Scalar, 3> side;
+bool narrow(const DifferencePoint& q, const Vec<3, Scalar>& d, FixedArray<DifferencePoint, 3>& portal) {
+  FixedArray<Scalar, 3> side;
   for (int k = 0; k < 3; ++k) side[k] = dot(d, cross(q.w, portal[k].w));
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
@@ -51,7 +52,7 @@ bool narrow(const DifferencePoint& q, const Vec<3, Scalar>& d, std::array<Differ
 /// depth h and a surface of radius r ≥ h this brings d to the least depth nearby by the factor h/r each time.
 /// Calls visit(triangle, normal, q) for every plane it meets; q is the support point of the normal.
 template <class D, class Visit>
-void descend(const D& difference, Vec3 d, std::array<DifferencePoint, 3> portal, double tolerance,
+void descend(const D& difference, Vec3 d, FixedArray<DifferencePoint, 3> portal, double tolerance,
              const Visit& visit) {
   for (int turn = 0; turn < 12; ++turn) {
     Vec3 normal = d;

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
-#include <array>
 
 namespace delassus::inner {
 
@@ -20,11 +20,7 @@ inline double half_surface(const Aabb& box) {
 /// The box around two that are not empty.
 inline Aabb around(const Aabb& a, const Aabb& b) {
   Aabb both = a;
-  for (int k = 0; k < 3; ++k) {
-    both.min()[k] = std::min(both.min()[k], b.min()[k]);
-    both.max()[k] = std::max(both.max()[k], b.max()[k]);
-  }
-  return both;
+  return both.extend(b);
 }
 
 inline bool is_same(const Aabb& a, const Aabb& b) {
@@ -52,7 +48,7 @@ class BasicDynamicTree {
       const auto growth = [&](Index n) {
         return half_surface(around(node_[n].box, box)) - (is_leaf(n) ? 0.0 : half_surface(node_[n].box));
       };
-      const auto& [left, right] = node_[sibling].child;
+      const Index left = node_[sibling].child[0], right = node_[sibling].child[1];
       sibling = growth(left) <= growth(right) ? left : right;
     }
     const Index above = node_[sibling].parent;
@@ -72,7 +68,7 @@ class BasicDynamicTree {
       root_ = -1;
       return;
     }
-    const auto& [left, right] = node_[parent].child;
+    const Index left = node_[parent].child[0], right = node_[parent].child[1];
     const Index sibling = left == leaf ? right : left, above = node_[parent].parent;
     surface_ -= half_surface(node_[parent].box);
     node_[sibling].parent = above;
@@ -121,10 +117,9 @@ class BasicDynamicTree {
 
  private:
   struct Node {
-    using CopiedByBytes = Node;
     Aabb box;
     Index parent = -1;
-    std::array<Index, 2> child{-1, -1};
+    FixedArray<Index, 2> child{-1, -1};
     Index item = -1;  ///< ≥ 0 in a leaf
     bool is_used = true;
   };

@@ -3,10 +3,10 @@
 
 #include <delassus/collision/manifold.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -26,7 +26,7 @@ class HullOfPatch {
   /// Fills `patch` from the points, and `source` with the place of each in `points`: the convex hull of those
   /// within 1e-3 of the scale of the deepest, and of all of them when these are fewer than four.
   void choose(std::span<const SurfaceContact> points, const Vec3& n, double scale, Patch& patch,
-              std::array<Index, Patch::capacity>& source) {
+              FixedArray<Index, Patch::capacity>& source) {
     project(points, n);
     Index deepest = 0;
     for (Index i = 1; i < Index(points.size()); ++i)
@@ -97,7 +97,7 @@ class HullOfPatch {
   /// Adds the hull, an even sample of one with too many corners, but for what lies on a point that is there, and
   /// the deepest point where it is missed.
   void take(std::span<const SurfaceContact> points, Index deepest, double scale, Patch& patch,
-            std::array<Index, Patch::capacity>& source) const {
+            FixedArray<Index, Patch::capacity>& source) const {
     const std::size_t room = std::size_t(Patch::capacity - 1 - patch.count);
     const std::size_t count = std::min(hull_.size(), room);
     for (std::size_t k = 0; k < count; ++k) {

@@ -57,7 +57,7 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
   if (c.shape.kind == ShapeKind::half_space) return Aabb();
   Aabb box = tight_box(c.shape, c.pose);
   const Vec3 sizes = box.max() - box.min();
-  if (is_empty(box) || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(of.speed))
+  if (box.is_empty() || !is_finite(sizes) || !is_finite(c.pose.rotation) || !std::isfinite(of.speed))
     return Aabb();
   const double share = s.margin >= 0 ? 0.5 * s.margin
                                      : std::min(std::max(0.5 * margin_share * of.scale, of.speed * h),
@@ -75,7 +75,7 @@ inline bool may_touch(const Collider& half_space, const Aabb& box, double h, con
   for (int k = 0; k < 3; ++k) reach += std::abs(plane.normal[k]) * sizes[k];
   const double lowest = dot(plane.normal, centre) - 0.5 * reach;
   const double share =
-      s.margin >= 0 ? 0.5 * s.margin : std::max(norm(half_space.velocity) * h, 0.5 * sizes.maxCoeff());
+      s.margin >= 0 ? 0.5 * s.margin : std::max(norm(half_space.velocity) * h, 0.5 * max_entry(sizes));
   return lowest - plane.offset <= s.contact_distance + share;
 }
 

@@ -43,7 +43,7 @@ double secular_root(const std::same_as<Vec3> auto& a, const Vec3& p, const Vec3&
 /// along that axis: either way is right, the one of `wish` is taken. Lengths relative to the largest
 /// semi-axis. The equation is that of [Eberly2013].
 NearestSurface nearest_surface_of_ellipsoid(const Vec3& axes, const std::same_as<Vec3> auto& point, const Vec3& wish) {
-  const double size = axes.maxCoeff();
+  const double size = max_entry(axes);
   const Vec3 a = axes / size, p = Vec3(std::abs(point[0]), std::abs(point[1]), std::abs(point[2])) / size;
   int least = 0;
   for (const int k : {1, 2})

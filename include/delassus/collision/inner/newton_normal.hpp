@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/collision/inner/difference.hpp>
+#include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
-#include <array>
 
 namespace delassus::inner {
 
@@ -48,7 +48,7 @@ struct NewtonNormal {
 
   Vec3 turned(const Vec3& n) const {
     const Vec3 x = unit_across(n), y = cross(n, x);
-    const std::array<DifferencePoint, 5> p{difference.core(n), difference.core(n + look * x),
+    const FixedArray<DifferencePoint, 5> p{difference.core(n), difference.core(n + look * x),
                                            difference.core(n - look * x), difference.core(n + look * y),
                                            difference.core(n - look * y)};
     const Edge a = widest(p, &DifferencePoint::a), b = widest(p, &DifferencePoint::b);
@@ -64,7 +64,7 @@ struct NewtonNormal {
   }
 
   /// The two points of one body that lie farthest from one another.
-  static Edge widest(const std::array<DifferencePoint, 5>& p, Vec3 DifferencePoint::*point) {
+  static Edge widest(const FixedArray<DifferencePoint, 5>& p, Vec3 DifferencePoint::*point) {
     Edge widest{p[0].*point, p[0].*point};
     for (int i = 0; i < 5; ++i)
       for (int j = 0; j < i; ++j)
@@ -73,7 +73,7 @@ struct NewtonNormal {
   }
 
   /// `p`: support points along n, n ± look x, n ± look y.
-  Vec3 on_smooth(const Vec3& n, const Vec3& x, const Vec3& y, const std::array<DifferencePoint, 5>& p) const {
+  Vec3 on_smooth(const Vec3& n, const Vec3& x, const Vec3& y, const FixedArray<DifferencePoint, 5>& p) const {
     const Vec3 by_x = (p[1].w - p[2].w) / (2 * look), by_y = (p[3].w - p[4].w) / (2 * look);
     const double level = dot(n, p[0].w);  // of the cores: their radius adds as much to K as to h
     const double xx = dot(x, by_x) - level, yy = dot(y, by_y) - level, xy = 0.5 * (dot(x, by_y) + dot(y, by_x)),

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <delassus/collision/inner/simplex.hpp>
+#include <delassus/core/fixed_array.hpp>
 
-#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -18,22 +18,22 @@ class BasicPolytope {
 
   static constexpr int max_points = 240, max_faces = 2 * max_points;
   struct Face {
-    std::array<std::uint8_t, 3> v;
+    FixedArray<std::uint8_t, 3> v;
     Vec3 normal;
     Scalar offset;
   };
 
   /// Pre: four points that span a volume.
-  explicit BasicPolytope(const std::array<DifferencePoint, 4>& corner) : points_count_(4) {
+  explicit BasicPolytope(const FixedArray<DifferencePoint, 4>& corner) : points_count_(4) {
     for (int i = 0; i < 4; ++i) points_[i] = corner[i];
     const Vec3 normal = cross(corner[1].w - corner[0].w, corner[2].w - corner[0].w);
     if (dot(normal, corner[3].w - corner[0].w) > 0) std::swap(points_[1], points_[2]);
-    for (const auto& [i, j, k] : {std::array{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}) add_face(i, j, k);
+    add_face(0, 1, 2), add_face(0, 3, 1), add_face(0, 2, 3), add_face(1, 3, 2);
   }
 
   const Face& face(int f) const { return faces_[f]; }
   int face_count() const { return faces_count_; }
-  std::array<DifferencePoint, 3> corners(int f) const {
+  FixedArray<DifferencePoint, 3> corners(int f) const {
     const auto& v = faces_[f].v;
     return {points_[v[0]], points_[v[1]], points_[v[2]]};
   }
@@ -101,9 +101,9 @@ class BasicPolytope {
     return count;
   }
 
-  std::array<DifferencePoint, max_points> points_;
-  std::array<Face, max_faces> faces_;
-  std::array<std::array<std::uint8_t, 2>, 3 * max_faces / 2> edges_;
+  FixedArray<DifferencePoint, max_points> points_;
+  FixedArray<Face, max_faces> faces_;
+  FixedArray<FixedArray<std::uint8_t, 2>, 3 * max_faces / 2> edges_;
   int points_count_ = 0, faces_count_ = 0;
 };
 

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <delassus/collision/pair_memory.hpp>
+#include <delassus/core/fixed_array.hpp>
 
-#include <array>
 #include <cmath>
 
 namespace delassus::inner {
 
 /// Chosen points of a patch, by index; one more than stay while they are chosen.
 struct Choice {
-  std::array<std::int8_t, PairMemory::capacity + 1> index{};
+  FixedArray<std::int8_t, PairMemory::capacity + 1> index{};
   int count = 0;
 
   void add(int i) { index[count++] = std::int8_t(i); }

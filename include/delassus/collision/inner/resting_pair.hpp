@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/pair_memory.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/sort.hpp>
 
 
@@ -22,8 +23,8 @@ struct RestingPair : PairMemory {
   double margin = -1;        ///< up to this gap there are no other points; negative: not to be repeated
   std::uint64_t shapes = 0;  ///< fingerprint of both, and of the most points asked for
   Vec3 normal_a = zero<Vec3>(), normal_b = zero<Vec3>();  ///< as A sees it, as B does
-  std::array<double, capacity> gap{};                     ///< when the points were made, m
-  std::array<std::uint8_t, capacity> by_id{};             ///< the points' places in the order of their ids
+  FixedArray<double, capacity> gap{};                     ///< when the points were made, m
+  FixedArray<std::uint8_t, capacity> by_id{};             ///< the points' places in the order of their ids
 
   /// Takes down what was just made in full, for the normal n in the frame of A.
   void keep(std::uint64_t of, const Pose& b_in_a, const Vec3& n, double up_to) {
@@ -43,7 +44,7 @@ struct RestingPair : PairMemory {
   /// The points as they are now, in the order of their ids, and the normal n, in the frame of A; false when
   /// they have to be made in full.
   bool repeat(std::uint64_t of, const Pose& b_in_a, double reach, double scale,
-              std::array<PatchPoint, capacity>& now, Vec3& n) const {
+              FixedArray<PatchPoint, capacity>& now, Vec3& n) const {
     if (!(reach <= margin) || of != shapes) return false;
     const bool is_a = owner == NormalOwner::a;
     const Vec3 turned = b_in_a.rotation * normal_b;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/collision/inner/difference.hpp>
+#include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace delassus::inner {
@@ -15,8 +15,8 @@ template <class Scalar>
 struct BasicSimplex {
   using Vec3 = Vec<3, Scalar>;
 
-  std::array<DifferencePoint, 4> p;
-  std::array<Scalar, 4> weight{};
+  FixedArray<DifferencePoint, 4> p;
+  FixedArray<Scalar, 4> weight{};
   int count = 0;
 
   void add(const DifferencePoint& q) { p[count++] = q; }

@@ -11,11 +11,11 @@
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -184,7 +184,7 @@ class SurfacePairs {
   Array<Cut> cuts_;
   Patch patch_;
   PatchDoubts doubts_;
-  std::array<Index, Patch::capacity> source_{};
+  FixedArray<Index, Patch::capacity> source_{};
   HullOfPatch hull_;
   Array<PairMemory> memory_, next_;
   std::size_t last_ = 0;

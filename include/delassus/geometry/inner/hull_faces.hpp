@@ -5,7 +5,6 @@
 #include <delassus/geometry/inner/quickhull.hpp>
 
 #include <cmath>
-#include <numeric>
 
 namespace delassus::inner {
 
@@ -16,7 +15,7 @@ struct HullFaces {
 
 /// Grows a region from the largest triangle left, over neighbours whose corners lie within `tolerance` of its
 /// plane. Returns the region of each triangle.
-Array<Index> coplanar_regions(const auto& points, std::span<const HullTriangle> triangles, double tolerance,
+Array<Index> coplanar_regions(const auto& points, const OwningArray<HullTriangle>& triangles, double tolerance,
                               Index& count) {
   struct Edge {
     Index u, v, triangle;
@@ -28,7 +27,7 @@ Array<Index> coplanar_regions(const auto& points, std::span<const HullTriangle> 
   inner::sort(edges);
 
   Array<Index> seeds(triangles.size()), region(triangles.size(), -1), front;
-  std::iota(seeds.begin(), seeds.end(), 0);
+  for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = Index(i);
   inner::sort(seeds, [&](Index s, Index t) {
     return triangles[s].area != triangles[t].area ? triangles[s].area > triangles[t].area : s < t;
   });
@@ -77,10 +76,10 @@ void append_face(const auto& points, Array<Index>& corners, const Vec3& normal, 
 }
 
 /// Polygons from triangles. A vertex stays when at least three faces meet in it.
-HullFaces merge_coplanar(const auto& points, std::span<const HullTriangle> triangles, double tolerance) {
+HullFaces merge_coplanar(const auto& points, const OwningArray<HullTriangle>& triangles, double tolerance) {
   Index count = 0;
   const Array<Index> region = coplanar_regions(points, triangles, tolerance, count);
-  std::vector<Array<Index>> corners(count);
+  OwningArray<Array<Index>> corners(count);
   Array<Vec3> normals(count, zero<Vec3>());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     corners[region[t]].append(triangles[t].v.begin(), triangles[t].v.end());

@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/owning_array.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -35,13 +35,13 @@ HullTriangle hull_triangle(const auto& points, Index a, Index b, Index c) {
   return t;
 }
 
-/// Gives point `p` to the triangle that sees it from farthest away, or to none when it lies inside all.
-void hand_out(const auto& points, Index p, double tolerance, std::span<HullTriangle> triangles) {
+/// Gives point `p` to the triangle from `first` on that sees it from farthest away, or to none when it lies inside all.
+void hand_out(const auto& points, Index p, double tolerance, OwningArray<HullTriangle>& triangles, std::size_t first) {
   HullTriangle* best = nullptr;
   double best_distance = tolerance;
-  for (HullTriangle& t : triangles) {
-    const double distance = dot(t.normal, points[p]) - t.offset;
-    if (distance > best_distance) best_distance = distance, best = &t;
+  for (std::size_t i = first; i < triangles.size(); ++i) {
+    const double distance = dot(triangles[i].normal, points[p]) - triangles[i].offset;
+    if (distance > best_distance) best_distance = distance, best = &triangles[i];
   }
   if (!best) return;
   best->outside.push_back(p);
@@ -70,14 +70,14 @@ bool first_tetrahedron(const auto& points, double thin, std::array<Index, 4>& co
 }
 
 /// Replaces the triangles that see `p` by a fan from `p` to their horizon.
-void add_hull_point(const auto& points, Index p, double tolerance, std::vector<HullTriangle>& triangles) {
+void add_hull_point(const auto& points, Index p, double tolerance, OwningArray<HullTriangle>& triangles) {
   Array<std::pair<Index, Index>> edges;
   Array<Index> orphans;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     HullTriangle& t = triangles[i];
     if (dot(t.normal, points[p]) - t.offset <= tolerance) {
-      if (kept != i) triangles[kept] = std::move(t);
+      if (kept != i) triangles[kept] = static_cast<HullTriangle&&>(t);
       ++kept;
       continue;
     }
@@ -90,26 +90,28 @@ void add_hull_point(const auto& points, Index p, double tolerance, std::vector<H
   for (const auto& [u, v] : edges)
     if (!inner::is_listed(edges, std::pair(v, u)))
       triangles.push_back(hull_triangle(points, u, v, p));
-  const std::span<HullTriangle> fan(triangles.data() + kept, triangles.size() - kept);
   for (const Index q : orphans)
-    if (q != p) hand_out(points, q, tolerance, fan);
+    if (q != p) hand_out(points, q, tolerance, triangles, kept);
 }
 
 /// The hull of `points` as triangles. False when the cloud is thinner than 1e-6 of its `extent`.
 /// A point counts as outside a plane from 1e-12 of the extent on. Source of the method:
 /// [BarberDobkinHuhdanpaa1996].
-bool quickhull(const auto& points, double extent, std::vector<HullTriangle>& triangles) {
+bool quickhull(const auto& points, double extent, OwningArray<HullTriangle>& triangles) {
   std::array<Index, 4> c{};
   if (!first_tetrahedron(points, 1e-6 * extent, c)) return false;
   const double tolerance = 1e-12 * extent;
-  triangles = {hull_triangle(points, c[0], c[1], c[2]), hull_triangle(points, c[0], c[3], c[1]),
-               hull_triangle(points, c[1], c[3], c[2]), hull_triangle(points, c[2], c[3], c[0])};
+  triangles.clear();
+  triangles.push_back(hull_triangle(points, c[0], c[1], c[2]));
+  triangles.push_back(hull_triangle(points, c[0], c[3], c[1]));
+  triangles.push_back(hull_triangle(points, c[1], c[3], c[2]));
+  triangles.push_back(hull_triangle(points, c[2], c[3], c[0]));
   for (Index p = 0; p < Index(points.size()); ++p)
-    if (std::find(c.begin(), c.end(), p) == c.end()) hand_out(points, p, tolerance, triangles);
+    if (p != c[0] && p != c[1] && p != c[2] && p != c[3]) hand_out(points, p, tolerance, triangles, 0);
   for (;;) {
-    const auto far = std::max_element(triangles.begin(), triangles.end(), [](const auto& s, const auto& t) {
-      return s.farthest_distance < t.farthest_distance;
-    });
+    const HullTriangle* far = &triangles[0];
+    for (const HullTriangle& t : triangles)
+      if (t.farthest_distance > far->farthest_distance) far = &t;
     if (far->farthest < 0) return true;
     add_hull_point(points, far->farthest, tolerance, triangles);
   }

@@ -7,6 +7,7 @@
 #include <delassus/linear/inner/dense_kernel.hpp>
 #include <delassus/linear/inner/front_layout.hpp>
 #include <delassus/linear/supernodes.hpp>
+#include <delassus/math/long_vectors.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -46,9 +47,6 @@ using FrontPlan = BasicFrontPlan<Index>;
 /// both only the lower triangle, with whole blocks on the diagonal, is meant.
 template <int w, class T>
 class FrontTriangle {
-  using Line = Eigen::Map<Eigen::Array<T, Eigen::Dynamic, 1>>;
-  using ConstLine = Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, 1>>;
-
  public:
   void resize(const FrontPlan& plan) {
     factor_.resize(plan.layout.factor_size);
@@ -106,7 +104,7 @@ class FrontTriangle {
         T* target = to.at(0, column - first) - first;
         for (std::size_t a = b; a < runs.size(); ++a) {
           const Index skip = a == b ? c : 0, length = w * runs[a].length - skip;
-          Line(target + w * runs[a].to + skip, length) += ConstLine(source + w * runs[a].from + skip, length);
+          add_multiple<T>(1, source + w * runs[a].from + skip, target + w * runs[a].to + skip, length);
         }
       }
   }
