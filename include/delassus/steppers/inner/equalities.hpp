@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/linearize.hpp>

@@ -4,6 +4,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/steppers/inner/yielding_midpoint.hpp>
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/math/twist.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/linearize.hpp>

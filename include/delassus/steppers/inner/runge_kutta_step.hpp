@@ -4,6 +4,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/math/twist.hpp>
+#include <delassus/rows/impulses.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/leave_step.hpp>
