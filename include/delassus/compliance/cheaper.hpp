@@ -38,7 +38,9 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     if (is_whole_) return matrix_.build(world, rows);
     bodies_.build(world, rows);
     find_crowded(world, rows);
-    matrix_.build_where(world, rows, [&](auto p, Index i) { return !kinds_[p][i].is_crowded; });
+    const CrowdedRow* crowded[pools];
+    for (int p = 0; p < pools; ++p) crowded[p] = kinds_[p].data();
+    matrix_.build_where(world, rows, crowded);
   }
 
   void reset(const Rows& rows) {

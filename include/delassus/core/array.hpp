@@ -89,6 +89,10 @@ inline constexpr bool is_copied_by_bytes<T> =
 /// line are inlined even where nothing else is. References end with growth, as there.
 template <class T>
 class Array {
+  /// Numbers lie as vector instructions want small matrices of them.
+  static constexpr std::size_t alignment =
+      std::is_arithmetic_v<T> && alignof(T) < __BIGGEST_ALIGNMENT__ ? __BIGGEST_ALIGNMENT__ : alignof(T);
+
  public:
   using value_type = T;
   using size_type = std::size_t;
@@ -101,14 +105,14 @@ class Array {
   Array(std::initializer_list<T> list) : Array() { assign(list.begin(), list.end()); }
   template <class It>
   requires(!std::is_arithmetic_v<It>) Array(It first, It last) : Array() { assign(first, last); }
-  [[gnu::always_inline]] Array(const Array& other) : Array() { memory_.copy(other.memory_, sizeof(T), alignof(T)); }
+  [[gnu::always_inline]] Array(const Array& other) : Array() { memory_.copy(other.memory_, sizeof(T), alignment); }
   [[gnu::always_inline]] Array(Array&& other) noexcept : Array() { memory_.swap(other.memory_); }
   [[gnu::always_inline]] Array& operator=(const Array& other) {
-    memory_.copy(other.memory_, sizeof(T), alignof(T));
+    memory_.copy(other.memory_, sizeof(T), alignment);
     return *this;
   }
   [[gnu::always_inline]] Array& operator=(Array&& other) noexcept {
-    memory_.take(other.memory_, alignof(T));
+    memory_.take(other.memory_, alignment);
     return *this;
   }
   /// The elements of another list, which are none of this array's.
@@ -119,7 +123,7 @@ class Array {
   [[gnu::always_inline]] ~Array() {
     static_assert(inner::is_copied_by_bytes<T>,
                   "delassus: Array holds types without a destructor; take ArrayOrVector or std::vector");
-    memory_.release(alignof(T));
+    memory_.release(alignment);
   }
 
   [[gnu::always_inline]] T* data() { return static_cast<T*>(memory_.data); }
@@ -138,17 +142,17 @@ class Array {
   [[gnu::always_inline]] T& back() { return end()[-1]; }
   [[gnu::always_inline]] const T& back() const { return end()[-1]; }
 
-  [[gnu::always_inline]] void reserve(std::size_t count) { memory_.reserve(count, sizeof(T), alignof(T)); }
+  [[gnu::always_inline]] void reserve(std::size_t count) { memory_.reserve(count, sizeof(T), alignment); }
   [[gnu::always_inline]] void clear() { memory_.size = 0; }
   /// New elements are T().
   void resize(std::size_t count) {
-    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignof(T));
+    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignment);
     for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T();
     memory_.size = count;
   }
   void resize(std::size_t count, const T& x) {
     const T copy = x;  // it may be one of ours
-    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignof(T));
+    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignment);
     for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T(copy);
     memory_.size = count;
   }
@@ -168,8 +172,14 @@ class Array {
   void append(It first, It last) {
     for (; first != last; ++first) push_back(*first);
   }
+  /// So many elements from `first` on behind what is there; they are none of this array's.
+  [[gnu::always_inline]] void append(const T* first, std::size_t count) {
+    if (memory_.size + count > memory_.capacity) memory_.grow(memory_.size + count, sizeof(T), alignment);
+    if (count > 0) std::memcpy(static_cast<void*>(end()), static_cast<const void*>(first), count * sizeof(T));
+    memory_.size += count;
+  }
   [[gnu::always_inline]] T& push_back(const T& x) {
-    if (memory_.size == memory_.capacity) return *static_cast<T*>(memory_.push(&x, sizeof(T), alignof(T)));
+    if (memory_.size == memory_.capacity) return *static_cast<T*>(memory_.push(&x, sizeof(T), alignment));
     return *::new (static_cast<T*>(memory_.data) + memory_.size++) T(x);
   }
   template <class... From>
@@ -192,7 +202,7 @@ class Array {
   T* insert(T* at, const T& x) {
     const std::size_t place = std::size_t(at - begin());
     const T copy = x;
-    memory_.grow(memory_.size + 1, sizeof(T), alignof(T));
+    memory_.grow(memory_.size + 1, sizeof(T), alignment);
     T* const here = begin() + place;
     std::memmove(static_cast<void*>(here + 1), static_cast<const void*>(here),
                  (memory_.size - place) * sizeof(T));

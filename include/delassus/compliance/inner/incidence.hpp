@@ -2,44 +2,51 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/core/owning_array.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/rows/row_view.hpp>
 
-#include <array>
-#include <span>
-#include <tuple>
-#include <vector>
+#include <cstddef>
 
 namespace delassus::inner {
 
 /// For every set, pool and block: the entries (item, entry) that act there, in the order of insertion.
-template <class Rows>
+template <class T>
 class Incidence {
  public:
   struct Entry {
     Index item, entry;
   };
+  struct Entries {
+    const Entry *first, *last;
+    const Entry* begin() const { return first; }
+    const Entry* end() const { return last; }
+  };
 
-  template <int s>
-  void find(const Rows& rows, Index blocks) {
-    for_each_index<Rows::pool_count>([&](auto p) {
-      const auto& set = std::get<s>(rows.template pool<p>().sets);
-      List& list = lists_[s * Rows::pool_count + p];
-      if (set.block.empty()) return;  // nobody asks `at`
-      list.start.assign(blocks + 1, 0);
-      for (const Index b : set.block) ++list.start[b + 1];
-      for (Index b = 0; b < blocks; ++b) list.start[b + 1] += list.start[b];
-      list.next.assign(list.start.begin(), list.start.end());
-      list.entries.resize(set.block.size());
-      for (Index i = 0; i + 1 < Index(set.offset.size()); ++i)
-        for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) list.entries[list.next[set.block[e]]++] = {i, e};
-    });
+  /// Lists set s of all pools, which has so many blocks.
+  void find(const RowView<T>* pools, int count, int s, Index blocks) {
+    pools_ = count;
+    if (const std::size_t room = std::size_t((s + 1) * count); lists_.size() < room) lists_.resize(room);
+    for (int p = 0; p < count; ++p) {
+      const SetBlocksView<T>& set = pools[p].set[s];
+      const Index entries = set.offset[pools[p].items];
+      if (entries == 0) continue;  // nobody asks `at`
+      List& list = lists_[std::size_t(s * count + p)];
+      list.start.assign(std::size_t(blocks) + 1, 0);
+      for (Index e = 0; e < entries; ++e) ++list.start[std::size_t(set.block[e]) + 1];
+      for (Index b = 0; b < blocks; ++b) list.start[std::size_t(b) + 1] += list.start[std::size_t(b)];
+      list.next = list.start;
+      list.entries.resize(std::size_t(entries));
+      for (Index i = 0; i < pools[p].items; ++i)
+        for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
+          list.entries[std::size_t(list.next[std::size_t(set.block[e])]++)] = {i, e};
+    }
   }
 
   /// Pre: pool p acts on set s.
-  template <int s, int p>
-  std::span<const Entry> at(Index block) const {
-    const List& list = lists_[s * Rows::pool_count + p];
-    return std::span<const Entry>(list.entries).subspan(list.start[block], list.start[block + 1] - list.start[block]);
+  Entries at(int s, int p, Index block) const {
+    const List& list = lists_[std::size_t(s * pools_ + p)];
+    return {list.entries.data() + list.start[std::size_t(block)], list.entries.data() + list.start[std::size_t(block) + 1]};
   }
 
  private:
@@ -47,70 +54,74 @@ class Incidence {
     Array<Index> start, next;
     Array<Entry> entries;
   };
-  std::array<List, Rows::set_count * Rows::pool_count> lists_;
+  int pools_ = 0;
+  OwningArray<List> lists_;
 };
 
 /// For a set whose A couples its blocks: whole columns A⁻¹ H_jᵀ, one solve a row.
-template <class T, int w, int R>
-struct ColumnsOf {
-  Array<Index> items;
-  std::vector<Array<Mat<w, R, T>>> columns;
-};
-
-template <class Rows>
-class CoupledColumns;
-
-template <class T, int... w, int... R>
-class CoupledColumns<RowSystem<T, Widths<w...>, R...>> {
+template <class T>
+class CoupledColumns {
  public:
-  using Rows = RowSystem<T, Widths<w...>, R...>;
-
-  template <int s, class Set>
-  void prepare(const Set& set, const Rows& rows) {
-    auto& x = std::get<s>(scratch_);
-    x.resize(set.blocks());
-    for_each_index<Rows::pool_count>([&](auto p) {
-      constexpr int r = Rows::template rows_of<p>;
-      const auto& mine = std::get<s>(rows.template pool<p>().sets);
-      auto& out = std::get<p>(std::get<s>(columns_));
-      out.items.clear();
-      for (Index i = 0; i + 1 < Index(mine.offset.size()); ++i)
-        if (mine.offset[i] < mine.offset[i + 1]) out.items.push_back(i);
-      if (out.columns.size() < out.items.size()) out.columns.resize(out.items.size());  // never fewer: columns keep their room
-      for (std::size_t n = 0; n < out.items.size(); ++n) {
-        const Index i = out.items[n];
-        out.columns[n].resize(set.blocks());
-        for (int k = 0; k < r; ++k) {
-          for (auto& v : x) v.setZero();
-          for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
-            x[mine.block[e]] += mine.H[e].row(k).transpose();
+  /// The columns of set s. Velocities of a set lie one block after the other.
+  template <class Set>
+  void prepare(const Set& set, const RowView<T>* pools, int count, int s) {
+    constexpr int w = Set::width;
+    count_ = count;
+    blocks_ = std::size_t(set.blocks());
+    if (const std::size_t room = std::size_t((s + 1) * count); lists_.size() < room) lists_.resize(room);
+    Array<Vec<w, T>> x(blocks_);
+    for (int p = 0; p < count; ++p) {
+      const RowView<T>& mine = pools[p];
+      const SetBlocksView<T>& H = mine.set[s];
+      List& list = lists_[std::size_t(s * count + p)];
+      list.items.clear();
+      for (Index i = 0; i < mine.items; ++i)
+        if (H.has_entries(i)) list.items.push_back(i);
+      list.numbers.resize(list.items.size() * blocks_ * std::size_t(w * mine.rows));
+      T* to = list.numbers.data();
+      for (const Index i : list.items) {
+        for (int k = 0; k < mine.rows; ++k) {
+          for (auto& v : x) set_all(v, T(0));
+          for (Index e = H.offset[i]; e < H.offset[i + 1]; ++e)
+            for (int c = 0; c < w; ++c) x[std::size_t(H.block[e])][c] += H.H[std::ptrdiff_t(mine.rows * w) * e + k + mine.rows * c];
           set.solve(x);
-          for (std::size_t b = 0; b < x.size(); ++b) out.columns[n][b].col(k) = x[b];
+          for (std::size_t b = 0; b < blocks_; ++b)
+            for (int c = 0; c < w; ++c) to[b * std::size_t(w * mine.rows) + std::size_t(c + w * k)] = x[b][c];
         }
+        to += blocks_ * std::size_t(w * mine.rows);
       }
-    });
+    }
   }
 
-  /// f(b, j, H_e A⁻¹ H_jᵀ) for all items j of all pools b, e the entries of item i of pool a in set s; not where the two act
-  /// on bodies that A does not couple.
-  template <int s, int a, class F>
-  void each(const Rows& rows, Index i, F&& f) const {
-    const auto& mine = std::get<s>(rows.template pool<a>().sets);
-    if (mine.offset[i] == mine.offset[i + 1]) return;
-    for_each_index<Rows::pool_count>([&](auto b) {
-      const auto& theirs = std::get<b>(std::get<s>(columns_));
-      for (std::size_t n = 0; n < theirs.items.size(); ++n)
-        for (Index e = mine.offset[i]; e < mine.offset[i + 1]; ++e)
-          if (const auto& response = theirs.columns[n][mine.block[e]]; !is_zero(response))
-            f(b, theirs.items[n], mine.H[e] * response);
-    });
+  /// f(b, j, H, A⁻¹ H_jᵀ, w) for all items j of all pools b, H of the entries of item i of pool a in set s; not where the two
+  /// act on bodies that A does not couple.
+  template <class F>
+  void each(const RowView<T>* pools, int s, int a, Index i, const F& f) const {
+    const RowView<T>& mine = pools[a];
+    const SetBlocksView<T>& H = mine.set[s];
+    if (!H.has_entries(i)) return;
+    const int w = H.width;
+    for (int b = 0; b < count_; ++b) {
+      const List& list = lists_[std::size_t(s * count_ + b)];
+      const std::size_t size = std::size_t(w * pools[b].rows);
+      for (std::size_t n = 0; n < list.items.size(); ++n)
+        for (Index e = H.offset[i]; e < H.offset[i + 1]; ++e) {
+          const T* response = list.numbers.data() + (n * blocks_ + std::size_t(H.block[e])) * size;
+          bool answers = false;
+          for (std::size_t k = 0; k < size; ++k) answers = answers || response[k] != T(0);
+          if (answers) f(b, list.items[n], H.H + std::ptrdiff_t(mine.rows * w) * e, response, w);
+        }
+    }
   }
 
  private:
-  template <int width>
-  using PerPool = std::tuple<ColumnsOf<T, width, R>...>;
-  std::tuple<PerPool<w>...> columns_;
-  std::tuple<Array<Vec<w, T>>...> scratch_;
+  struct List {
+    Array<Index> items;
+    Array<T> numbers;  ///< width × rows a block, block by block, item by item
+  };
+  int count_ = 0;
+  std::size_t blocks_ = 0;
+  OwningArray<List> lists_;
 };
 
 }  // namespace delassus::inner
