@@ -257,11 +257,13 @@ class IslandProblem {
   /// The impulse that meets the law of item i while the others stand still.
   template <int p>
   [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> answer(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) {
-    const auto& own = W_.template diagonal<p>(i);
-    if constexpr (requires { W_.template free_velocity<p>(rows_, i); })
-      return book_.template solve_local<p>(i, own, W_.template free_velocity<p>(rows_, i));
-    else
-      return book_.template solve_local<p>(i, own, Local<Rows::template rows_of<p>, T>{own, W_.template residual<p>(rows_, i), lambda}.free_velocity());
+    return book_.template solve_local<p>(i, W_.template diagonal<p>(i), free_velocity<p>(i, lambda));
+  }
+  /// What the rows of item i would do without λ_i: W's own answer, or u − W λ.
+  template <int p>
+  [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> free_velocity(Index i, const Vec<Rows::template rows_of<p>, T>& lambda) const {
+    if constexpr (requires { W_.template free_velocity<p>(rows_, i); }) return W_.template free_velocity<p>(rows_, i);
+    else return W_.template residual<p>(rows_, i) - W_.template diagonal<p>(i) * lambda;
   }
 
   /// Sums over the visits of a sweep: Σ w |Δλ|², Σ w Δλ·see, Σ w |Δλ| and the largest w |Δλ|.

@@ -19,7 +19,7 @@ class LawSet;
 /// Calls each law with its item and its memory. `prepare` runs once a step, when W is built.
 template <class... Laws, class T>
 class LawSet<Constraints<Laws...>, T> {
-  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<Laws, T>>...>;
+  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<inner::innermost_t<Laws>, T>>...>;
   template <int p>
   using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
   template <int p>
@@ -48,16 +48,13 @@ class LawSet<Constraints<Laws...>, T> {
   }
   template <int p, class Own>
   void prepare_item(Index i, const Own& own_block, double h) {
-    auto& memory = std::get<p>(memory_);
     const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.prepare(pool.item(i), own_block, h, memory[i]); })
-      pool.law.prepare(pool.item(i), own_block, h, memory[i]);
-    else inner::prepare(pool.law, own_block, memory[i]);
+    inner::prepare(pool.law, pool.item(i), own_block, h, std::get<p>(memory_)[i]);
   }
 
   /// λ that meets the law of item i, whose own block is W and whose velocity without it is b.
   template <int p, int R>
-  Vec<R, T> solve_local(Index i, const Mat<R, R, T>& W, const Vec<R, T>& b) {
+  [[gnu::always_inline]] Vec<R, T> solve_local(Index i, const Mat<R, R, T>& W, const Vec<R, T>& b) {
     const auto& pool = constraints_->template pool<p>();
     return inner::solve_local(pool.law, pool.item(i), W, b, std::get<p>(memory_)[i]);
   }
@@ -66,8 +63,8 @@ class LawSet<Constraints<Laws...>, T> {
   template <int p, int R>
   Vec<R, T> natural_map(Index i, const Local<R, T>& c, T scale) {
     const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.natural_map(pool.item(i), c.lambda, c.d, scale); }) {
-      return pool.law.natural_map(pool.item(i), c.lambda, c.d, scale);
+    if constexpr (refines<Law<p>>(refine::natural_map)) {
+      return asked<p, refine::natural_map>().natural_map(given<p>(i), c.lambda, c.d, scale);
     } else {
       auto memory = std::get<p>(memory_)[i];
       const Vec<R, T> change = c.lambda - inner::solve_local(pool.law, pool.item(i), c.W, c.free_velocity(), memory);
@@ -77,12 +74,9 @@ class LawSet<Constraints<Laws...>, T> {
 
   /// |natural_map|² at `scale` and at 1, where the law knows both at once.
   template <int p, int R>
-  requires requires(const Law<p>& law, const typename Law<p>::Item& item, const Vec<R, T>& x, T scale) {
-    law.natural_squares(item, x, x, scale);
-  }
+    requires(refines<Law<p>>(refine::natural_squares))
   Vec<2, T> natural_squares(Index i, const Local<R, T>& c, T scale) const {
-    const auto& pool = constraints_->template pool<p>();
-    return pool.law.natural_squares(pool.item(i), c.lambda, c.d, scale);
+    return asked<p, refine::natural_squares>().natural_squares(given<p>(i), c.lambda, c.d, scale);
   }
 
   template <int p>
@@ -105,22 +99,21 @@ class LawSet<Constraints<Laws...>, T> {
 
   /// −∂λ/∂d of the impulse that meets the law where W is diagonal, and that impulse: see `constraints/law.hpp`.
   template <int p, int R, class N>
-    requires Differentiable<Law<p>>
+    requires(refines<Law<p>>(refine::tangent))
   Mat<R, R, N> tangent(Index i, Local<R, N>& c) const {
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.tangent(pool.item(i), c); })
-      return pool.law.tangent(pool.item(i), c);
+    const auto& law = asked<p, refine::tangent>();
+    if constexpr (requires { law.tangent(given<p>(i), c); })
+      return law.tangent(given<p>(i), c);
     else
-      return pool.law.tangent(pool.item(i), c, std::get<p>(memory_)[i]);
+      return law.tangent(given<p>(i), c, std::get<p>(memory_)[i]);
   }
 
   /// The same with the slip of friction rows given, where the law has a convex form.
   template <int p, int R, class N>
-    requires Differentiable<Law<p>>
+    requires(refines<Law<p>>(refine::tangent))
   Mat<R, R, N> convex_tangent(Index i, Local<R, N>& c, N slip) const {
-    const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.convex_tangent(pool.item(i), c, slip); })
-      return pool.law.convex_tangent(pool.item(i), c, slip);
+    if constexpr (refines<Law<p>>(refine::convex_tangent))
+      return asked<p, refine::convex_tangent>().convex_tangent(given<p>(i), c, slip);
     else
       return tangent<p>(i, c);
   }
@@ -128,20 +121,25 @@ class LawSet<Constraints<Laws...>, T> {
   /// Whether the law of pool p has a cone or a cap of its own.
   template <int p>
   static consteval bool clamps() {
-    using Item = typename Law<p>::Item;
-    using X = Vec<Law<p>::rows, T>;
-    return requires(const Law<p>& law, const Item& item, X& x, const Memory<p>& m) { law.clamp(item, x, m); }
-    || requires(const Law<p>& law, const Item& item, X& x) { law.clamp(item, x); };
+    return refines<Law<p>>(refine::clamp);
   }
   template <int p, int R>
   void clamp(Index i, Vec<R, T>& lambda) const {
     const auto& pool = constraints_->template pool<p>();
-    if constexpr (requires { pool.law.clamp(pool.item(i), lambda, std::get<p>(memory_)[i]); })
-      pool.law.clamp(pool.item(i), lambda, std::get<p>(memory_)[i]);
-    else if constexpr (requires { pool.law.clamp(pool.item(i), lambda); }) pool.law.clamp(pool.item(i), lambda);
+    if constexpr (clamps<p>()) inner::clamp(pool.law, pool.item(i), lambda, std::get<p>(memory_)[i]);
   }
 
  private:
+  /// The law of pool p that has this refinement, and what it is given for item i.
+  template <int p, unsigned what>
+  [[gnu::always_inline]] const auto& asked() const {
+    return inner::who_refines<what>(constraints_->template pool<p>().law);
+  }
+  template <int p>
+  [[gnu::always_inline]] const auto& given(Index i) const {
+    return inner::given<Law<p>>(constraints_->template pool<p>().item(i));
+  }
+
   const Constraints<Laws...>* constraints_ = nullptr;
   Memories memory_;
 };
