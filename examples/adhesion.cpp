@@ -10,6 +10,7 @@ using namespace delassus;
 struct Adhesive {
   static constexpr int rows = 1;
   static constexpr std::array kinds{RowKind::lower};
+  static constexpr auto refines = refine::check | refine::clamp | refine::natural_map;
   double force = 0;
   double h = 0;  ///< the step that the force acts in
 

@@ -7,7 +7,6 @@ struct Bound {
   static constexpr int rows = 1;
   static constexpr std::array kinds{RowKind::lower};
   struct Parameters {};
-  void check() const {}
   Parameters parameters() const { return {}; }
   Vec<1> meet(const Parameters&, const Vec<1>& b) const { return b; }
 };

@@ -4,6 +4,7 @@
 using namespace delassus;
 
 struct Buffer : BallJoint {
+  static constexpr auto refines = BallJoint::refines | refine::restitution;
   double restitution(const Item&) const { return 0.5; }
 };
 

@@ -13,11 +13,15 @@ namespace differentiable_tests {
 
 using namespace delassus;
 
-static_assert(Differentiable<Contact<Coulomb>> && Differentiable<Contact<Frictionless>>);
-static_assert(Differentiable<Contact<Restitution<Coulomb>>> && Differentiable<Contact<Penalty<Coulomb>>>);
-static_assert(Differentiable<Contact<Restitution<Frictionless>>> && Differentiable<Contact<Penalty<Frictionless>>>);
-static_assert(Differentiable<BallJoint> && Differentiable<DistanceJoint>);
-static_assert(ConvexContact<Coulomb> && !ConvexContact<Frictionless>);
+template <class... Laws>
+consteval bool are_differentiable() {
+  return (refines<Laws>(refine::tangent) && ...);
+}
+static_assert(are_differentiable<Contact<Coulomb>, Contact<Frictionless>>());
+static_assert(are_differentiable<Contact<Restitution<Coulomb>>, Contact<Penalty<Coulomb>>>());
+static_assert(are_differentiable<Contact<Restitution<Frictionless>>, Contact<Penalty<Frictionless>>>());
+static_assert(are_differentiable<BallJoint, DistanceJoint>());
+static_assert(refines<Coulomb>(refine::convex_tangent) && !refines<Frictionless>(refine::convex_tangent));
 
 namespace {
 
@@ -26,7 +30,7 @@ struct Mute {
   static constexpr std::array<RowKind, 1> kinds{RowKind::lower};
   struct Parameters {};
 };
-static_assert(!Differentiable<Contact<Mute>> && !Differentiable<Contact<Restitution<Mute>>>);
+static_assert(!refines<Contact<Mute>>(refine::tangent) && !refines<Contact<Restitution<Mute>>>(refine::tangent));
 
 }  // namespace
 
@@ -36,7 +40,8 @@ TEST_CASE("a wrapped law answers with the tangent of what it wraps") {
   const Contact<Restitution<Coulomb>> wrapped{Restitution{law, 0.5}};
   Contact<Restitution<Coulomb>>::Item item;
   item.parameters.friction = 0.5;
-  REQUIRE(law.tangent({0.5}, a) == wrapped.tangent(item, b));
+  const auto& asked = inner::who_refines<refine::tangent>(wrapped);
+  REQUIRE(law.tangent({0.5}, a) == asked.tangent(inner::given<Contact<Restitution<Coulomb>>>(item), b));
   REQUIRE(a.lambda == b.lambda);
 }
 

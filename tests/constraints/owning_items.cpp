@@ -17,6 +17,7 @@ namespace {
 struct RopeOverPins {
   static constexpr int rows = 1;
   static constexpr std::array kinds{RowKind::upper};
+  static constexpr auto refines = refine::prepare;
   struct Item {
     Anchor a, b;
     double length = 0;

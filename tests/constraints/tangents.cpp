@@ -108,7 +108,7 @@ TEST_CASE(
   }
 }
 
-static_assert(Differentiable<Limit<Turn>> && Differentiable<Motor<Turn>> && Differentiable<Drive<Slide>>);
+static_assert(refines<Limit<Turn>>(refine::tangent) && refines<Motor<Turn>>(refine::tangent) && refines<Drive<Slide>>(refine::tangent));
 
 // Both laws are piecewise linear: λ = P(λ − d/W), slope 1/W where P leaves it, and nothing where P cuts it.
 TEST_CASE("the tangents of limits and motors are the slopes of their impulses") {

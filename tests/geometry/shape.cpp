@@ -18,9 +18,9 @@ static_assert(Shape{}.kind == ShapeKind::none && !Shape{}.has_volume());
 
 TEST_CASE("a shape keeps half lengths and a unit normal") {
   const Shape box = Box{1, 2, 3};
-  CHECK(box.size == std::array<double, 4>{0.5, 1, 1.5, 0});
+  CHECK(box.size == FixedArray<double, 4>{0.5, 1, 1.5, 0});
   const Shape ground = HalfSpace{{0, 3, 4}, 2};
-  CHECK(ground.size == std::array<double, 4>{0, 0.6, 0.8, 2});
+  CHECK(ground.size == FixedArray<double, 4>{0, 0.6, 0.8, 2});
   CHECK_FALSE(ground.has_volume());
 }
 

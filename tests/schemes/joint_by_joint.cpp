@@ -384,6 +384,7 @@ struct SoftBall : BallJoint {
 };
 struct DrivenBall : BallJoint {
   using Item = BallJoint::Item;
+  static constexpr auto refines = BallJoint::refines | refine::speed;
   double speed(const Item&) const { return 0.5; }
 };
 

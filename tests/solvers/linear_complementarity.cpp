@@ -22,6 +22,7 @@ namespace {
 /// A bound on a row that somebody else has linearised.
 struct GivenBound : Frictionless {
   static constexpr bool is_contact = true;
+  static constexpr auto refines = refine::natural_map | refine::clamp;
   struct Item {
     Parameters parameters{};
   };

@@ -154,7 +154,7 @@ class Memory {
       if (presence == 0 && pool.slots.is_alive(k)) pool.slots.release(k);
       if (presence > 0) pool.slots.set_awake(k, presence == 1);
     }
-    if constexpr (BreakableLaw<Law>) {
+    if constexpr (refines<Law>(refine::breaks)) {
       text_.size(pool.broken);
       for (auto& joint : pool.broken) {
         text_(joint.index);

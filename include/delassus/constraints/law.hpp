@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/contact/wrapped_law.hpp>
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -18,12 +19,15 @@ namespace delassus {
 /// returns the impulse λ (N·s) that meets the law of the item alone: W is its own block of H A⁻¹ Hᵀ (1/kg), b = u − W λ what its rows
 /// would do without it (m/s), so that their velocity becomes u = W λ + b. The present λ is no argument.
 ///
-/// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then has
-/// prepare(W, memory), or prepare(item, W, h, memory) where a cap on the force makes one on the impulse, and
-/// solve_local(item, W, b, memory). Other refinements: `bilateral` (all rows equalities), `kinds` (one RowKind a row),
-/// natural_map(item, λ, u, scale) (its own residual), clamp(item, λ) or clamp(item, λ, memory) (into its cone), speed(item)
-/// (what its rows' velocity shall be, m/s), follow(item, world) (once a step, for what an item remembers of its pose),
-/// and tangent(item, local) (for Newton's method).
+/// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then it is
+/// solve_local(item, W, b, Memory<T>&). `bilateral` says that all rows are equalities, `kinds` one RowKind a row. What else a law has
+/// it declares in `refines`: see `constraints/refinements.hpp`.
+///
+/// tangent(item, local), for Newton's method, is `solve_local` for a W that is diagonal, friction rows alike: it replaces
+/// local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element of the generalised derivative
+/// will do where there are several. An island with a law that has none is swept. A law whose cap on the impulse is in its memory has
+/// tangent(item, local, memory). convex_tangent(item, local, slip) is `tangent` with the slip |u_t| of its friction rows given, which
+/// makes the law the projection on a convex set. A law without friction needs none.
 template <class L>
 concept ConstraintLaw = requires {
   typename L::Item;                                   // what the user adds, or collision detection fills
@@ -32,32 +36,6 @@ concept ConstraintLaw = requires {
 
 template <class L>
 concept RemembersBetweenSweeps = requires { typename L::template Memory<double>; };
-
-/// tangent(item, local) is `solve_local` for a W that is diagonal, friction rows alike, and without memory: it
-/// replaces local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element
-/// of the generalised derivative will do where there are several. An island with a law that has none is
-/// swept. A law whose cap on the impulse is in its memory has tangent(item, local, memory).
-template <class L>
-concept Differentiable = requires(const L law, const typename L::Item item, Local<L::rows>& local) {
-  { law.tangent(item, local) } -> std::same_as<Mat<L::rows, L::rows>>;
-}
-|| requires(const L law, const typename L::Item item, Local<L::rows>& local,
-            const typename L::template Memory<double>& memory) {
-  { law.tangent(item, local, memory) } -> std::same_as<Mat<L::rows, L::rows>>;
-};
-
-/// The same of a law that contacts wrap, which gets its parameters in place of the item.
-template <class L>
-concept DifferentiableContact = requires(const L law, const typename L::Parameters p, Local<L::rows>& local) {
-  { law.tangent(p, local) } -> std::same_as<Mat<L::rows, L::rows>>;
-};
-
-/// convex_tangent(parameters, local, slip) is `tangent` with the slip |u_t| of its friction rows given, which makes the
-/// law the projection on a convex set. A law without friction needs none.
-template <class L>
-concept ConvexContact = requires(const L law, const typename L::Parameters p, Local<L::rows>& local) {
-  { law.convex_tangent(p, local, 0.0) } -> std::same_as<Mat<L::rows, L::rows>>;
-};
 
 /// What a law changes in a step, `using overrides = Overrides<NewtonImpact>;`: each overrides stages by name, as a policy
 /// does by its own `stages<Base>`, once however many laws name it.
@@ -83,6 +61,16 @@ struct overrides_of<L> {
   using type = typename L::overrides;
 };
 
+/// What a wrapper overrides: O... after what the law inside does.
+template <class Inside, class... O>
+struct overrides_around;
+template <class... I, class... O>
+struct overrides_around<Overrides<I...>, O...> {
+  using type = Overrides<I..., O...>;
+};
+template <class L, class... O>
+using overrides_around_t = typename overrides_around<typename overrides_of<L>::type, O...>::type;
+
 }  // namespace inner
 
 /// A law whose items are made by collision detection.
@@ -105,38 +93,67 @@ struct memory_of<L, T> {
 template <class L, class T>
 using memory_of_t = typename memory_of<L, T>::type;
 
-/// Calls what the law has: with its memory or without.
-template <class L, class W, class M>
-void prepare(const L& law, const W& own_block, M& memory) {
-  if constexpr (requires { law.prepare(own_block, memory); }) law.prepare(own_block, memory);
-}
-template <class L, class Given, int R, class T, class M>
-[[gnu::always_inline]] inline Vec<R, T> solve_local(const L& law, const Given& given, const Mat<R, R, T>& W, const Vec<R, T>& b,
-                                                    M& memory) {
-  if constexpr (RemembersBetweenSweeps<L>) return law.solve_local(given, W, b, memory);
-  else return law.solve_local(given, W, b);
-}
-
-/// A law with solve_local, from its own block W (1/kg) and its velocity b without it (m/s); `Given` is its item, or what a contact
-/// hands to the law inside.
-template <class L, class Given, class T>
-concept SolvesLocally =
-    (RemembersBetweenSweeps<L> && requires(const L& law, const Given& given, const Mat<L::rows, L::rows, T>& W,
-                                           const Vec<L::rows, T>& b, memory_of_t<L, T>& memory) {
-      { law.solve_local(given, W, b, memory) } -> std::same_as<Vec<L::rows, T>>;
-    }) || (!RemembersBetweenSweeps<L> &&
-           requires(const L& law, const Given& given, const Mat<L::rows, L::rows, T>& W, const Vec<L::rows, T>& b) {
-             { law.solve_local(given, W, b) } -> std::same_as<Vec<L::rows, T>>;
-           });
-
-/// What solve_local was called before. A name that a class inherits twice is ambiguous, whatever overloads or templates it has.
-struct OldSolve {
-  int project, meet;
+/// What a law does that does not refine this.
+struct Unrefined {
+  [[gnu::always_inline]] static constexpr void prepare(const auto&...) {}
+  [[gnu::always_inline]] static constexpr void clamp(const auto&...) {}
+  [[gnu::always_inline]] static constexpr bool is_sliding(const auto&...) { return false; }
+  [[gnu::always_inline]] static constexpr void check(const auto&...) {}
+  [[gnu::always_inline]] static constexpr void set_friction(const auto&...) {}
+  [[gnu::always_inline]] static constexpr void set_restitution(const auto&...) {}
+  [[gnu::always_inline]] static constexpr void soften(const auto&...) {}
 };
+
+/// Who is asked for a refinement: the law itself, the outermost of those inside it that declares it, or nobody.
+template <unsigned what, class L>
+  requires((declared_refinements<L> & what) != 0)
+[[gnu::always_inline]] constexpr const L& who_refines(const L& law) {
+  return law;
+}
+template <unsigned what, class L>
+  requires((refinements_of<L> & what) == 0)
+[[gnu::always_inline]] constexpr Unrefined who_refines(const L&) {
+  return {};
+}
+template <unsigned what, class L>
+  requires((refinements_of<L> & ~declared_refinements<L> & what) != 0)
+[[gnu::always_inline]] constexpr const auto& who_refines(const L& law) {
+  return who_refines<what>(law.law);
+}
+
+/// What a law is given: its item, and inside a contact the parameters of that.
 template <class L>
-struct BesideOldSolve : L, OldSolve {};
+  requires(!requires { typename L::wraps; })
+[[gnu::always_inline]] constexpr const auto& given(const typename L::Item& item) {
+  return item;
+}
 template <class L>
-concept HasOldSolve = !(requires { &BesideOldSolve<L>::project; } && requires { &BesideOldSolve<L>::meet; });
+  requires requires { typename L::wraps; }
+[[gnu::always_inline]] constexpr const auto& given(const typename L::Item& item) {
+  return item.parameters;
+}
+
+template <class L, int R, class T, class M>
+[[gnu::always_inline]] inline Vec<R, T> solve_local(const L& law, const typename L::Item& item, const Mat<R, R, T>& W,
+                                                    const Vec<R, T>& b, M& memory) {
+  const auto& solved = innermost(law);
+  if constexpr (RemembersBetweenSweeps<innermost_t<L>>) return solved.solve_local(given<L>(item), W, b, memory);
+  else return solved.solve_local(given<L>(item), W, b);
+}
+
+/// With the arguments that the law takes.
+template <class L, class W, class M>
+[[gnu::always_inline]] inline void prepare(const L& law, const typename L::Item& item, const W& own_block, double h, M& memory) {
+  const auto& asked = who_refines<refine::prepare>(law);
+  if constexpr (requires { asked.prepare(own_block, memory); }) asked.prepare(own_block, memory);
+  else asked.prepare(given<L>(item), own_block, h, memory);
+}
+template <class L, class X, class M>
+[[gnu::always_inline]] inline void clamp(const L& law, const typename L::Item& item, X& lambda, const M& memory) {
+  const auto& asked = who_refines<refine::clamp>(law);
+  if constexpr (requires { asked.clamp(given<L>(item), lambda, memory); }) asked.clamp(given<L>(item), lambda, memory);
+  else asked.clamp(given<L>(item), lambda);
+}
 
 /// What `Contact` is put around: friction and the like, without items of its own.
 template <class L>
@@ -145,63 +162,6 @@ concept LawOfContact = requires { L::rows, L::kinds, typename L::Parameters{}; }
 /// A wrapper of contact laws around something else, inside Contact{...} or not.
 template <class L>
 concept HollowLaw = IsHollow<L> || requires { requires IsHollow<typename L::no_contact_law>; };
-
-/// What the law inside all wrappers is given: an item, and of a contact its parameters.
-template <class L>
-[[gnu::always_inline]] constexpr const auto& given(const typename L::Item& item) {
-  if constexpr (requires { typename L::wraps; }) return item.parameters;
-  else return item;
-}
-
-/// A law, or the one inside a contact, answers with its impulse.
-template <class L, class Given, class T>
-consteval bool law_solves() {
-  constexpr bool does = SolvesLocally<L, Given, T>, has_old = !does && HasOldSolve<L>;
-  static_assert(!has_old,
-                "delassus: a constraint law needs Vec<rows> solve_local(item, W, b) const in the place of project(item, local); see "
-                "docs/migration.md");
-  static_assert(does || has_old,
-                "delassus: a constraint law needs Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b) "
-                "const, in a contact with its Parameters as item, and with Memory<T>& behind b if it has a Memory; add it");
-  return does;
-}
-
-/// One sentence for the first thing a law lacks; T is the scalar of the rows.
-template <class L, class T>
-consteval bool law_is_sound() {
-  constexpr bool is_filled = !HollowLaw<L>;
-  static_assert(is_filled,
-                "delassus: Restitution, SequentialRestitution and Penalty go around a contact law, and their numbers come second: "
-                "Contact{Restitution{Coulomb{.friction = 0.5}, 0.3}}, Contact{Penalty{Coulomb{}, 1e5, 50}}");
-  constexpr bool is_around_a_law = !requires { typename L::no_contact_law; };
-  static_assert(is_around_a_law || !is_filled,
-                "delassus: Contact{...} takes a contact law, as in Contact{Coulomb{.friction = 0.5}}; this type lacks "
-                "`rows`, `kinds` or `Parameters`");
-  constexpr bool is_wrapped_once = !requires(const L& law) { typename std::remove_cvref_t<decltype(law.law)>::wraps::wraps; };
-  static_assert(is_wrapped_once,
-                "delassus: of Restitution, SequentialRestitution and Penalty a contact takes one, for only the outer one would be "
-                "asked; take the other out (a Penalty bounces by its own stiffness and damping)");
-  constexpr bool has_axis = !requires { typename L::no_coordinate; };
-  static_assert(has_axis,
-                "delassus: Limit, Motor and Drive act on one axis of a joint; write Motor<Turn>{} for an angle (rad), "
-                "Motor<Slide>{} for a way (m); a Coupling on two, as in Coupling<Turn, Slide>{}");
-  constexpr bool is_around_a_joint = !requires { typename L::no_joint; };
-  static_assert(is_around_a_joint,
-                "delassus: Breakable goes around a joint whose rows are forces and moments on its ends, as in Breakable<Hinge>{}; "
-                "this one does not say so, by `acts`, or breaks already");
-  constexpr bool has_shape = ConstraintLaw<L>, is_bare = LawOfContact<L>;
-  static_assert(!is_bare,
-                "delassus: the law of a contact stands within Contact{...}, as in Constraints{Contact{Coulomb{.friction = 0.5}}}");
-  if constexpr (is_filled && is_around_a_law && is_around_a_joint && has_axis && !is_bare)
-    static_assert(has_shape,
-                  "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what is missing");
-  if constexpr (has_shape) {
-    if constexpr (!is_wrapped_once) return false;
-    else return law_solves<innermost_t<L>, std::remove_cvref_t<decltype(given<L>(std::declval<const typename L::Item&>()))>, T>();
-  } else {
-    return false;
-  }
-}
 
 }  // namespace inner
 }  // namespace delassus

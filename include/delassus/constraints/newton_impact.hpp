@@ -19,7 +19,7 @@ namespace inner {
 
 template <class Law, class Item>
 double restitution_of(const Law& law, const Item& item) {
-  if constexpr (requires { law.restitution(item); }) return law.restitution(item);
+  if constexpr (refines<Law>(refine::restitution)) return law.restitution(item);
   else return 0;
 }
 

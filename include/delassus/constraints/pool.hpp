@@ -24,12 +24,6 @@ struct ConstraintHandle {
   std::uint32_t owner = 0;  ///< its pool's own number; copies of a loop share it
 };
 
-/// A law whose items can break: breaks(item, λ, h) says whether the impulse of a step was too much.
-template <class L>
-concept BreakableLaw = requires(const L law, const typename L::Item item, const Vec<L::rows> lambda) {
-  { law.breaks(item, lambda, 1.0) } -> std::same_as<bool>;
-};
-
 namespace inner {
 
 struct NeverBreaks {};
@@ -49,7 +43,7 @@ struct Pool {
   Slots slots;
   std::uint32_t owner = inner::next_owner();
   /// Who broke in the last step, and goes when the next one begins.
-  [[no_unique_address]] std::conditional_t<BreakableLaw<Law>, std::vector<ConstraintHandle<Law>>, inner::NeverBreaks> broken;
+  [[no_unique_address]] std::conditional_t<refines<Law>(refine::breaks), std::vector<ConstraintHandle<Law>>, inner::NeverBreaks> broken;
 
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}
@@ -95,12 +89,12 @@ struct Pool {
 
   static void each_array(auto& self, auto&& f) {
     f(self.items), f(self.impulse), f(self.starts_cold);
-    if constexpr (BreakableLaw<Law>) f(self.broken);
+    if constexpr (refines<Law>(refine::breaks)) f(self.broken);
     self.slots.each_array(self.slots, f);
   }
   void memory(auto& archive) {
     archive(items, impulse, starts_cold, slots);
-    if constexpr (BreakableLaw<Law>) archive(broken);
+    if constexpr (refines<Law>(refine::breaks)) archive(broken);
   }
 
   /// The item behind the i-th rows of this step.

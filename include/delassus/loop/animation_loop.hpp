@@ -77,7 +77,7 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
   /// The constraints of a `Breakable` law that broke in the last step; they are taken out when the next one begins.
   template <class Law>
   std::span<const ConstraintHandle<Law>> broken() const
-    requires BreakableLaw<Law>
+    requires(refines<Law>(refine::breaks))
   {
     return laws().template of<Law>().broken;
   }

@@ -5,6 +5,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/collider.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/law_checks.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/integrators/integrator.hpp>
 #include <delassus/loop/held_policies.hpp>
@@ -219,7 +220,7 @@ consteval bool constraints_are_sound() {
   constexpr std::type_identity<Laws> laws;
   if constexpr (Laws::pool_count == 0) {
     return true;
-  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L, typename World::Scalar>(); })) {
+  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L, World>(); })) {
     return false;
   } else if constexpr (!all_parts(laws, []<class L>() { return law_linearizes<L, World>(); })) {
     return false;

@@ -81,7 +81,7 @@ double energy_of(const Mat<R, R, T>& W, const Vec<R, T>& u) {
 template <class Laws>
 inline constexpr bool all_differentiable = false;
 template <class... Laws>
-inline constexpr bool all_differentiable<Constraints<Laws...>> = (Differentiable<Laws> && ...);
+inline constexpr bool all_differentiable<Constraints<Laws...>> = (refines<Laws>(refine::tangent) && ...);
 
 }  // namespace inner
 

@@ -22,8 +22,8 @@ namespace inner {
 template <class Law, Needs needs, class T>
 void show_law(const Law& law, const void* items, const Index* places, void* memory, PoolView<T>& view) {
   view.table = &LawLoops<Law, T>::table;
-  if constexpr (needs != Needs::sweeps && Differentiable<Law>) view.tangent = &LawTangents<Law, T>::tangent;
-  if constexpr (needs == Needs::convex_tangents && Differentiable<Law>) view.convex_tangent = &LawTangents<Law, T>::convex_tangent;
+  if constexpr (needs != Needs::sweeps && refines<Law>(refine::tangent)) view.tangent = &LawTangents<Law, T>::tangent;
+  if constexpr (needs == Needs::convex_tangents && refines<Law>(refine::tangent)) view.convex_tangent = &LawTangents<Law, T>::convex_tangent;
   view.law = &law;
   view.law_items = items;
   view.places = places;
@@ -40,7 +40,7 @@ class LawSet;
 template <class... Laws, class T, Needs needs>
 class LawSet<Constraints<Laws...>, T, needs> {
   static constexpr int pools = int(sizeof...(Laws));
-  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<Laws, T>>...>;
+  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<inner::innermost_t<Laws>, T>>...>;
   template <int p>
   using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
 

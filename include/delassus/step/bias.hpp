@@ -120,7 +120,7 @@ void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabil
           if constexpr (requires { stabilisation.relative_compliance(h); }) pool.relative_compliance[i][k] = T(stabilisation.relative_compliance(h));
         }
       }
-      if constexpr (requires { constraints.law.speed(constraints.item(i)); })
+      if constexpr (refines<Law>(refine::speed))
         inner::drive(pool, i, constraints.law.speed(constraints.item(i)), h);
       pool.d[i] += pool.bias[i];
     }

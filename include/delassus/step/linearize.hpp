@@ -15,7 +15,7 @@ namespace delassus {
 template <class World, class Laws>
 void follow(const World& world, Laws& laws) {
   each_pool(laws, [&](auto, auto& pool) {
-    if constexpr (requires { pool.law.follow(pool.items[0], world); })
+    if constexpr (refines<std::remove_cvref_t<decltype(pool.law)>>(refine::follow))
       for (const Index place : pool.slots.active()) pool.law.follow(pool.items[place], world);
   });
 }

@@ -36,7 +36,7 @@ void warm_start(const Laws& laws, Rows& rows, ContactCache& book, double h, doub
       constexpr int along = inner::rows_along<Rows::template rows_of<p>>;
       const Vec3 own = item.frame * impulse;
       for (int k = 0; k < along; ++k) lambda[i][k] = T(own[k]);
-      if constexpr (requires { pool.law.clamp(item, lambda[i]); }) pool.law.clamp(item, lambda[i]);
+      inner::clamp(pool.law, item, lambda[i], inner::NoMemory{});
     }
   });
 }
@@ -59,8 +59,7 @@ void keep_impulses(Laws& laws, const Rows& rows, ContactCache& book) {
       ContactResult& result = book.results[item.result];
       result.impulse = inner::world_impulse<Rows::template rows_of<p>>(item.frame, lambda[i]);
       result.starts_cold = !is_finite(lambda[i]);
-      if constexpr (requires { pool.law.is_sliding(item, lambda[i]); })
-        result.is_sliding = pool.law.is_sliding(item, lambda[i]);
+      result.is_sliding = inner::who_refines<refine::is_sliding>(pool.law).is_sliding(inner::given<std::remove_cvref_t<decltype(pool.law)>>(item), lambda[i]);
     }
   });
 }

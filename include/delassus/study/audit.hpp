@@ -155,7 +155,7 @@ class Audit {
                           double w, double threshold) {
     const double normal = double(rows.lambda[i][0]);
     if (w * normal > threshold) ++use.acted;
-    if constexpr (requires { pool.law.restitution(pool.item(i)); }) {
+    if constexpr (refines<std::remove_cvref_t<decltype(pool.law)>>(refine::restitution)) {
       use.has_restitution = true;
       // Without it the bias is φ/h for an open contact and the stabilisation's for one that overlaps.
       const double phi = double(rows.phi[i][0]), h = loop.step_size();
@@ -182,8 +182,7 @@ class Audit {
       sum += tangent;
       moment += arm.cross(tangent).dot(item.record->normal);
       radius = std::max(radius, arm.norm());
-      if constexpr (requires { pool.law.is_sliding(item, rows.lambda[i]); })
-        slips = slips || pool.law.is_sliding(item, rows.lambda[i]);
+      slips = slips || inner::who_refines<refine::is_sliding>(pool.law).is_sliding(inner::given<std::remove_cvref_t<decltype(pool.law)>>(item), rows.lambda[i]);
     }
     const bool is_felt = w * std::max(sum.norm(), radius > 0 ? std::abs(moment) / radius : 0) > threshold;
     if (is_felt) use.held += end - begin;

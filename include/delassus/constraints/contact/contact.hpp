@@ -41,13 +41,15 @@ Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
 }  // namespace inner
 
 /// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the next two tangent; a law with
-/// six rows goes on with (t₁, t₂, n) · (ω_B − ω_A).
+/// six rows goes on with (t₁, t₂, n) · (ω_B − ω_A). The law inside is solved and asked for what it refines, with
+/// `item.parameters`.
 template <class Law = inner::Absent>
 struct Contact {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
   static constexpr bool is_contact = true;
+  static constexpr unsigned refines = inner::refinements_of<Law> & refine::set_restitution ? refine::restitution : 0u;
   using overrides = typename inner::overrides_of<Law>::type;
 
   Law law{};
@@ -61,7 +63,7 @@ struct Contact {
     Index result = -1;  ///< its place in the loop's list of contacts
   };
 
-  void check() const { law.check(); }
+  void check() const { inner::who_refines<refine::check>(law).check(); }
 
   /// Records between other materials go to the next contact law that takes them.
   bool takes(Index, Index) const { return true; }
@@ -80,65 +82,16 @@ struct Contact {
     b.along(axes, 1);
     if constexpr (rows > along) turn(b, item.frame, 1);
     row.phi(0, item.gap);
-    if constexpr (requires { law.soften(row, item.gap); }) law.soften(row, item.gap);
+    inner::who_refines<refine::soften>(law).soften(row, item.gap);
   }
 
-  /// The law that is solved: restitution and penalty wrap one.
-  const auto& local() const { return inner::innermost(law); }
-  template <class T>
-  using Memory = inner::memory_of_t<inner::innermost_t<Law>, T>;
-
-  template <class T>
-  void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
-    inner::prepare(local(), W, memory);
-  }
-  template <class T>
-  Vec<rows, T> solve_local(const Item& item, const Mat<rows, rows, T>& W, const Vec<rows, T>& b, Memory<T>& memory) const {
-    return inner::solve_local(local(), item.parameters, W, b, memory);
-  }
-  template <class T>
-  Mat<rows, rows, T> tangent(const Item& item, Local<rows, T>& c) const
-    requires DifferentiableContact<inner::innermost_t<Law>>
-  {
-    return local().tangent(item.parameters, c);
-  }
-  template <class T>
-  Mat<rows, rows, T> convex_tangent(const Item& item, Local<rows, T>& c, T slip) const
-    requires ConvexContact<inner::innermost_t<Law>>
-  {
-    return local().convex_tangent(item.parameters, c, slip);
-  }
-  template <class T>
-  Vec<rows, T> natural_map(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u, T scale) const {
-    return local().natural_map(item.parameters, lambda, u, scale);
-  }
-  template <class T>
-  Vec<2, T> natural_squares(const Item& item, const Vec<rows, T>& lambda, const Vec<rows, T>& u,
-                            T scale) const requires requires {
-    local().natural_squares(item.parameters, lambda, u, scale);
-  }
-  { return local().natural_squares(item.parameters, lambda, u, scale); }
-  template <class T>
-  void clamp(const Item& item, Vec<rows, T>& lambda) const {
-    local().clamp(item.parameters, lambda);
-  }
-  template <class T>
-  bool is_sliding(const Item& item, const Vec<rows, T>& lambda) const
-    requires requires { local().is_sliding(item.parameters, lambda); }
-  {
-    return local().is_sliding(item.parameters, lambda);
-  }
   /// Friction and restitution of a pair of materials, as far as the law has them.
   void set_pair(typename Law::Parameters& parameters, const auto& pair) const {
-    if constexpr (requires { local().set_friction(parameters, 0.0); }) local().set_friction(parameters, pair.friction);
-    if constexpr (requires { law.set_restitution(parameters, 0.0); }) law.set_restitution(parameters, pair.restitution);
+    inner::who_refines<refine::set_friction>(law).set_friction(parameters, pair.friction);
+    inner::who_refines<refine::set_restitution>(law).set_restitution(parameters, pair.restitution);
   }
   /// e of this contact, where the law has one.
-  double restitution(const Item& item) const
-    requires requires { item.parameters.restitution; }
-  {
-    return item.parameters.restitution;
-  }
+  double restitution(const Item& item) const { return item.parameters.restitution; }
 
  private:
   /// The rows behind those of the velocity: t₁, t₂, n.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/contact/cone.hpp>
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -23,6 +24,8 @@ namespace delassus {
 struct Coulomb {
   static constexpr int rows = 3;
   static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
+  static constexpr auto refines = refine::check | refine::set_friction | refine::prepare | refine::clamp | refine::natural_map |
+                                  refine::natural_squares | refine::tangent | refine::convex_tangent | refine::is_sliding;
 
   double friction = 0.5;  ///< μ ≥ 0, where neither the pair nor the materials say otherwise
 
@@ -67,13 +70,14 @@ struct Coulomb {
   }
 
   template <class T>
-  Vec<3, T> solve_local(const Parameters& p, const Mat<3, 3, T>&, const Vec<3, T>& b, Memory<T>& memory) const {
-    return impulse(T(p.friction), b, memory);
+  [[gnu::always_inline]] Vec<3, T> solve_local(const Parameters& p, const Mat<3, 3, T>&, const Vec<3, T>& b, Memory<T>& memory) const {
+    return impulse(p, b, memory);
   }
   /// λ from b, the velocity without this contact, and what `prepare` made of W.
   template <class T>
-  static Vec<3, T> impulse(T mu, const Vec<3, T>& b, Memory<T>& memory) {
+  static Vec<3, T> impulse(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) {
     if (b[0] >= -inner::negligible_approach<T>) return Vec<3, T>::Zero();
+    const T mu = T(p.friction);
     const Vec<3, T> stick = -(memory.inverse * b);
     const T limit = mu * stick[0];
     if (stick[0] >= T(0) && stick[1] * stick[1] + stick[2] * stick[2] <= limit * limit) return stick;

@@ -1,6 +1,7 @@
 /// Contact without friction: one row.
 #pragma once
 
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 
@@ -13,10 +14,10 @@ namespace delassus {
 struct Frictionless {
   static constexpr int rows = 1;
   static constexpr std::array<RowKind, 1> kinds{RowKind::lower};
+  static constexpr auto refines = refine::clamp | refine::natural_map | refine::tangent;
 
   struct Parameters {};
 
-  void check() const {}
   Parameters parameters() const { return {}; }
 
   template <class T>

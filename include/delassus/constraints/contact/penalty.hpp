@@ -37,6 +37,8 @@ struct Penalty {
   static constexpr bool takes_mean = std::same_as<When, AtMean>;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
+  static constexpr auto refines = refine::check | refine::soften;
+  using overrides = typename inner::overrides_of<Law>::type;
 
   Law law{};
   double stiffness = 0;  ///< k > 0, N/m
@@ -46,7 +48,7 @@ struct Penalty {
   using Parameters = typename Law::Parameters;
 
   void check() const {
-    law.check();
+    inner::who_refines<refine::check>(law).check();
     inner::expect_positive("Penalty: stiffness", stiffness, "N/m");
     inner::expect_not_negative("Penalty: damping", damping, "N·s/m");
     inner::check_soft_number(stiffness, "Penalty: stiffness", "N/m");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/contact/cone.hpp>
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/local.hpp>
@@ -25,6 +26,7 @@ namespace delassus {
 struct Pyramid {
   static constexpr int rows = 3;
   static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
+  static constexpr auto refines = refine::check | refine::set_friction | refine::clamp | refine::natural_map;
 
   double friction = 0.5;  ///< μ ≥ 0 of each axis, where neither the pair nor the materials say otherwise
 

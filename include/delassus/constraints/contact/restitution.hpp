@@ -15,7 +15,8 @@ struct Restitution {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
-  using overrides = Overrides<NewtonImpact>;
+  static constexpr auto refines = refine::check | refine::set_restitution;
+  using overrides = inner::overrides_around_t<Law, NewtonImpact>;
 
   Law law{};
   double restitution = 0;  ///< e in [0, 1], where neither the pair nor the materials say otherwise
@@ -25,7 +26,7 @@ struct Restitution {
   };
 
   void check() const {
-    law.check();
+    inner::who_refines<refine::check>(law).check();
     inner::expect_zero_to_one("Restitution: restitution", restitution);
   }
 

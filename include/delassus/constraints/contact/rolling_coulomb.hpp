@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/contact/coulomb.hpp>
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 
 #include <algorithm>
@@ -28,6 +29,8 @@ struct RollingCoulomb {
   static constexpr int rows = 6;
   static constexpr std::array<RowKind, 6> kinds{RowKind::lower,    RowKind::friction, RowKind::friction,
                                                 RowKind::friction, RowKind::friction, RowKind::friction};
+  static constexpr auto refines = refine::check | refine::set_friction | refine::prepare | refine::clamp | refine::natural_map |
+                                  refine::tangent | refine::is_sliding;
 
   double friction = 0.5;          ///< μ ≥ 0, where neither the pair nor the materials say otherwise
   double rolling_friction = 0;    ///< μ_r ≥ 0, m
@@ -241,11 +244,11 @@ struct RollingCoulomb {
       return sum;
     };
     const Vec<3, T> slide =
-        Coulomb::impulse(cones.slide, Vec<3, T>(free(0, 0, 2), free(1, 0, 2), free(2, 0, 2)), memory.slide);
+        Coulomb::impulse({double(cones.slide)}, Vec<3, T>(free(0, 0, 2), free(1, 0, 2), free(2, 0, 2)), memory.slide);
     for (int i = 0; i < 3; ++i) lambda[i] = slide[i];
     // The roll is friction under a normal impulse that does not answer to it: b_n = −W_nn λ_n.
     const Vec<3, T> roll = Coulomb::impulse(
-        cones.roll, Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)), memory.roll);
+        {double(cones.roll)}, Vec<3, T>(-lambda[0] / memory.roll.over_normal, free(3, 3, 4), free(4, 3, 4)), memory.roll);
     lambda[3] = roll[1], lambda[4] = roll[2];
     const T most = cones.spin * lambda[0];
     lambda[5] = W(5, 5) > T(0) ? std::clamp(-free(5, 5, 5) / W(5, 5), -most, most) : T(0);

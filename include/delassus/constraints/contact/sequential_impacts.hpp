@@ -40,7 +40,7 @@ class ImpactRows {
         rows_.template pool<p>(), i_, world_, [](const auto& set) -> const auto& { return set.velocity(); });
   }
   /// v ← v + M⁻¹ Hᵀ λ; returns λ.
-  Vec<R, T> hit(const Vec<R, T>& u) {
+  Vec<R, T> hit(const Vec<R, T>& u, double h) {
     const auto& pool = laws_.template pool<p>();
     const auto& item = pool.item(i_);
     using Law = std::remove_cvref_t<decltype(pool.law)>;
@@ -48,9 +48,9 @@ class ImpactRows {
     Vec<R, T> free = u;
     free[0] += T(restitution_of(pool.law, item)) * u[0];
     each([&](const auto& set, Index b, const auto& H) { W.noalias() += H * answer(set, b, H); });
-    typename Law::template Memory<T> memory{};
-    pool.law.prepare(W, memory);
-    const Vec<R, T> lambda = pool.law.solve_local(item, W, free, memory);
+    memory_of_t<innermost_t<Law>, T> memory{};
+    prepare(pool.law, item, W, h, memory);
+    const Vec<R, T> lambda = solve_local(pool.law, item, W, free, memory);
     each([&](auto& set, Index b, const auto& H) {
       set.velocity()[b].noalias() += answer(set, b, H) * lambda;
     });
@@ -106,7 +106,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
           const auto u = impact.velocity();
           const double closing = -double(u[0]), gap = double(rows.template pool<p>().phi[i][0]);
           if (!(closing > 1e-12 * fastest) || !(gap < h * closing)) continue;
-          const auto lambda = impact.hit(u);
+          const auto lambda = impact.hit(u, h);
           constexpr int R = Rows::template rows_of<p>;
           impulses[std::size_t(pool.item(i).result)] += inner::world_impulse<R>(pool.item(i).frame, lambda);
           any = true;

@@ -21,7 +21,8 @@ struct SequentialRestitution {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
-  using overrides = Overrides<SequentialImpacts, NewtonImpact>;
+  static constexpr auto refines = refine::check | refine::set_restitution;
+  using overrides = inner::overrides_around_t<Law, SequentialImpacts, NewtonImpact>;
 
   Law law{};
   double restitution = 0;  ///< e in [0, 1], where neither the pair nor the materials say otherwise
@@ -32,7 +33,7 @@ struct SequentialRestitution {
   };
 
   void check() const {
-    law.check();
+    inner::who_refines<refine::check>(law).check();
     inner::expect_zero_to_one("SequentialRestitution: restitution", restitution);
     inner::expect_at_least_zero("SequentialRestitution: most_rounds", most_rounds);
   }

@@ -8,10 +8,9 @@ namespace delassus::inner {
 
 /// The law inside all wrappers. A wrapper says `using wraps = Law;`, holds it as `law`, and adds to what a
 /// contact is: parameters, a target velocity, a relative compliance. Its `Parameters` are the law's or derive from them,
-/// so that the law inside takes them as its own; the solution at fixed neighbours stays that law's, and
-/// `Contact` asks it at once.
+/// so that the law inside takes them as its own; the solution at fixed neighbours stays that law's.
 template <class Law>
-constexpr const auto& innermost(const Law& law) {
+[[gnu::always_inline]] constexpr const auto& innermost(const Law& law) {
   if constexpr (requires { typename Law::wraps; })
     return innermost(law.law);
   else

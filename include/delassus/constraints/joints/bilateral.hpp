@@ -1,6 +1,7 @@
 /// The local solve all joints share: the rows are equalities.
 #pragma once
 
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/math/positive.hpp>
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/local.hpp>
@@ -15,6 +16,7 @@ template <int rows_>
 struct Bilateral {
   static constexpr int rows = rows_;
   static constexpr bool bilateral = true;
+  static constexpr auto refines = refine::prepare | refine::tangent | refine::natural_map;
 
   template <class T>
   struct Memory {

@@ -1,6 +1,7 @@
 /// The local solve of a row whose force has a cap.
 #pragma once
 
+#include <delassus/constraints/refinements.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -17,6 +18,7 @@ namespace delassus {
 struct Bounded {
   static constexpr int rows = 1;
   static constexpr std::array<RowKind, 1> kinds{RowKind::friction};
+  static constexpr auto refines = refine::prepare | refine::clamp | refine::tangent;
 
   template <class T>
   struct Memory {

@@ -1,6 +1,7 @@
 /// A wrapper that lets a joint break where it carries too much.
 #pragma once
 
+#include <delassus/constraints/law.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/math/linear.hpp>
@@ -21,8 +22,10 @@ struct Breakable : Joint {
     double max_moment = std::numeric_limits<double>::infinity();  ///< N·m
   };
 
-  static void check(const Item& item) {
-    if constexpr (requires { Joint::check(item); }) Joint::check(item);
+  static constexpr auto refines = inner::declared_refinements<Joint> | refine::check | refine::breaks;
+
+  void check(const Item& item) const {
+    inner::who_refines<refine::check>(static_cast<const Joint&>(*this)).check(item);
     DELASSUS_EXPECT(item.max_force > 0 && item.max_moment > 0,
                     "Breakable: max_force " + inner::text(item.max_force) + " N and max_moment " +
                         inner::text(item.max_moment) + " N·m must be > 0");
@@ -37,7 +40,7 @@ struct Breakable : Joint {
 
 /// Around what does not say of its rows whether they are forces or moments, or breaks already; the loop's checks say so.
 template <class Joint>
-  requires(!requires { Joint::acts; } || requires { &Joint::breaks; })
+  requires(!requires { Joint::acts; } || refines<Joint>(refine::breaks))
 struct Breakable<Joint> {
   using no_joint = Joint;
   explicit Breakable(const auto&...) {}

@@ -28,6 +28,8 @@ struct Coupling : Bilateral<1> {
     double position_a = 0, position_b = 0;  ///< q_a, q_b at the start of the last step, over all turns
   };
 
+  static constexpr auto refines = Bilateral<1>::refines | refine::check | refine::follow;
+
   static void check(const Item& item) {
     First::check(Pair{item.c, item.a}, "Coupling, first joint");
     Second::check(Pair{item.d, item.b}, "Coupling, second joint");

@@ -18,6 +18,8 @@ struct Cylindrical : Bilateral<4> {
     Anchor a, b;
   };
 
+  static constexpr auto refines = Bilateral<4>::refines | refine::check;
+
   static void check(const Item& item) { inner::expect_frames(item, "Cylindrical"); }
 
   void linearize(const Item& item, const auto& world, auto row) const {

@@ -21,6 +21,8 @@ struct DistanceJoint : Bilateral<1> {
     double damping = 0;
   };
 
+  static constexpr auto refines = Bilateral<1>::refines | refine::check;
+
   static void check(const Item& item) {
     inner::expect_not_negative("DistanceJoint: length", item.length, "m");
     inner::expect_not_negative("DistanceJoint: stiffness", item.stiffness, "N/m");

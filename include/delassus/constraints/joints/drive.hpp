@@ -24,6 +24,8 @@ struct Drive : Bounded, OnAxis<Coordinate> {
     double position = 0;                                         ///< q at the start of the last step
   };
 
+  static constexpr auto refines = Bounded::refines | refine::check | refine::follow | refine::speed;
+
   static void check(const Item& item) {
     Coordinate::check(item, "Drive");
     const auto is_gain = [](double x) { return std::isfinite(x) && x >= 0; };

@@ -19,6 +19,8 @@ struct Hinge : Bilateral<5> {
     Anchor a, b;
   };
 
+  static constexpr auto refines = Bilateral<5>::refines | refine::check;
+
   static void check(const Item& item) { inner::expect_frames(item, "Hinge"); }
 
   void linearize(const Item& item, const auto& world, auto row) const {

@@ -27,6 +27,7 @@ template <class Coordinate = inner::Absent>
 struct Limit : OnAxis<Coordinate> {
   static constexpr int rows = 2;
   static constexpr std::array<RowKind, 2> kinds{RowKind::lower, RowKind::upper};
+  static constexpr auto refines = refine::check | refine::follow | refine::clamp | refine::natural_map | refine::tangent | refine::restitution;
   using overrides = Overrides<NewtonImpact>;
 
   struct Item {

@@ -21,6 +21,8 @@ struct Motor : Bounded, OnAxis<Coordinate> {
     double position = 0;  ///< of the axis at the start of the last step, rad over all turns or m
   };
 
+  static constexpr auto refines = Bounded::refines | refine::check | refine::follow | refine::speed;
+
   static void check(const Item& item) {
     Coordinate::check(item, "Motor");
     DELASSUS_EXPECT(std::isfinite(item.speed) && std::isfinite(item.position),

@@ -18,6 +18,8 @@ struct Planar : Bilateral<3> {
     Anchor a, b;
   };
 
+  static constexpr auto refines = Bilateral<3>::refines | refine::check;
+
   static void check(const Item& item) { inner::expect_frames(item, "Planar"); }
 
   void linearize(const Item& item, const auto& world, auto row) const {

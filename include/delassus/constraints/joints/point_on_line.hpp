@@ -18,6 +18,8 @@ struct PointOnLine : Bilateral<2> {
     Anchor a, b;
   };
 
+  static constexpr auto refines = Bilateral<2>::refines | refine::check;
+
   static void check(const Item& item) { inner::expect_frame(item.a, "PointOnLine", "first"); }
 
   void linearize(const Item& item, const auto& world, auto row) const {

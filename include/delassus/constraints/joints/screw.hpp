@@ -21,6 +21,8 @@ struct Screw : Bilateral<5> {
     double position = 0;  ///< θ at the start of the last step, rad over all turns
   };
 
+  static constexpr auto refines = Bilateral<5>::refines | refine::check | refine::follow;
+
   static void check(const Item& item) {
     inner::expect_frames(item, "Screw");
     DELASSUS_EXPECT(std::isfinite(item.pitch) && std::isfinite(item.phase) && std::isfinite(item.position),

@@ -20,6 +20,8 @@ struct Universal : Bilateral<4> {
     Anchor a, b;
   };
 
+  static constexpr auto refines = Bilateral<4>::refines | refine::check;
+
   static void check(const Item& item) { inner::expect_frames(item, "Universal"); }
 
   void linearize(const Item& item, const auto& world, auto row) const {

@@ -27,6 +27,8 @@ struct VirtualCoupling : Bilateral<6> {
     double angular_damping = 0;     ///< c_θ ≥ 0, N·m·s/rad
   };
 
+  static constexpr auto refines = Bilateral<6>::refines | refine::check;
+
   static void check(const Item& item) {
     DELASSUS_EXPECT(item.a.has_frame && item.b.has_frame,
                     "VirtualCoupling: both ends need an orientation; a particle has none");

@@ -18,6 +18,8 @@ struct Weld : Bilateral<6> {
     Anchor a, b;
   };
 
+  static constexpr auto refines = Bilateral<6>::refines | refine::check;
+
   static void check(const Item& item) { inner::expect_frames(item, "Weld"); }
 
   void linearize(const Item& item, const auto& world, auto row) const {

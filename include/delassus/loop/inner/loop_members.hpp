@@ -58,7 +58,7 @@ auto AnimationLoop<Args...>::add(Item item) {
                 "delassus: the Item of a law that is added to a loop needs two ends, `Anchor a, b`; one in the world is "
                 "world_anchor({0, 0, 0})");
   if constexpr (!std::is_void_v<Law>) {
-    if constexpr (requires { Law::check(item); }) Law::check(item);
+    if constexpr (is_sound) inner::who_refines<refine::check>(laws().template of<Law>().law).check(item);
     if constexpr (HasEnds<Item>) {
       constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
                                     "constraint, second end's carrier"};

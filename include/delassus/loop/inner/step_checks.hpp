@@ -142,8 +142,7 @@ consteval bool refinement_fits() {
 /// A law whose items bounce names what makes them bounce.
 template <class Law>
 consteval bool restitution_acts() {
-  constexpr bool bounces = requires(const Law& law, const typename Law::Item& item) { law.restitution(item); };
-  constexpr bool acts = !bounces || names_override<NewtonImpact>(typename overrides_of<Law>::type{});
+  constexpr bool acts = !refines<Law>(refine::restitution) || names_override<NewtonImpact>(typename overrides_of<Law>::type{});
   static_assert(acts,
                 "delassus: a law with restitution(item) names what makes it bounce; add `using overrides = "
                 "Overrides<NewtonImpact>;` and include delassus/constraints/newton_impact.hpp");

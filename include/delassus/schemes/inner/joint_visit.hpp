@@ -127,7 +127,7 @@ class JointVisit {
       bias_[k] = stabilisation.equality(H.phi[k], h);
       violation = std::max(violation, std::abs(H.phi[k]));
     }
-    if constexpr (requires { law.speed(item); }) bias_[k] -= law.speed(item);
+    if constexpr (refines<std::remove_cvref_t<decltype(law)>>(refine::speed)) bias_[k] -= law.speed(item);
     if (!answers()) yield_[k] = 0;
   }
 

@@ -20,7 +20,7 @@ namespace delassus::inner {
 template <class Law, class T>
 struct LawItems {
   using Item = typename Law::Item;
-  using Memory = memory_of_t<Law, T>;
+  using Memory = memory_of_t<innermost_t<Law>, T>;
   static constexpr int R = Law::rows;
 
   const Law& law;
@@ -49,16 +49,11 @@ struct LawItems {
       return inner::solve_local(law, item(i), as_square<R>(own), b, m);
     }
   }
-  static constexpr bool clamps = requires(const Law& of, const Item& one, Vec<R, T>& x, const Memory& m) { of.clamp(one, x, m); } ||
-                                 requires(const Law& of, const Item& one, Vec<R, T>& x) { of.clamp(one, x); };
-  [[gnu::always_inline]] void clamp(Index i, Vec<R, T>& lambda) const {
-    if constexpr (requires { law.clamp(item(i), lambda, memory[i]); }) law.clamp(item(i), lambda, memory[i]);
-    else if constexpr (clamps) law.clamp(item(i), lambda);
-  }
+  [[gnu::always_inline]] void clamp(Index i, Vec<R, T>& lambda) const { inner::clamp(law, item(i), lambda, memory[i]); }
   /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
   [[gnu::always_inline]] Vec<R, T> natural_map(Index i, const T* own, const Vec<R, T>& lambda, const Vec<R, T>& u, T scale) const {
-    if constexpr (requires { law.natural_map(item(i), lambda, u, scale); }) {
-      return law.natural_map(item(i), lambda, u, scale);
+    if constexpr (refines<Law>(refine::natural_map)) {
+      return who_refines<refine::natural_map>(law).natural_map(given<Law>(item(i)), lambda, u, scale);
     } else {
       const Mat<R, R, T> W = load_square<R>(own);
       Memory m = memory[i];
@@ -91,9 +86,7 @@ struct LawLoops {
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items ? span.items[k] : k;
       const Mat<R, R, T> own = load_square<R>(span.pool->own_block(i));
-      if constexpr (requires { of.law.prepare(of.item(i), own, h, of.memory[i]); })
-        of.law.prepare(of.item(i), own, h, of.memory[i]);
-      else inner::prepare(of.law, own, of.memory[i]);
+      inner::prepare(of.law, of.item(i), own, h, of.memory[i]);
     }
   }
 
@@ -182,7 +175,7 @@ struct LawLoops {
 
   static constexpr LawTable<T> make_table() {
     LawTable<T> out{kinds.data(), prepare, sweep, project_once, measure, extrapolate, nullptr, changed, velocity, add_share, nullptr};
-    if constexpr (Items::clamps) out.clamp = clamp;
+    if constexpr (refines<Law>(refine::clamp)) out.clamp = clamp;
     if constexpr (is_round_cone<Law>()) out.friction = friction;
     return out;
   }
@@ -216,8 +209,8 @@ struct LawLoops {
   [[gnu::always_inline]] static void add(const Items& of, Index i, const T* own, T weight, const Vec<R, T>& u, const Vec<R, T>& lambda,
                                          const Vec<R, T>& d, MeasureSums& sums) {
     Vec<2, T> squares;
-    if constexpr (requires { of.law.natural_squares(of.item(i), lambda, u, weight); }) {
-      squares = of.law.natural_squares(of.item(i), lambda, u, weight);
+    if constexpr (refines<Law>(refine::natural_squares)) {
+      squares = who_refines<refine::natural_squares>(of.law).natural_squares(given<Law>(of.item(i)), lambda, u, weight);
     } else {
       squares[0] = squared_norm(of.natural_map(i, own, lambda, u, weight));
       squares[1] = squared_norm(of.natural_map(i, own, lambda, u, T(1)));
@@ -244,8 +237,9 @@ struct LawTangents {
     Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
     for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
     Mat<R, R> S;
-    if constexpr (requires { of.law.tangent(of.item(i), c); }) S = of.law.tangent(of.item(i), c);
-    else if constexpr (Differentiable<Law>) S = of.law.tangent(of.item(i), c, of.memory[i]);
+    const auto& asked = who_refines<refine::tangent>(of.law);
+    if constexpr (requires { asked.tangent(given<Law>(of.item(i)), c); }) S = asked.tangent(given<Law>(of.item(i)), c);
+    else if constexpr (refines<Law>(refine::tangent)) S = asked.tangent(given<Law>(of.item(i)), c, of.memory[i]);
     for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
     store(c.lambda, lambda);
   }
@@ -254,8 +248,8 @@ struct LawTangents {
     const Items of(pool);
     Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
     for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
-    if constexpr (requires { of.law.convex_tangent(of.item(i), c, slip); }) {
-      const Mat<R, R> S = of.law.convex_tangent(of.item(i), c, slip);
+    if constexpr (refines<Law>(refine::convex_tangent)) {
+      const Mat<R, R> S = who_refines<refine::convex_tangent>(of.law).convex_tangent(given<Law>(of.item(i)), c, slip);
       for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
       store(c.lambda, lambda);
     } else {

@@ -18,6 +18,7 @@ struct PositionLaw {
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = row_kinds<Law>();
   static constexpr bool is_contact = true;  // it has no items that a host adds
+  static constexpr unsigned refines = refine::natural_map | refine::tangent | refine::clamp;
   struct Item {};
 
   /// One projected Gauss-Seidel pass over the rows of a block, from the λ that they have; b is their velocity without it.
