@@ -49,8 +49,8 @@ template <class T>
 struct RowView {
   int pool = 0, rows = 0;
   Index items = 0;
-  T* lambda = nullptr;
-  const T *d = nullptr, *compliance = nullptr, *relative_compliance = nullptr;
+  T *lambda = nullptr, *d = nullptr, *bias = nullptr;
+  const T *compliance = nullptr, *relative_compliance = nullptr;
   const T *diagonal = nullptr;    ///< W_ii, compliance included
   const T *own_diagonal = nullptr;  ///< the same without what a solver lifts it by
   FormOfW form = FormOfW::square_blocks;

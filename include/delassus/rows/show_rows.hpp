@@ -33,6 +33,7 @@ void show_rows(PoolRows<R, T, w...>& rows, int pool, RowView<T>& view, SetBlocks
   view.items = rows.items();
   view.lambda = numbers_of(rows.lambda);
   view.d = numbers_of(rows.d);
+  view.bias = numbers_of(rows.bias);
   view.compliance = numbers_of(rows.compliance);
   view.relative_compliance = numbers_of(rows.relative_compliance);
   view.set = sets;

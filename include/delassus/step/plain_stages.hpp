@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/correct.hpp>
 #include <delassus/step/detect.hpp>
@@ -102,12 +103,13 @@ struct PlainStages : StagesWithoutConstraints {
     step.reports.resize(step.islands.count());
     for (Index k = 0; k < step.islands.count(); ++k) {
       observer.begin_island(k);
-      Stages::solve_island(step, k, observer);
+      IslandProblem island(step.law_set, step.rows, step.W, step.islands, k, step.h, observer);
+      Stages::solve_island(step, island);
     }
   }
-  static void solve_island(auto& step, Index island, auto& observer) {
-    step.reports[island] = delassus::solve_island(step.law_set, step.rows, step.W, step.islands, island, step.solver(),
-                                                  step.solver_workspace, step.h, observer);
+  /// One of them, an `Island`.
+  static void solve_island(auto& step, auto& island) {
+    step.reports[island.island()] = step.solver().solve(island, step.solver_workspace);
   }
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {

@@ -1,8 +1,6 @@
 /// Solve: island by island, each with its own stopping test and status.
 #pragma once
 
-#include <delassus/rows/islands.hpp>
-#include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/step_report.hpp>
 
@@ -10,14 +8,6 @@
 #include <span>
 
 namespace delassus {
-
-/// Solves one island.
-template <class Book, class Rows, class Operator, int pools, class Solver, class Workspace, class Observer>
-SolveReport solve_island(Book& book, Rows& rows, Operator& W, const Islands<pools>& islands, Index island,
-                         const Solver& solver, Workspace& workspace, double h, Observer& observer) {
-  IslandProblem<Book, Rows, Operator, Observer> problem(book, rows, W, islands, island, h, observer);
-  return solver.solve(problem, workspace);
-}
 
 /// The worst of the islands.
 inline void summarise(std::span<const SolveReport> islands, StepReport& step) {

@@ -134,9 +134,9 @@ struct MidpointStages : Base {
     using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
     fade_joints(std::as_const(step).world(), step.laws(), step.rows, own(step).at_start, theta<Integrator>(), own(step).fade);
   }
-  static void solve_island(auto& step, Index island, auto& observer) {
-    Base::solve_island(step, island, observer);
-    if (reject_damping(step.rows, step.W, step.islands, island, own(step).fade)) Base::solve_island(step, island, observer);
+  static void solve_island(auto& step, auto& island) {
+    Base::solve_island(step, island);
+    if (reject_damping(step.rows, step.W, step.islands, island.island(), own(step).fade)) Base::solve_island(step, island);
   }
 
  private:

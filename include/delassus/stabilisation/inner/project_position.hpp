@@ -112,8 +112,9 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   constexpr double far = 0.05;  // of the largest velocity that closes a gap
   for (Index k = 0; k < step.islands.count(); ++k)
     if (!step.is_nonfinite[k]) {
+      IslandProblem island(book, rows, step.W, step.islands, k, step.h, nobody);
       const SolveReport r =
-          solve_island(book, rows, step.W, step.islands, k, step.solver(), step.solver_workspace, step.h, nobody);
+          step.solver().solve(island, step.solver_workspace);
       if (r.measure.residual > far) worst = worse(worst, r.status);
     }
   step.world().each([&](auto& set, auto s) {
