@@ -47,7 +47,7 @@ void sweep(benchmark::State& state, const std::string& path) {
 /// The product of the same blocks alone, one after the other, without any law.
 void plain_product(benchmark::State& state, const std::string& path) {
   const FrictionProblem p = read_problem(path);
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   const auto& pool = p.rows.pool<0>();
   Array<Vec3> x(pool.d), u(x.size());
   for (auto _ : state) {

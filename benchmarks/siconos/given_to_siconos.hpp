@@ -23,7 +23,7 @@ class GivenToSiconos {
  public:
   explicit GivenToSiconos(const delassus::FrictionProblem& p) {
     using delassus::Index;
-    const auto& W = p.W.blocks<0, 0>();
+    const auto W = p.W.blocks<0, 0>();
     const auto& pool = p.rows.pool<0>();
     const Index n = pool.items();
     start_.push_back(0);

@@ -53,7 +53,7 @@ Eigen::MatrixXd dense_operator(const Problem& problem) {
   for_each_index<2>([&](auto a) {
     int first_b = 0;
     for_each_index<2>([&](auto b) {
-      const auto& blocks = problem.W.template blocks<a, b>();
+      const auto blocks = problem.W.template blocks<a, b>();
       for (Index i = 0; i < problem.rows.template pool<a>().items(); ++i)
         for (Index e = blocks.start[i]; e < blocks.start[i + 1]; ++e)
           W.block<3, 3>(first_a + 3 * i, first_b + 3 * blocks.column[e]) = blocks.block[e];

@@ -139,7 +139,7 @@ struct Built {
   void gather(const Scene& scene, const Vec<6>& on_rigid, std::span<const Vec3> on_soft) {
     const Whole whole(scene);
     const auto& pool = scene.rows.pool<0>();
-    const auto& blocks = W.template blocks<0, 0>();
+    const auto blocks = W.template blocks<0, 0>();
     exact = whole.W;
     made = Eigen::MatrixXd::Zero(exact.rows(), exact.rows());
     lambda.resize(exact.rows());

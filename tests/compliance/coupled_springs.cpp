@@ -99,7 +99,7 @@ TEST_CASE("particles coupled by springs have the W of the whole implicit system"
   const Eigen::MatrixXd expected = H * Eigen::LDLT<Eigen::MatrixXd>(A).solve(H.transpose());
   const auto problem = loop.problem();
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(4, 4);
-  const auto& blocks = problem.W.blocks<0, 0>();
+  const auto blocks = problem.W.blocks<0, 0>();
   for (int i = 0; i < 4; ++i) {
     W(i, i) = problem.W.diagonal<0>(i)(0, 0);
     for (Index e = blocks.start[i]; e < blocks.start[i + 1]; ++e) W(i, blocks.column[e]) = blocks.block[e](0, 0);

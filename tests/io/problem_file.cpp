@@ -53,7 +53,7 @@ TEST_CASE("a problem file says friction, velocities and blocks, row by row") {
   REQUIRE(pool.d[1] == Vec3(-2, 0, 0.25));
   REQUIRE(p.W.diagonal<0>(0)(0, 1) == 0.1);
   REQUIRE(p.W.diagonal<0>(0)(1, 0) == 0.2);
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   REQUIRE(W.start == std::vector<Index>{0, 0, 1});
   REQUIRE(W.column == std::vector<Index>{0});
   REQUIRE(W.block[0](0, 2) == 0.3);

@@ -89,7 +89,7 @@ template <class Problem>
 Dense dense(const Problem& problem) {
   const Index n = problem.rows.template pool<0>().items();
   Dense W{3 * n, 3 * n};
-  const auto& blocks = problem.W.template blocks<0, 0>();
+  const auto blocks = problem.W.template blocks<0, 0>();
   for (Index i = 0; i < n; ++i) {
     const auto put = [&](Index column, const Mat3& block) {
       for (int k = 0; k < 3; ++k)

@@ -54,7 +54,7 @@ Vec3 nearest_in_cone(const Vec3& x, double mu) {
 }
 Errors errors(const FrictionProblem& p) {
   const auto& pool = p.rows.pool<0>();
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   double plain = 0, scaled = 0, q = 0, r = 0, u = 0;
   for (Index i = 0; i < pool.items(); ++i) {
     Vec3 velocity = pool.d[i] + p.W.diagonal<0>(i) * pool.lambda[i];
@@ -73,7 +73,7 @@ Errors errors(const FrictionProblem& p) {
 constexpr GaussSeidel only_measure{.max_iterations = 0, .min_iterations = 0};
 
 void scale(FrictionProblem& p, double mass, double velocity) {
-  auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   for (auto& b : W.block) b *= mass;
   for (Index i = 0; i < p.rows.pool<0>().items(); ++i) p.W.diagonal<0>(i) *= mass;
   for (auto& d : p.rows.pool<0>().d) d *= velocity;
@@ -138,7 +138,7 @@ TEST_CASE("the order of the contacts changes no motion") {
   std::vector<double> friction(n, 0.2);
   std::vector<Vec3> q;
   std::vector<GivenBlock> blocks;
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   for (Index i = n; i-- > 0;) {
     q.push_back(p.rows.pool<0>().d[i]);
     blocks.push_back({n - 1 - i, n - 1 - i, p.W.diagonal<0>(i)});

@@ -146,7 +146,7 @@ Bounds make_bounds(const Square& M, const Numbers& q) {
     p.laws.pool<0>().items.push_back({});
   }
   p.W.resize_like(p.rows);
-  auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   for (int i = 0; i < M.n; ++i) {
     p.W.diagonal<0>(i)(0, 0) = M(i, i);
     for (int j = 0; j < M.n; ++j) {

@@ -52,7 +52,7 @@ void dense(const Problem& problem, Eigen::MatrixXd& W, Eigen::VectorXd& q, Eigen
   W.setZero(n, n);
   q.resize(n);
   r.resize(n);
-  const auto& blocks = problem.W.template blocks<0, 0>();
+  const auto blocks = problem.W.template blocks<0, 0>();
   for (Index i = 0; i < pool.items(); ++i) {
     W.block<3, 3>(3 * i, 3 * i) = problem.W.template diagonal<0>(i);
     for (Index e = blocks.start[i]; e < blocks.start[i + 1]; ++e)

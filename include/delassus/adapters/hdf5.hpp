@@ -134,7 +134,7 @@ inline std::vector<Vec3> read_fclib_solution(const std::string& path, Index cont
 inline void write_fclib(const std::string& path, const FrictionProblem& p,
                         const std::string& description = "") {
   const auto& pool = p.rows.pool<0>();
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   const Index n = pool.items();
   std::vector<inner::FclibEntry> entries;
   const auto add = [&](Index i, Index j, const Mat3& block) {

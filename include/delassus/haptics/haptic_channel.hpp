@@ -78,10 +78,9 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
       this->make_in(problem);
       slot.tool.reserve(parameters.reserve);
       slot.book.reserve(parameters.reserve);
-      // A workspace takes its sizes from rows: once from the largest there can be.
-      Rows largest;
-      for_each_index<Rows::pool_count>([&](auto p) { largest.template pool<p>().phi.resize(parameters.reserve); });
-      slot.workspace.reset(largest);
+      Index rows = 0;  // of the largest problem there can be
+      for_each_index<Rows::pool_count>([&](auto p) { rows += Rows::template rows_of<p> * Index(parameters.reserve); });
+      slot.workspace.reset(rows);
     });
   }
 

@@ -156,7 +156,7 @@ class ToolRows {
     set_zero(own.d[item_]);
     set_zero(own.lambda[item_]);
     for_each_index<pools>([&](auto q) {
-      auto& W = problem.W.template blocks<p, q>();  // row c: W_cj
+      const auto W = problem.W.template blocks<p, q>();  // row c: W_cj
       auto& rows = std::get<q>(coupled_);
       rows.clear();
       place_[q].assign(problem.rows.template pool<q>().items(), -1);
@@ -178,7 +178,7 @@ class ToolRows {
     const auto ZW = (row.Z * own_block_).eval();
     W.template diagonal<a>(row.item) -= ZW * row.Z.transpose();
     for_each_index<pools>([&](auto b) {
-      auto& blocks = W.template blocks<a, b>();
+      const auto blocks = W.template blocks<a, b>();
       using S = typename std::remove_cvref_t<decltype(blocks.block[0])>::Scalar;
       for (Index e = blocks.start[row.item]; e < blocks.start[row.item + 1]; ++e) {
         const Index j = blocks.column[e];

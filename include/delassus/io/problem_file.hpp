@@ -105,7 +105,7 @@ inline void append_block(std::string& out, Index i, Index j, const Mat3& block) 
 
 /// W_ij = W_jiᵀ to the last bit.
 inline bool is_symmetric(const FrictionProblem& p) {
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   const Index n = p.rows.pool<0>().items();
   for (Index i = 0; i < n; ++i) {
     const Mat3& own = p.W.diagonal<0>(i);
@@ -125,7 +125,7 @@ inline bool is_symmetric(const FrictionProblem& p) {
 /// The problem without its λ, as `sym` where W is symmetric to the bit.
 inline std::string problem_text(const FrictionProblem& p) {
   const auto& pool = p.rows.pool<0>();
-  const auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   const bool is_symmetric = inner::is_symmetric(p);
   const Index n = pool.items();
   std::string blocks;

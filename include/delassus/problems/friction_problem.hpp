@@ -56,7 +56,7 @@ inline FrictionProblem make_friction_problem(const std::vector<double>& friction
     p.laws.pool<0>().items.push_back({{friction[i]}});
   }
   p.W.resize_like(p.rows);
-  auto& W = p.W.blocks<0, 0>();
+  const auto W = p.W.blocks<0, 0>();
   std::vector<char> has_diagonal(n, 0);
   for (const GivenBlock& b : blocks) {
     DELASSUS_EXPECT(b.row >= 0 && b.row < n && b.column >= 0 && b.column < n,
@@ -137,7 +137,7 @@ FrictionProblem friction_problem(const Problem<Laws, Rows, Operator>& from) {
   for_each_index<pools>([&](auto a) {
     for_each_index<pools>([&](auto b) {
       if constexpr (Rows::template rows_of<a> == 3 && Rows::template rows_of<b> == 3) {
-        const auto& W = from.W.template blocks<a, b>();
+        const auto W = from.W.template blocks<a, b>();
         for (Index i = 0; i < Index(number[a].size()); ++i) {
           if (number[a][i] < 0) continue;
           if (a == b)

@@ -28,6 +28,7 @@ class BlockList {
   bool empty() const { return numbers_->empty(); }
   /// New matrices are zero.
   void resize(std::size_t count) const { numbers_->resize(count * size_of); }
+  friend bool operator==(const BlockList& a, const BlockList& b) { return *a.numbers_ == *b.numbers_; }
   void push_back(const M& block) const {
     const std::size_t last = size();
     resize(last + 1);

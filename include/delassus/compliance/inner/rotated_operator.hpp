@@ -66,6 +66,7 @@ class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
   struct Through {
     using Scalar = T;
     using Velocity = typename Set::Velocity;
+    static constexpr int width = Set::width;
     Set& set;
     RotatedOperator& own;
     int guess;
