@@ -120,3 +120,44 @@ TEST_CASE("the inverse of a 3 × 3 matrix times the matrix is one") {
   const Mat3 A = Mat3::Random() + 3 * Mat3(Mat3::Identity());  // |A⁻¹| < 2: rows are dominated by their diagonal
   REQUIRE((inverse(A) * A - Mat3(Mat3::Identity())).cwiseAbs().maxCoeff() < 1e-14);
 }
+
+TEST_CASE("named sums and products of vectors are Eigen's") {
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();  // of three products below 1
+  for (int k = 0; k < 100; ++k) {
+    const Vec3 a = Vec3::Random(), b = Vec3::Random();
+    const Mat3 A = Mat3::Random(), B = Mat3::Random();
+    REQUIRE(std::abs(dot(a, b) - a.dot(b)) <= rounding);
+    REQUIRE(std::abs(squared_norm(a) - a.squaredNorm()) <= rounding);
+    REQUIRE(std::abs(norm(a) - a.norm()) <= rounding);
+    REQUIRE(cross(a, b) == Vec3(a.cross(b)));
+    REQUIRE(agree(normalized(a), a.normalized()));
+    REQUIRE(agree(transposed_times(A, a), A.transpose().lazyProduct(a)));
+    REQUIRE(agree(transposed_times(A, B), A.transpose().lazyProduct(B)));
+    REQUIRE(agree(times_transposed(A, B), A.lazyProduct(B.transpose())));
+    REQUIRE(max_entry(a) == a.maxCoeff());
+    REQUIRE(column(A, 1) == Vec3(A.col(1)));
+  }
+  REQUIRE(normalized(Vec3(0, 0, 0)) == Vec3(0, 0, 0));
+}
+
+TEST_CASE("the same names take blocks, and vectors of any length") {
+  const Eigen::Matrix<double, 6, 1> v = Eigen::Matrix<double, 6, 1>::Random();
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(20);
+  REQUIRE(norm(v.head<3>()) == v.head<3>().norm());
+  REQUIRE(dot(x, x) == x.squaredNorm());
+  REQUIRE(squared_norm(x) == x.squaredNorm());
+  REQUIRE(cross(v.head<3>(), v.tail<3>()) == Vec3(v.head<3>().cross(v.tail<3>())));
+}
+
+TEST_CASE("zeros, ones and copies of matrices") {
+  Mat<2, 3> M;
+  set_all(M, 2);
+  REQUIRE(M == Mat<2, 3>(Mat<2, 3>::Constant(2)));
+  Mat<2, 3> copy = zero<Mat<2, 3>>();
+  REQUIRE(is_zero(copy));
+  assign(copy, M);
+  REQUIRE(copy == M);
+  set_zero(copy);
+  REQUIRE(is_zero(copy));
+  REQUIRE(identity<Mat3>() == Mat3(Mat3::Identity()));
+}

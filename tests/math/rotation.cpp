@@ -185,3 +185,12 @@ TEST_CASE("a body that is braked to rest within a step turns by half of what it 
     REQUIRE((logarithm(turn) - 0.01 * (1 + left) * axis).norm() < 2e-4 * 0.01 + 0.01 * left);
   }
 }
+
+TEST_CASE("products and inverses of turns are Eigen's") {
+  for (int k = 0; k < 20; ++k) {
+    const Quat a = unit(Quat(Eigen::Vector4d(Eigen::Vector4d::Random()))), b = unit(Quat(Eigen::Vector4d(Eigen::Vector4d::Random())));
+    // Entries are sums of four products below 1.
+    REQUIRE((product(a, b).coeffs() - (a * b).coeffs()).cwiseAbs().maxCoeff() <= 4 * std::numeric_limits<double>::epsilon());
+    REQUIRE(conjugate(a).coeffs() == a.conjugate().coeffs());
+  }
+}

@@ -15,7 +15,7 @@ double kinetic_energy(const BasicRigidBodies<T>& set) {
   double sum = 0;
   inner::each_moving(set, [&](Index b) {
     const Vec<6> v = set.velocity()[b].template cast<double>();
-    const Vec3 rate = set.pose(b).rotation.transpose() * angular_part(v);
+    const Vec3 rate = transposed_times(set.pose(b).rotation, angular_part(v));
     sum += 0.5 * double(set.mass(b)) * squared_norm(linear_part(v)) +
            0.5 * dot(rate, Mat3(set.inertia(b).template cast<double>()) * rate);
   });
@@ -29,7 +29,7 @@ Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
   inner::each_moving(set, [&](Index b) {
     const Pose pose = set.pose(b);
     const Vec<6> v = set.velocity()[b].template cast<double>();
-    const Vec3 rate = pose.rotation.transpose() * angular_part(v);
+    const Vec3 rate = transposed_times(pose.rotation, angular_part(v));
     sum += cross(pose.position, inner::momentum_of(set, b)) +
            pose.rotation * (Mat3(set.inertia(b).template cast<double>()) * rate);
   });

@@ -9,6 +9,7 @@
 #include <delassus/bodies/inner/shapes.hpp>
 #include <delassus/bodies/inner/targets.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/math/pose.hpp>
 #include <delassus/math/rotation.hpp>
@@ -16,7 +17,6 @@
 #include <delassus/rows/body_set.hpp>
 
 #include <concepts>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -122,7 +122,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
 
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }
 
-  void add_forces(std::span<Velocity> p) const {
+  void add_forces(inner::Slice<Velocity> p) const {
     for (const Index b : slots_.active()) add_force(b, p[b]);
   }
   void add_force(Index b, Velocity& p) const {
@@ -132,7 +132,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   }
 
   /// p += s M v.
-  void add_mass_times_velocity(std::span<Velocity> p, double s) const {
+  void add_mass_times_velocity(inner::Slice<Velocity> p, double s) const {
     for (const Index b : slots_.active()) add_mass_times_velocity(b, p[b], s);
   }
   void add_mass_times_velocity(Index b, Velocity& p, double s) const {

@@ -4,6 +4,7 @@
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/collision/inner/dynamic_tree.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ class BasicBoxTree {
   Scalar lead = 4;  ///< and longer by this many steps of its last motion
 
   /// Boxes that are told apart by their place in the array, all of them moving.
-  void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+  void find(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
     places_.resize(boxes.size());
     for (Index i = 0; i < Index(boxes.size()); ++i)
       places_[i] = {.key = std::uint32_t(i), .is_movable = true};
@@ -33,7 +34,7 @@ class BasicBoxTree {
   }
 
   /// Boxes that are told apart by their keys, wherever they stand in the array.
-  void find(std::span<const Aabb> boxes, std::span<const BoxTag> tags, std::vector<CandidatePair>& pairs) {
+  void find(inner::Slice<const Aabb> boxes, inner::Slice<const BoxTag> tags, std::vector<CandidatePair>& pairs) {
     recognise(tags);
     moved_.clear();
     for (Index i = 0; i < Index(boxes.size()); ++i) follow(leaf_of_[i], boxes[i], tags[i].is_movable);
@@ -54,7 +55,7 @@ class BasicBoxTree {
   };
 
   /// Which leaf each box has. Usually the boxes stand as they stood; else the leaves are found by their keys.
-  void recognise(std::span<const BoxTag> tags) {
+  void recognise(inner::Slice<const BoxTag> tags) {
     bool is_same = tags.size() == leaf_of_.size();
     for (std::size_t i = 0; is_same && i < tags.size(); ++i) is_same = leaf_[leaf_of_[i]].key == tags[i].key;
     if (is_same) return;
@@ -178,7 +179,7 @@ class BasicBoxTree {
     kept_.swap(merged_);
   }
 
-  void report(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) const {
+  void report(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) const {
     const std::size_t first = pairs.size();
     bool is_sorted = true;
     for (const std::uint64_t pair : kept_) {

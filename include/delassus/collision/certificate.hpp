@@ -25,7 +25,7 @@ bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, 
   if (std::abs(excess) > 1e-15) r.normal *= 1 - 0.5 * excess;  // else heights of 1 m would be off by 5e-10 m
   const Vec3& n = r.normal;
   const double height_a = dot(n, support(a, n));
-  const double height_b = dot(n, b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * n)))));
+  const double height_b = dot(n, b_in_a.to_world(support(b, Vec3(-transposed_times(b_in_a.rotation, n)))));
   const double proven = height_b - height_a;
   if (r.status == PairStatus::far) return proven > (1 - 1e-3) * margin;
   const double tolerance = 1e-3 * std::max(std::abs(r.distance), 1e-3 * scale);

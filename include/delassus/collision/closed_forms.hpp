@@ -88,8 +88,8 @@ bool closed_form(const Shape& a, const Shape& b, const Pose& b_in_a, const Vec3&
   if (b.kind == ShapeKind::sphere) {
     r = inner::sphere_against(a, b.size[0], b_in_a.position, wish);
   } else if (a.kind == ShapeKind::sphere) {
-    const Vec3 center = -(b_in_a.rotation.transpose() * b_in_a.position);
-    r = inner::swapped(inner::sphere_against(b, a.size[0], center, -(b_in_a.rotation.transpose() * wish)),
+    const Vec3 center = -transposed_times(b_in_a.rotation, b_in_a.position);
+    r = inner::swapped(inner::sphere_against(b, a.size[0], center, -transposed_times(b_in_a.rotation, wish)),
                        b_in_a);
   } else {
     r = inner::two_capsules(a, b, b_in_a, wish);

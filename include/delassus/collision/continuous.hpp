@@ -7,6 +7,7 @@
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
+#include <delassus/core/slice.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +107,7 @@ struct Continuous {
   /// Whoever moves further in a step than half the margin that the backend gives any pair here, since two
   /// that do not are seen; or than the ball of half its size, since what is thin is then seen on its far
   /// side.
-  void find_fast(std::span<const Collider> colliders, double h) {
+  void find_fast(inner::Slice<const Collider> colliders, double h) {
     const CollisionSettings s = inner::settings_of(backend);
     double way = 0.5 * s.margin;
     if (s.margin < 0) {

@@ -15,6 +15,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/fixed_array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
@@ -52,7 +53,7 @@ class CollisionEngine {
   using Job = inner::PairJob;
 
   template <class Filter>
-  void find_pairs(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
+  void find_pairs(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
                   const Filter& filter) {
     boxes_.resize(colliders.size());
     summary_.resize(colliders.size());
@@ -78,7 +79,7 @@ class CollisionEngine {
     report_.pairs = Index(jobs_.size());
   }
 
-  void find_candidates(std::span<const Collider> colliders) {
+  void find_candidates(inner::Slice<const Collider> colliders) {
     if constexpr (TaggedBroadPhase<Broad>) {
       tags_.clear();
       for (const Collider& c : colliders) tags_.push_back({.key = c.key, .is_movable = c.is_movable});
@@ -89,7 +90,7 @@ class CollisionEngine {
   }
 
   template <class Filter>
-  void add_job(std::span<const Collider> colliders, Index a, Index b, const Filter& filter) {
+  void add_job(inner::Slice<const Collider> colliders, Index a, Index b, const Filter& filter) {
     const Collider &x = colliders[a], &y = colliders[b];
     const std::uint64_t pair = pair_key(x.key, y.key);
     if (!may_meet(x, y) || !filter.lets(pair)) return;
@@ -103,7 +104,7 @@ class CollisionEngine {
 
   /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in
   /// full.
-  void collide(std::span<const Collider> colliders, const Job& job, double h,
+  void collide(inner::Slice<const Collider> colliders, const Job& job, double h,
                const CollisionSettings& settings, RestingPair& pair, std::vector<ContactPoint>& out);
 
   /// Distance, patch, choice of points, names.
@@ -125,7 +126,7 @@ class CollisionEngine {
     if (r.distance > margin) return;
     if (!is_half_space(a) && !is_half_space(b))
       contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
-    inner::name_points(patch_, last, b_in_a, a.pose.rotation.transpose() * now.normal, scale,
+    inner::name_points(patch_, last, b_in_a, transposed_times(a.pose.rotation, now.normal), scale,
                        settings.max_points, out.size(), out, now, [&](int i, std::uint32_t id) {
                          out.push_back(inner::contact_of(job, a.pose, patch_.point[i], now.normal,
                                                          settings.contact_distance, id));
@@ -143,12 +144,12 @@ class CollisionEngine {
       now.owner = is_half_space(a) ? inner::NormalOwner::a : inner::NormalOwner::b;
       return half_space_patch(a.shape, b.shape, b_in_a, reach, scale, patch_);
     }
-    const Vec3 guess = a.pose.rotation.transpose() * last.normal;
+    const Vec3 guess = transposed_times(a.pose.rotation, last.normal);
     // Centres in one point: the normal of B moved by 1e-4 of the size, far above what round shapes resolve. Along it B
     // is then put back, and the depth is within 4e-4 of the size of the least.
     const bool is_moved = is_zero(b_in_a.position) && is_zero(last.normal);
     Vec3 shift = zero<Vec3>();
-    if (is_moved) shift = a.pose.rotation.transpose() * (1e-4 * scale * inner::fallback_normal(a.key, b.key));
+    if (is_moved) shift = transposed_times(a.pose.rotation, 1e-4 * scale * inner::fallback_normal(a.key, b.key));
     const Pose pose{.position = b_in_a.position + shift, .rotation = b_in_a.rotation};
     const auto [answer, is_rejected] = certified_pair(kernel_, a.shape, b.shape, pose, reach, scale, guess);
     report_.rejects += is_rejected ? 1 : 0;
@@ -198,7 +199,7 @@ void CollisionEngine<Kernel, Broad>::recall_pairs() {
 }
 
 template <NarrowKernel Kernel, BroadPhase Broad>
-void CollisionEngine<Kernel, Broad>::collide(std::span<const Collider> colliders, const Job& job, double h,
+void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> colliders, const Job& job, double h,
                                              const CollisionSettings& settings, RestingPair& pair,
                                              std::vector<ContactPoint>& out) {
   const Collider &a = colliders[job.a], &b = colliders[job.b];

@@ -29,7 +29,7 @@ inline SignedPair half_space_patch(const Shape& a, const Shape& b, const Pose& b
   const Plane plane = plane_is_a ? inner::plane_of(a, Pose{}) : inner::plane_of(b, b_in_a);
   const Shape& s = plane_is_a ? b : a;
   const Pose pose = plane_is_a ? b_in_a : Pose{};
-  const Vec3 down = -(pose.rotation.transpose() * plane.normal);
+  const Vec3 down = -transposed_times(pose.rotation, plane.normal);
   const auto contact = [&](const Vec3& point, std::uint32_t name) {
     const double gap = dot(plane.normal, point) - plane.offset;
     const Vec3 foot = point - gap * plane.normal;

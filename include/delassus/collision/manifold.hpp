@@ -147,7 +147,7 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
   const Vec3& n = r.normal;
   patch.count = 0;
   Face face_a = face_towards(a, n);
-  Face face_b = inner::posed(face_towards(b, Vec3(-(b_in_a.rotation.transpose() * n))), b_in_a);
+  Face face_b = inner::posed(face_towards(b, Vec3(-transposed_times(b_in_a.rotation, n))), b_in_a);
   if (face_b.count >= 3) inner::reverse(face_b);
   const double slope_a = dot(face_a.normal, n), slope_b = -dot(face_b.normal, n), steepest = 0.2;
   const double slack = 1e-7 * scale;

@@ -47,7 +47,7 @@ SurfacePoint ray_cast(const World& world, const WithMeshes<Backend>& meshes, con
   double nearest = first ? first.distance : reach;
   inner::each_surface(world, meshes, groups,
                       [&](const auto& set, Index s, Index b, const auto& surface, const Pose& pose) {
-                        const Vec3 from = pose.to_local(origin), d = pose.rotation.transpose() * along;
+                        const Vec3 from = pose.to_local(origin), d = transposed_times(pose.rotation, along);
                         const auto meets = [&](const inner::Bounds& box) {
                           return inner::ray_meets(Aabb(box.low, box.high), from, d, nearest);
                         };

@@ -179,7 +179,7 @@ SurfacePoint ray_cast(const World& world, const Bodies& bodies, const Vec3& orig
                [&](const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) {
                  double way = 0;
                  Vec3 normal;
-                 const Vec3 local = pose.rotation.transpose() * along;
+                 const Vec3 local = transposed_times(pose.rotation, along);
                  if (!inner::enter(shape, pose.to_local(origin), local, nearest, way, normal)) return;
                  if (first && (way > nearest || (way == nearest && !inner::comes_before(s, b, first.anchor))))
                    return;

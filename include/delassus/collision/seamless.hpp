@@ -111,7 +111,7 @@ struct Seamless {
   }
   /// max n·x over the body, m.
   static double reach(const Collider& c, const Vec3& n) {
-    const Vec3 local = c.pose.rotation.transpose() * n;
+    const Vec3 local = transposed_times(c.pose.rotation, n);
     return dot(n, c.pose.position) + dot(local, support(c.shape, local));
   }
 

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace delassus {
 /// the one along which the centres of the boxes spread most.
 class SweepAndPrune {
  public:
-  void find(std::span<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+  void find(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
     const int axis = widest_axis(boxes);
     if (boxes.size() != order_.size() || axis != axis_) restart(boxes, axis);
     sort(boxes);
@@ -31,9 +32,9 @@ class SweepAndPrune {
 
  private:
   /// Where a box begins along the axis; an empty one begins at +∞.
-  double start(std::span<const Aabb> boxes, Index i) const { return boxes[i].min()[axis_]; }
+  double start(inner::Slice<const Aabb> boxes, Index i) const { return boxes[i].min()[axis_]; }
 
-  void sort(std::span<const Aabb> boxes) {
+  void sort(inner::Slice<const Aabb> boxes) {
     for (std::size_t s = 1; s < order_.size(); ++s) {
       const Index moving = order_[s];
       std::size_t t = s;
@@ -42,7 +43,7 @@ class SweepAndPrune {
     }
   }
 
-  void restart(std::span<const Aabb> boxes, int axis) {
+  void restart(inner::Slice<const Aabb> boxes, int axis) {
     axis_ = axis;
     order_.resize(boxes.size());
     for (Index i = 0; i < Index(boxes.size()); ++i) order_[i] = i;
@@ -51,7 +52,7 @@ class SweepAndPrune {
   }
 
   /// Changes only when another axis spreads twice as much.
-  int widest_axis(std::span<const Aabb> boxes) const {
+  int widest_axis(inner::Slice<const Aabb> boxes) const {
     Vec3 sum = zero<Vec3>(), low = zero<Vec3>();
     Vec3 squares = zero<Vec3>();
     Index count = 0;

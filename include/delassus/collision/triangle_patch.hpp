@@ -70,7 +70,7 @@ inline bool prove(const Triangle& t, const Shape& s, const Pose& pose, SignedPai
   if (r.status != PairStatus::near || !is_finite(r.normal) || !(std::abs(squared_norm(r.normal) - 1) < 1e-9))
     return false;
   const Vec3 on_a = core_support(t, r.normal);
-  const Vec3 on_b = pose.to_world(support(s, Vec3(-(pose.rotation.transpose() * r.normal))));
+  const Vec3 on_b = pose.to_world(support(s, Vec3(-transposed_times(pose.rotation, r.normal))));
   r.distance = dot(r.normal, on_b - on_a);
   put_witnesses(dot(r.normal, on_a), dot(r.normal, on_b), r);
   return is_finite(r.point_a) && is_finite(r.point_b);
@@ -102,7 +102,7 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
   patch.count = 0;
   const Vec3 centre = pose.to_world(middle(s));
   if (!(t.height(centre) >= 0)) return PatchTrust::none;
-  const Vec3 lowest = pose.to_world(support(s, Vec3(-(pose.rotation.transpose() * t.normal))));
+  const Vec3 lowest = pose.to_world(support(s, Vec3(-transposed_times(pose.rotation, t.normal))));
   const double height = t.height(lowest), slack = 1e-7 * scale;
   if (!(height <= margin)) return PatchTrust::none;
   const bool is_over = inner::is_over(t, lowest, slack);
@@ -130,7 +130,7 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
   normal = r.normal;
   const Vec3& n = normal;
 
-  Face face = inner::posed(face_towards(s, Vec3(-(pose.rotation.transpose() * n))), pose);
+  Face face = inner::posed(face_towards(s, Vec3(-transposed_times(pose.rotation, n))), pose);
   if (face.count >= 3) inner::reverse(face);
   if (is_flat) {
     const Face whole = inner::face_of(t, inner::Rim(t, t.normal));

@@ -81,7 +81,7 @@ Constraints(Laws...) -> Constraints<Laws...>;
 
 /// f(p, pool) for every pool of items that a host adds and that stay from step to step.
 [[gnu::always_inline]] inline void each_kept_pool(auto& laws, auto&& f) {
-  for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) {
+  for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) __attribute__((always_inline)) {
     auto& pool = laws.template pool<p>();
     if constexpr (requires { pool.slots; }) f(p, pool);
   });
@@ -89,7 +89,7 @@ Constraints(Laws...) -> Constraints<Laws...>;
 
 /// f(p, pool) for every pool of items that collision detection makes anew in each step.
 [[gnu::always_inline]] inline void each_contact_pool(auto& laws, auto&& f) {
-  for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) {
+  for_each_index<std::remove_cvref_t<decltype(laws)>::pool_count>([&](auto p) __attribute__((always_inline)) {
     auto& pool = laws.template pool<p>();
     if constexpr (ContactLaw<std::remove_cvref_t<decltype(pool.law)>>) f(p, pool);
   });

@@ -29,7 +29,7 @@ template <class T, class Less>
 }
 /// The last of [0, count) goes where it belongs in the heap of the others.
 template <class T, class Less = Smaller>
-void push_on_heap(T* heap, std::size_t count, const Less& less = {}) {
+[[gnu::always_inline]] inline void push_on_heap(T* heap, std::size_t count, const Less& less = {}) {
   std::size_t hole = count - 1;
   T x = static_cast<T&&>(heap[hole]);
   for (; hole > 0 && less(heap[(hole - 1) / 2], x); hole = (hole - 1) / 2) heap[hole] = static_cast<T&&>(heap[(hole - 1) / 2]);
@@ -37,7 +37,7 @@ void push_on_heap(T* heap, std::size_t count, const Less& less = {}) {
 }
 /// The largest of [0, count) goes behind the heap of the others.
 template <class T, class Less = Smaller>
-void pop_from_heap(T* heap, std::size_t count, const Less& less = {}) {
+[[gnu::always_inline]] inline void pop_from_heap(T* heap, std::size_t count, const Less& less = {}) {
   T x = static_cast<T&&>(heap[count - 1]);
   heap[count - 1] = static_cast<T&&>(heap[0]);
   if (count > 1) sift_down(heap, count - 1, 0, x, less);

@@ -147,26 +147,27 @@ inline double across(const Mat3& R, int k) { return std::sqrt(R(k, 0) * R(k, 0) 
 
 /// How far a shape that is symmetric about its origin reaches along each axis of the world, m.
 Vec3 half_widths(const std::same_as<Shape> auto& s, const Mat3& R) {
-  const auto along = [](const auto& axis) { return Vec3(axis(0), axis(1), axis(2)); };
-  switch (s.outline()) {
-    case ShapeKind::sphere:
-      return Vec3(s.size[0], s.size[0], s.size[0]);
-    case ShapeKind::box:
-      return along([&](int k) {
-        return std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + std::abs(R(k, 2)) * s.size[2];
-      });
-    case ShapeKind::capsule:
-      return along([&](int k) { return std::abs(R(k, 2)) * s.size[1] + s.size[0]; });
-    case ShapeKind::cylinder:
-      return along([&](int k) { return std::abs(R(k, 2)) * s.size[1] + across(R, k) * s.size[0]; });
-    case ShapeKind::ellipsoid:
-      return along(
-          [&](int k) { return norm(Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2])); });
-    default: {
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      return {infinity, infinity, infinity};
+  Vec3 reach;
+  for (int k = 0; k < 3; ++k) switch (s.outline()) {
+      case ShapeKind::sphere:
+        reach[k] = s.size[0];
+        break;
+      case ShapeKind::box:
+        reach[k] = std::abs(R(k, 0)) * s.size[0] + std::abs(R(k, 1)) * s.size[1] + std::abs(R(k, 2)) * s.size[2];
+        break;
+      case ShapeKind::capsule:
+        reach[k] = std::abs(R(k, 2)) * s.size[1] + s.size[0];
+        break;
+      case ShapeKind::cylinder:
+        reach[k] = std::abs(R(k, 2)) * s.size[1] + across(R, k) * s.size[0];
+        break;
+      case ShapeKind::ellipsoid:
+        reach[k] = norm(Vec3(R(k, 0) * s.size[0], R(k, 1) * s.size[1], R(k, 2) * s.size[2]));
+        break;
+      default:
+        reach[k] = std::numeric_limits<double>::infinity();
     }
-  }
+  return reach;
 }
 
 /// Of the tip and the disc of the base.

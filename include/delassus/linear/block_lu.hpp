@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/linear/block_pattern.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 #include <delassus/math/small_products.hpp>
 
-#include <span>
 #include <utility>
 
 namespace delassus {
@@ -23,7 +23,7 @@ class BlockLu {
   };
 
   /// All diagonal blocks and, both ways, the pairs (i, j), i ≠ j, in any order, repeats allowed.
-  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs);
+  void analyse(Index blocks, inner::Slice<const std::pair<Index, Index>> pairs);
 
   /// `ends(n)` is asked after the work of n products of blocks, and where it says so A is of no use; so it is
   /// in `factor`, and in `solve` x.
@@ -85,7 +85,7 @@ class BlockLu {
 
   /// x ← A⁻¹ x.
   template <class Ends = Never>
-  void solve(std::span<Vec<w, T>> x, Ends&& ends = {}) const {
+  void solve(inner::Slice<Vec<w, T>> x, Ends&& ends = {}) const {
     const Index n = Index(diagonal_.size());
     for (Index i = 0; i < n; ++i) assign(work_[pattern_.place(i)], x[i]);
     for (Index j = 0; j < n; ++j) {
@@ -110,7 +110,7 @@ class BlockLu {
 };
 
 template <int w, class T>
-void BlockLu<w, T>::analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
+void BlockLu<w, T>::analyse(Index blocks, inner::Slice<const std::pair<Index, Index>> pairs) {
   pattern_.analyse(blocks, pairs);
   diagonal_.resize(blocks);
   pivot_.resize(blocks);

@@ -4,11 +4,11 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <utility>
 
 namespace delassus {
@@ -20,7 +20,7 @@ template <class Index>
 class BasicBlockPattern {
  public:
   /// All diagonal blocks and the pairs (i, j), i ≠ j, in any order, repeats allowed.
-  void analyse(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
+  void analyse(Index blocks, inner::Slice<const std::pair<Index, Index>> pairs) {
     order(blocks, pairs);
     clear(blocks);
     for (auto [i, j] : pairs) {
@@ -60,7 +60,7 @@ class BasicBlockPattern {
 
   /// Minimum degree: the block with the fewest neighbours goes next, and its neighbours become neighbours of
   /// each other. Ties go to the lowest number. Plain lists; its cost is that of the fill.
-  void order(Index blocks, std::span<const std::pair<Index, Index>> pairs) {
+  void order(Index blocks, inner::Slice<const std::pair<Index, Index>> pairs) {
     clear(blocks);
     for (auto [i, j] : pairs) {
       lists_[i].push_back(j);

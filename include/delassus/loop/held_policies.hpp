@@ -40,7 +40,7 @@ class HeldPolicies {
 
   /// The one of this role, whose type is `Part`.
   template <class Role, class Part, class Self>
-  static auto& policy(Self& self) {
+  [[gnu::always_inline]] static auto& policy(Self& self) {
     if constexpr (count_of<Role, Policies...> > 0) {
       return part_of_type<Part>(self.given_);
     } else {
@@ -63,10 +63,10 @@ class HeldPolicies {
   }
   /// f(policy) for every argument, in their order.
   template <class F>
-  void each(F&& f) {
+  [[gnu::always_inline]] void each(F&& f) {
     given_.each(f);
   }
-  void each_with_defaults(auto&& f) const {
+  [[gnu::always_inline]] void each_with_defaults(auto&& f) const {
     given_.each(f);
     defaults_.each(f);
   }

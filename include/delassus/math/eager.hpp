@@ -252,6 +252,24 @@ inline Eigen::Matrix<T, R, C> operator*(const inner::Fixed<T, R, K, O>& A, const
   return Y;
 }
 
+/// Aᵀ B and A Bᵀ without Eigen's view.
+template <class T>
+[[gnu::always_inline]] inline Eigen::Matrix<T, 3, 1> transposed_times(const Eigen::Matrix<T, 3, 3>& A,
+                                                                      const Eigen::Matrix<T, 3, 1>& x) {
+  const T *a = A.data(), *b = x.data();
+  return {inner::row_times(a[0], a[1], a[2], b), inner::row_times(a[3], a[4], a[5], b), inner::row_times(a[6], a[7], a[8], b)};
+}
+template <class T, int K, int R, int C>
+  requires inner::SmallSizes<K, R, C>
+inline Eigen::Matrix<T, R, C> transposed_times(const Eigen::Matrix<T, K, R>& A, const Eigen::Matrix<T, K, C>& B) {
+  return transposed(A) * B;
+}
+template <class T, int R, int K, int C>
+  requires inner::SmallSizes<R, K, C>
+inline Eigen::Matrix<T, R, C> times_transposed(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, C, K>& B) {
+  return A * transposed(B);
+}
+
 /// a · b of all entries, summed from left to right.
 template <class T>
 [[gnu::always_inline]] inline T dot(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {

@@ -11,10 +11,10 @@ struct Pose {
   Mat3 rotation = identity<Mat3>();
 
   Vec3 to_world(const Vec3& local) const { return position + rotation * local; }
-  Vec3 to_local(const Vec3& world) const { return rotation.transpose() * (world - position); }
+  Vec3 to_local(const Vec3& world) const { return transposed_times(rotation, world - position); }
   /// Where the other one is, in the frame of this.
   Pose to_local(const Pose& other) const {
-    return {to_local(other.position), rotation.transpose() * other.rotation};
+    return {to_local(other.position), transposed_times(rotation, other.rotation)};
   }
 };
 

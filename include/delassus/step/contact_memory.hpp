@@ -3,13 +3,13 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <utility>
 
 namespace delassus {
@@ -29,7 +29,7 @@ class BasicContactMemory {
   };
 
   /// Entries to be filled with the contacts of the step, then `sort`.
-  std::span<Entry> renew(std::size_t count) {
+  inner::Slice<Entry> renew(std::size_t count) {
     entries_.resize(count);
     order_.reserve(entries_.capacity());  // now, with more contacts than ever, and not when one has lost its name
     return entries_;

@@ -3,6 +3,7 @@
 
 #include <delassus/compliance/add_impulses.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 
 namespace delassus {
 
@@ -33,7 +33,7 @@ void drop_rounding(V& v_next, const V& v_free) {
 /// number, are all made so: `advance` leaves such bodies where they were, and no other island notices.
 template <class World, class Rows, class Operator, class Scratch, int pools>
 void correct(World& world, const Rows& rows, Operator& W, Scratch& scratch, const Islands<pools>& islands,
-             std::span<const SolveReport> reports, Array<char>& is_nonfinite) {
+             inner::Slice<const SolveReport> reports, Array<char>& is_nonfinite) {
   is_nonfinite.assign(islands.count(), 0);
   Index first = 0;
   for (std::size_t k = 0; k < std::min(reports.size(), is_nonfinite.size()); ++k)

@@ -6,11 +6,11 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/step/contact_cache.hpp>
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -59,7 +59,7 @@ void attach_contacts(Laws& laws, const ContactCache& book) {
 }
 
 /// What a step says of its contacts.
-inline void report_contacts(const CollisionReport& found, std::span<const ContactPoint> points, Index unclaimed, StepReport& step) {
+inline void report_contacts(const CollisionReport& found, inner::Slice<const ContactPoint> points, Index unclaimed, StepReport& step) {
   if (unclaimed > 0) step.status = worse(step.status, Status::unclaimed_contact);
   step.contacts = Index(points.size());
   step.pairs = found.pairs;

@@ -41,8 +41,8 @@ void drop_stale(const World& world, Laws& laws, FixedArray<SetVersion, std::size
 }
 
 /// f(pool) for the pools of laws that break.
-void each_breakable_pool(auto& laws, auto&& f) {
-  each_kept_pool(laws, [&](auto, auto& pool) {
+[[gnu::always_inline]] inline void each_breakable_pool(auto& laws, auto&& f) {
+  each_kept_pool(laws, [&](auto, auto& pool) __attribute__((always_inline)) {
     if constexpr (requires { pool.broken.size(); }) f(pool);
   });
 }

@@ -32,7 +32,7 @@ consteval bool hears() {
 
 /// Every listener that hears this stage, in the order of the arguments.
 template <class Stage>
-void notify(auto& step) {
+[[gnu::always_inline]] inline void notify(auto& step) {
   using Step = std::remove_reference_t<decltype(step)>;
   if constexpr (Step::Policies::template hears_stage<Stage>)
     step.policies.each([&](auto& policy) {

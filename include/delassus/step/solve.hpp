@@ -1,16 +1,16 @@
 /// Solve: island by island, each with its own stopping test and status.
 #pragma once
 
+#include <delassus/core/slice.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
-#include <span>
 
 namespace delassus {
 
 /// The worst of the islands.
-inline void summarise(std::span<const SolveReport> islands, StepReport& step) {
+inline void summarise(inner::Slice<const SolveReport> islands, StepReport& step) {
   for (const SolveReport& r : islands) {
     step.status = worse(step.status, r.status);
     step.sweeps = std::max(step.sweeps, r.sweeps);

@@ -3,13 +3,13 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/contact_cache.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
 namespace delassus {
 
@@ -91,7 +91,7 @@ struct ImpulseLoads {
 /// An island whose solve ended far from its laws and with impulses beyond every load starts from zero.
 template <class Laws, class Rows, class Operator, int pools>
 void forget_lost_islands(Laws& laws, const Rows& rows, const Operator& W, ContactCache& book, const Islands<pools>& islands,
-                         std::span<const SolveReport> reports) {
+                         inner::Slice<const SolveReport> reports) {
   constexpr double far = 0.05;  // of the largest velocity of the island
   for (Index k = 0; k < islands.count(); ++k) {
     if (reports[k].status < Status::max_iterations || reports[k].measure.residual <= far) continue;

@@ -53,7 +53,7 @@ class RigidMidpoint {
     body.R = s.R[b];
     body.moves = moves;
     body.velocity = body.mean = linear_part(v);
-    body.rate = body.mean_rate = body.R.transpose() * angular_part(v);
+    body.rate = body.mean_rate = transposed_times(body.R, angular_part(v));
     if (!moves) body.turn = exponential<T>(h * Vector(body.rate)).toRotationMatrix();
   }
 
@@ -84,7 +84,7 @@ class RigidMidpoint {
     const Matrix& I = s.inertia[b];
     body.momentum = I * Vector(T(2) * body.mean_rate - body.rate);
     body.missing = (T(2) * s.mass[b]) * (body.mean - body.velocity) - linear_part(impulse);
-    body.missing_moment = body.turn * body.momentum - I * body.rate - body.R.transpose() * angular_part(impulse);
+    body.missing_moment = body.turn * body.momentum - I * body.rate - transposed_times(body.R, angular_part(impulse));
     set_zero(body.stiffness);
     const Vector rate = s.inverse_inertia[b] * body.missing_moment;
     return std::sqrt((squared_norm(body.missing) * s.inverse_mass[b] + dot(body.missing_moment, rate)) *
@@ -93,7 +93,7 @@ class RigidMidpoint {
   /// A force (N·s over the step, world axes) at the body's own point r, after `balance`.
   void stiffen(Index b, const Vector& force, const Vector& r, T h) {
     Body& body = bodies_[b];
-    body.stiffness += (h / 2) * (skew(Vector(body.R.transpose() * force)) * cayley_slope(body.t, r));
+    body.stiffness += (h / 2) * (skew(Vector(transposed_times(body.R, force))) * cayley_slope(body.t, r));
   }
   /// The matrix of the second equation where `balance` was, with the forces of `stiffen`.
   void differentiate(const RigidState<T>& s, Index b, T h) {
@@ -105,7 +105,7 @@ class RigidMidpoint {
     Matrix turned = skew(Vector(T(0.5) * body.t));
     for (int k = 0; k < 3; ++k) turned(k, k) += T(1);
     body.response =
-        (h / (T(1) + squared_norm(body.t) / 4)) * (body.R * (turned * (body.inverse * body.R.transpose())));
+        (h / (T(1) + squared_norm(body.t) / 4)) * (body.R * (turned * (times_transposed<T>(body.inverse, body.R))));
     body.over_mass = h * T(0.5) * s.inverse_mass[b];
   }
 
@@ -141,7 +141,7 @@ class RigidMidpoint {
   void move(const RigidState<T>& s, Index b, const Twist& change) {
     Body& body = bodies_[b];
     body.mean += (T(0.5) * s.inverse_mass[b]) * Vector(linear_part(change) - body.missing);
-    body.mean_rate += body.inverse * Vector(body.R.transpose() * angular_part(change) - body.missing_moment);
+    body.mean_rate += body.inverse * Vector(transposed_times(body.R, angular_part(change)) - body.missing_moment);
   }
 
  private:

@@ -27,7 +27,7 @@ class RigidPath {
     body.x = s.x[b];
     body.q = s.q[b].coeffs();
     body.v = v;
-    body.rate = s.R[b].transpose() * angular_part(v);
+    body.rate = transposed_times(s.R[b], angular_part(v));
     body.slope = body.sum = Slope{};
   }
   const Twist& start_velocity(Index b) const { return bodies_[b].v; }
@@ -41,11 +41,11 @@ class RigidPath {
       s.displace(b, h * linear_part(w), h * angular_part(w));
       return w;
     }
-    const Vector spatial = s.R[b] * (s.inertia[b] * (s.R[b].transpose() * angular_part(w)));
+    const Vector spatial = s.R[b] * (s.inertia[b] * transposed_times(s.R[b], angular_part(w)));
     const Eigen::Quaternion<T> turned =
         turn_freely<T>(s.inverse_inertia[b], s.q[b], spatial, h, &body.response);
     put(s, b, body.x + Vector(h * linear_part(w)).template cast<double>(), turned.coeffs());
-    return twist<T>(linear_part(w), s.R[b] * s.own_rate(b, s.R[b].transpose() * spatial));
+    return twist<T>(linear_part(w), s.R[b] * s.own_rate(b, transposed_times(s.R[b], spatial)));
   }
   /// What impulses at the start do to where `drift` ends: each column of X.
   template <int C, class Set>
@@ -63,7 +63,7 @@ class RigidPath {
 
   /// −ω × R I Rᵀ ω, which a set of rigid bodies leaves out of its forces.
   Twist gyroscopic(const RigidState<T>& s, Index b, const Twist& v) const {
-    const Vector rate = s.R[b].transpose() * angular_part(v);
+    const Vector rate = transposed_times(s.R[b], angular_part(v));
     return twist<T>(zero<Vector>(), s.R[b] * cross(Vector(s.inertia[b] * rate), rate));
   }
   /// q ← q₀ + t q̇ of the last slope; returns v there.
@@ -84,10 +84,10 @@ class RigidPath {
   /// the sum.
   void note_slope(const RigidState<T>& s, Index b, const Twist& v, const Twist& a, T weight) {
     Body& body = bodies_[b];
-    const Vector rate = s.R[b].transpose() * angular_part(v);
+    const Vector rate = transposed_times(s.R[b], angular_part(v));
     const Eigen::Quaternion<T> half(T(0), rate[0] / 2, rate[1] / 2, rate[2] / 2);
     body.slope = {linear_part(v), Eigen::Quaternion<T>(s.q[b] * half).coeffs(), linear_part(a),
-                  s.R[b].transpose() * angular_part(a)};
+                  transposed_times(s.R[b], angular_part(a))};
     body.sum.x += weight * body.slope.x;
     body.sum.q += weight * body.slope.q;
     body.sum.v += weight * body.slope.v;

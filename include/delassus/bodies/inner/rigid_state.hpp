@@ -44,13 +44,13 @@ struct RigidState {
   /// R and R I⁻¹ Rᵀ of the present orientation.
   void turn(Index b) {
     R[b] = rotation_matrix<T>(q[b]);
-    inverse_inertia_world[b] = R[b] * inverse_inertia[b] * R[b].transpose();
+    inverse_inertia_world[b] = times_transposed<T>(R[b] * inverse_inertia[b], R[b]);
   }
 
   /// M v.
   Velocity momentum(Index b, const Velocity& v, T scale) const {
     return twist<T>(scale * mass[b] * linear_part(v),
-                    scale * (R[b] * (inertia[b] * (R[b].transpose() * angular_part(v)))));
+                    scale * (R[b] * (inertia[b] * transposed_times(R[b], angular_part(v)))));
   }
 
   /// M⁻¹ X / mass scale, for each column of X.
@@ -112,11 +112,11 @@ struct RigidState {
   /// Kick and drift: the same after the impulses, the free rotation by turns.
   bool drift(Index b, Velocity& v, const Velocity& next, T h, RotationSplitting) {
     const Vec3 moved = x[b] + Vector(h * linear_part(next)).template cast<double>();
-    const Vector spatial = R[b] * (inertia[b] * (R[b].transpose() * angular_part(next)));
+    const Vector spatial = R[b] * (inertia[b] * transposed_times(R[b], angular_part(next)));
     const Eigen::Quaternion<T> turned = turn_freely<T>(inverse_inertia[b], q[b], spatial, h);
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
     put(b, moved, turned);
-    v = twist<T>(linear_part(next), R[b] * own_rate(b, R[b].transpose() * spatial));
+    v = twist<T>(linear_part(next), R[b] * own_rate(b, transposed_times(R[b], spatial)));
     return true;
   }
 
@@ -128,10 +128,10 @@ bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old
   const Vec3 old_x = x[b];
   const Eigen::Quaternion<T> old_q = q[b];
   // L = R I Rᵀ ω after the impulses; the body turns under it and reads ω₊ = R₊ I⁻¹ R₊ᵀ L.
-  const Vector kicked = R[b].transpose() * angular_part(next), impulse = inertia[b] * kicked;
+  const Vector kicked = transposed_times(R[b], angular_part(next)), impulse = inertia[b] * kicked;
   const Vector spatial = R[b] * impulse;
   if (old_share > T(0)) {
-    const Vector start = R[b].transpose() * angular_part(v);
+    const Vector start = transposed_times(R[b], angular_part(v));
     x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
     q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h)));
   } else {
@@ -141,7 +141,7 @@ bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old
   turn(b);
   // Factor by factor: R I⁻¹ Rᵀ as one matrix mixes the rounding of a needle's large entry into the small
   // ones.
-  const Vector rate = R[b] * own_rate(b, R[b].transpose() * spatial);
+  const Vector rate = R[b] * own_rate(b, transposed_times(R[b], spatial));
   // A velocity that is not finite makes x or ω₊ so, and so does a quaternion.
   if (!is_finite(x[b]) || !is_finite(rate)) [[unlikely]] {
     put(b, old_x, old_q);

@@ -23,7 +23,7 @@ struct Difference {
   DifferencePoint core(const Vec3& d) const {
     DifferencePoint p;
     p.a = core_support(a, d);
-    p.b = b_in_a.to_world(core_support(b, Vec3(-(b_in_a.rotation.transpose() * d))));
+    p.b = b_in_a.to_world(core_support(b, Vec3(-transposed_times(b_in_a.rotation, d))));
     p.w = p.a - p.b;
     return p;
   }

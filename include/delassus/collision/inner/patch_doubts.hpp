@@ -66,7 +66,7 @@ class PatchDoubts {
     for (const Answer& a : answers_)
       if (!is_doubtful(a)) limit = a.gap;
     const auto depth_along = [&](const Answer& a) {
-      const Vec3 lowest = pose.to_world(support(shape, Vec3(-(pose.rotation.transpose() * a.normal))));
+      const Vec3 lowest = pose.to_world(support(shape, Vec3(-transposed_times(pose.rotation, a.normal))));
       return dot(a.normal, core_support(surface.triangle(a.triangle), a.normal) - lowest);
     };
     pushes_.clear();
@@ -92,7 +92,7 @@ class PatchDoubts {
                              ? triangle_and_sphere(t, s.size[0], pose.to_world(middle(s)))
                              : GjkEpa::convex(t, s, pose, 0, t.normal);
     if (r.status == PairStatus::near && !(r.distance >= 0)) return false;
-    const Vec3 lowest = pose.to_world(support(s, Vec3(-(pose.rotation.transpose() * t.normal))));
+    const Vec3 lowest = pose.to_world(support(s, Vec3(-transposed_times(pose.rotation, t.normal))));
     return !(t.height(lowest) < 0 && is_over(t, lowest, 0));
   }
 

@@ -47,7 +47,7 @@ struct PosedSurface {
 
   /// Whether no vertex around v lies farther along n, to 0.02 rad: n is in the normal cone of v.
   bool is_farthest(Index v, const Vec3& n) const {
-    const Vec3 own = pose.rotation.transpose() * n, at = surface.vertex(v);
+    const Vec3 own = transposed_times(pose.rotation, n), at = surface.vertex(v);
     bool is_in_cone = true;
     surface.each_around(v, [&](Index w) {
       const Vec3 edge = surface.vertex(w) - at;
@@ -69,7 +69,7 @@ struct PosedSurface {
   /// Whether x, `depth` behind the surface at `foot` whose normal there is n, is to leave that way: no
   /// triangle is nearer, but for those in front of that plane, such as the floor to what is in the wall.
   bool is_way_out(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {
-    const Vec3 at = pose.to_local(x), normal = pose.rotation.transpose() * n, base = pose.to_local(foot);
+    const Vec3 at = pose.to_local(x), normal = transposed_times(pose.rotation, n), base = pose.to_local(foot);
     const Bounds near = Bounds{at, at}.grown(depth);
     bool is_shortest = true;
     surface.visit([&](const Bounds& box) { return is_shortest && box.meets(near); },
@@ -86,7 +86,7 @@ struct PosedSurface {
   /// Whether x, `depth` behind the surface at `foot` whose normal there is n, is nearer to its far side: to a
   /// triangle that looks away from n and is not at the foot, as the other side of a sharp edge is.
   bool is_near_far_side(const Vec3& x, const Vec3& foot, const Vec3& n, double depth) const {
-    const Vec3 at = pose.to_local(x), normal = pose.rotation.transpose() * n, base = pose.to_local(foot);
+    const Vec3 at = pose.to_local(x), normal = transposed_times(pose.rotation, n), base = pose.to_local(foot);
     const Bounds near = Bounds{at, at}.grown(depth);
     bool is_near = false;
     surface.visit([&](const Bounds& box) { return !is_near && box.meets(near); },

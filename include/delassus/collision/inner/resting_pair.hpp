@@ -32,7 +32,7 @@ struct RestingPair : PairMemory {
     margin = up_to;
     shapes = of;
     normal_a = n;
-    normal_b = b_in_a.rotation.transpose() * n;
+    normal_b = transposed_times(b_in_a.rotation, n);
     for (int k = 0; k < count; ++k) {
       gap[k] = dot(n, b_in_a.to_world(point[k].local_b) - point[k].local_a);
       by_id[k] = std::uint8_t(k);

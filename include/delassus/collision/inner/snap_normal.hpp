@@ -27,7 +27,7 @@ NormalOwner snap_normal_to_face(const std::same_as<Shape> auto& a, const Shape& 
     SignedPair trial = kernel;
     trial.normal = normal;
     const Vec3 reach_a = support(a, normal);
-    const Vec3 reach_b = b_in_a.to_world(support(b, Vec3(-(b_in_a.rotation.transpose() * normal))));
+    const Vec3 reach_b = b_in_a.to_world(support(b, Vec3(-transposed_times(b_in_a.rotation, normal))));
     trial.distance = dot(normal, reach_b - reach_a);
     if (!(trial.distance >= kernel.distance - advance)) return;
     const double value = trial.distance + (who == last ? advance : 0.0);
@@ -39,7 +39,7 @@ NormalOwner snap_normal_to_face(const std::same_as<Shape> auto& a, const Shape& 
   };
   const Face face_a = face_towards(a, kernel.normal);
   if (face_a.count >= 3) consider(face_a.normal, NormalOwner::a);
-  const Face face_b = face_towards(b, Vec3(-(b_in_a.rotation.transpose() * kernel.normal)));
+  const Face face_b = face_towards(b, Vec3(-transposed_times(b_in_a.rotation, kernel.normal)));
   if (face_b.count >= 3) consider(Vec3(-(b_in_a.rotation * face_b.normal)), NormalOwner::b);
   return owner;
 }

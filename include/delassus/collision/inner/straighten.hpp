@@ -42,7 +42,7 @@ struct BasicStraighten {
  private:
   static constexpr Scalar nearby = 0.9998;
 
-  Vec3 to_b(const Vec3& d) const { return b_in_a.rotation.transpose() * d; }
+  Vec3 to_b(const Vec3& d) const { return transposed_times(b_in_a.rotation, d); }
 
   /// −h(n), the distance that the unit vector n proves.
   Scalar proven(const Vec3& n) const { return -Difference{a, b, b_in_a}.reach(n); }

@@ -24,7 +24,7 @@ inline Swing swing_to_plane(const Collider& body, const Vec3& up, double height,
   Swing s;
   const auto lowest = [&](double t) {
     const Pose pose = pose_after(body, t);
-    s.arm = pose.rotation * support(body.shape, Vec3(-(pose.rotation.transpose() * up)));
+    s.arm = pose.rotation * support(body.shape, Vec3(-transposed_times(pose.rotation, up)));
     return dot(up, pose.position + s.arm) - height;
   };
   const double level = std::min(lowest(0), 0.0) - target;

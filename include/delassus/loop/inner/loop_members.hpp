@@ -31,7 +31,7 @@ void AnimationLoop<Args...>::memory(auto& archive) {
 
 template <class... Args>
 void AnimationLoop<Args...>::check_policies() const {
-  const auto check = [](const auto& part) {
+  const auto check = [](const auto& part) __attribute__((always_inline)) {
     if constexpr (requires { part.check(); }) part.check();
   };
   this->policies.each_with_defaults(check);
