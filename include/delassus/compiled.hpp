@@ -6,6 +6,7 @@
 #pragma once
 
 #include <delassus/delassus.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
 
 #include <span>
 #include <utility>
@@ -67,6 +68,9 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
       Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const;                                          \
   KIND SolveReport BasicAcceleratedGaussSeidel<Residual, SweepsAlone>::solve(                                                     \
       Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const;                                          \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 3, 6>&) const;                    \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 5, 6>&) const;                    \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 6, 6>&) const;                    \
   KIND class BlockLu<6, double>;
 
 #define DELASSUS_COMPILED_BODIES(KIND)                                                                     \
@@ -79,7 +83,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&,   \
                                                                 const NoFilter&);                                                \
   KIND void CollisionEngine<GjkEpa, BoxTree>::recall_pairs();                                                                    \
-  KIND void CollisionEngine<GjkEpa, BoxTree>::collide(std::span<const Collider>, const Job&, double, const CollisionSettings&,   \
+  KIND void CollisionEngine<GjkEpa, BoxTree>::collide(inner::Slice<const Collider>, const Job&, double, const CollisionSettings&,   \
                                                       RestingPair&, std::vector<ContactPoint>&);                                 \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
 

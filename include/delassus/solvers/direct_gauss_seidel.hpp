@@ -19,6 +19,25 @@
 #include <utility>
 
 namespace delassus {
+namespace inner {
+
+/// Room for the direct path: of constraints of `highest` rows at most, on blocks of `widest` velocities.
+template <class Criterion, class T, int highest, int widest>
+struct DirectSpace {
+  static_assert(widest > 0,
+                "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
+                "solve it by AcceleratedGaussSeidel");
+  DirectSystem<highest, std::max(1, widest)> joints;
+  SchurComplement<T, DirectSystem<highest, std::max(1, widest)>> others;
+  Array<T> before, after;
+  typename SweepsThenNewton<Criterion>::template Space<T> contacts;
+  void reset(Index rows) {
+    contacts.reset(rows);
+    for (auto* impulses : {&before, &after}) impulses->reserve(std::size_t(rows));
+  }
+};
+
+}  // namespace inner
 
 /// The constraints b of an island whose rows are all equalities are met exactly, W_bb δ = −(d + W λ)_b, by
 /// `inner::DirectSystem`: O(n) for chains, trees and loops of n joints, at any ratio of masses. The others c
@@ -49,20 +68,7 @@ struct BasicDirectGaussSeidel {
 
   static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
-  struct Workspace {
-    using T = typename Rows::Scalar;
-    static_assert(Rows::widest > 0,
-                  "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
-                  "solve it by AcceleratedGaussSeidel");
-    inner::DirectSystem<std::max(1, Rows::highest), std::max(1, Rows::widest)> joints;
-    inner::SchurComplement<T, decltype(joints)> others;
-    Array<T> before, after;
-    typename inner::SweepsThenNewton<Criterion>::template Workspace<Rows> contacts;
-    void reset(Index rows) {
-      contacts.reset(rows);
-      for (auto* impulses : {&before, &after}) impulses->reserve(std::size_t(rows));
-    }
-  };
+  using Workspace = inner::DirectSpace<Criterion, typename Rows::Scalar, std::max(1, Rows::highest), Rows::widest>;
 
   void check() const {
     inner::expect_at_least_zero("DirectGaussSeidel: tolerance", tolerance);

@@ -27,23 +27,25 @@ struct NewtonInImpulses {
   int max_factorizations = 100;
 
   static constexpr Needs needs = Needs::sweeps;
-  template <class Rows>
-  struct Workspace {
-    ContactSpace<typename Rows::Scalar> space;
-    Array<typename Rows::Scalar> best;
-    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+  template <class T>
+  struct Space {
+    ContactSpace<T> space;
+    Array<T> best;
+    SweepSpace<T, SweepsAlone::Space<T, 0>> sweeps;
     void reset(Index rows) {
       sweeps.reset(rows);
       best.reserve(std::size_t(rows));
     }
   };
+  template <class Rows>
+  using Workspace = Space<typename Rows::Scalar>;
 
   /// What a factorization takes with all around it, in sweeps on a dense W of n rows, n² multiplications
   /// each: n³/3, some three products for the matrix, and those of the halved steps.
   static double cost_in_sweeps(int rows) { return rows / 3.0 + 10; }
 
-  template <class T, class Space>
-  SolveReport solve(Island<T>& problem, Space& work) const {
+  template <class T>
+  SolveReport solve(Island<T>& problem, Space<T>& work) const {
     SolveReport report = sweeps.solve(problem, work.sweeps);
     if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
     if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem)) {
@@ -59,8 +61,8 @@ struct NewtonInImpulses {
   }
 
  private:
-  template <class T, class Space>
-  void descend(Island<T>& problem, Space& work, SolveReport& report) const {
+  template <class T>
+  void descend(Island<T>& problem, Space<T>& work, SolveReport& report) const {
     auto& space = work.space;
     const int rows = problem.row_count();
     double epsilon = 1e-4, last = Criterion::sum(report.measure);

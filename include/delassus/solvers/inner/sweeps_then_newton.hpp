@@ -24,23 +24,23 @@ struct SweepsThenNewton {
   static constexpr int first = 400;
   BasicAcceleratedGaussSeidel<Criterion> sweeps;  ///< and how many in all
 
-  template <class Rows>
-  struct Workspace {
-    typename Newton::template Workspace<Rows> newton;
-    Array<typename Rows::Scalar> best;
+  template <class T>
+  struct Space {
+    typename Newton::template Space<T> newton;
+    Array<T> best;
     /// What Newton's method needs is made where it acts.
     void reset(Index rows) { newton.sweeps.reset(rows); }
   };
 
-  template <class T, class Space>
-  SolveReport solve(Island<T>& problem, Space& work) const {
+  template <class T>
+  SolveReport solve(Island<T>& problem, Space<T>& work) const {
     const int most = factorizations(problem);
     return most > 0 ? solve(problem, work, most) : sweeps.solve(problem, work.newton.sweeps);
   }
 
  private:
-  template <class T, class Space>
-  SolveReport solve(Island<T>& problem, Space& work, int factorizations) const {
+  template <class T>
+  SolveReport solve(Island<T>& problem, Space<T>& work, int factorizations) const {
     SolveReport report = newton(first, factorizations).solve(problem, work.newton);
     const auto goes_on = [&] { return report.status == Status::max_iterations && !problem.is_out_of_time(); };
     if (report.factorizations > 0 && goes_on()) {
