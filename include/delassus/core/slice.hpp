@@ -10,6 +10,7 @@ namespace delassus::inner {
 template <class T>
 class Slice {
  public:
+  [[gnu::always_inline]] Slice() : data_(nullptr), size_(0) {}
   [[gnu::always_inline]] Slice(T* data, std::size_t size) : data_(data), size_(size) {}
   template <class List>
     requires requires(List& list, T*& to) { to = list.data(); }
