@@ -54,11 +54,11 @@ struct Scene {
     auto& pool = rows.pool<0>();
     pool.reset(12);
     for (Index i = 0; i < 12; ++i) {
-      auto& on_rigid = std::get<0>(pool.sets);
+      auto& on_rigid = inner::part<0>(pool.sets);
       if (i % 4 == 0)
         on_rigid.block.push_back(0),
             on_rigid.H.push_back(Mat<3, 6>::NullaryExpr([&] { return draw(random); }));
-      auto& on_soft = std::get<1>(pool.sets);
+      auto& on_soft = inner::part<1>(pool.sets);
       for (Index k = 0; k <= i % 3; ++k) {
         on_soft.block.push_back(Index(random() % 54));
         on_soft.H.push_back(Mat3::NullaryExpr([&] { return draw(random); }));
@@ -95,7 +95,7 @@ struct Whole {
         for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
           H.block(3 * i, at + width * set.block[e], 3, width) += set.H[e];
       };
-      put(std::get<0>(pool.sets), 0, 6), put(std::get<1>(pool.sets), 6, 3);
+      put(inner::part<0>(pool.sets), 0, 6), put(inner::part<1>(pool.sets), 6, 3);
     }
     DenseMatrix A{Eigen::MatrixXd::Zero(n, n)};
     soft.each_system([&](Index, auto, const auto& body, const auto&) { body.enter(A); });

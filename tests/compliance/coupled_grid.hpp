@@ -80,7 +80,7 @@ struct Alone {
 template <class Pool>
 void add_item(Pool& pool, std::span<const Index> nodes, std::mt19937& random) {
   std::uniform_real_distribution<double> draw(-1, 1);
-  auto& blocks = std::get<0>(pool.sets);
+  auto& blocks = inner::part<0>(pool.sets);
   for (const Index node : nodes) {
     blocks.block.push_back(node);
     blocks.H.emplace_back().setZero();

@@ -52,8 +52,8 @@ double violation_after(const auto& loop) {
     const auto add = [&](const auto& blocks, const auto& v) {
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) u += blocks.H[e] * v[blocks.block[e]];
     };
-    add(std::get<0>(pool.sets), bodies<RigidBodies>(loop.world()).v_next);
-    add(std::get<1>(pool.sets), bodies<Soft>(loop.world()).v_next);
+    add(inner::part<0>(pool.sets), bodies<RigidBodies>(loop.world()).v_next);
+    add(inner::part<1>(pool.sets), bodies<Soft>(loop.world()).v_next);
     return Vec3(h * u);
   };
   const auto& contacts = problem.rows.template pool<0>();

@@ -85,8 +85,8 @@ struct Written {
     law.linearize(item, world, RowWriter(world, rows, 0));
     rows.close();
     phi = rows.phi[0];
-    const auto& rigid = std::get<0>(rows.sets);
-    const auto& points = std::get<1>(rows.sets);
+    const auto& rigid = inner::part<0>(rows.sets);
+    const auto& points = inner::part<1>(rows.sets);
     for (std::size_t e = 0; e < rigid.block.size(); ++e)
       H.template middleCols<6>(6 * rigid.block[e]) += rigid.H[e];
     for (std::size_t e = 0; e < points.block.size(); ++e)

@@ -62,7 +62,7 @@ TEST_CASE("W of a rod's joints is H A^-1 H^T of a dense A, and the corrective mo
   linearize_to_build(loop.data());
   const auto problem = loop.problem();
   const auto& pool = problem.rows.template pool<0>();
-  const auto& set = std::get<0>(pool.sets);
+  const auto& set = inner::part<0>(pool.sets);
   const auto W = problem.W.template blocks<0, 0>();
   double worst = 0, size = 0;
   for (Index j = 0; j < 2; ++j)

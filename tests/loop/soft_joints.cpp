@@ -112,8 +112,8 @@ Dense dense_jacobian(const Problem& problem, Index nodes) {
         for (int l = 0; l < width; ++l) H(3 * i + k, first + width * set.block[e] + l) += set.H[e](k, l);
   };
   for (Index i = 0; i < pool.items(); ++i) {
-    add(std::get<0>(pool.sets), i, 6, 0);
-    add(std::get<1>(pool.sets), i, 3, 6);
+    add(inner::part<0>(pool.sets), i, 6, 0);
+    add(inner::part<1>(pool.sets), i, 3, 6);
   }
   return H;
 }

@@ -19,8 +19,8 @@ struct Graph {
     auto& pool = rows.pool<p>();
     pool.phi.emplace_back();
     for (const Index b : held) {
-      std::get<0>(pool.sets).block.push_back(b);
-      std::get<0>(pool.sets).H.emplace_back();
+      inner::part<0>(pool.sets).block.push_back(b);
+      inner::part<0>(pool.sets).H.emplace_back();
     }
     pool.close();
   }

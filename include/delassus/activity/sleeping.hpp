@@ -255,7 +255,7 @@ class Sleepers {
       each_pool(rows, [&](auto p, const auto& pool) {
         for (const Index i : islands.items(p, k))
           world.each([&](const auto& set, auto s) {
-            const auto& blocks = std::get<s>(pool.sets);
+            const auto& blocks = inner::part<s>(pool.sets);
             for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
               if (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]])) island_quiet_[k] = 0;
           });

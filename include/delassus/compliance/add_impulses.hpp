@@ -21,7 +21,7 @@ void add_impulses(const Set& set, const Rows& rows, std::span<typename Set::Velo
     for (auto& x : scratch) set_all(x, typename Set::Scalar(0));
   }
   each_pool(rows, [&](auto, const auto& pool) {
-    const auto& blocks = std::get<s>(pool.sets);
+    const auto& blocks = inner::part<s>(pool.sets);
     for (Index i = 0; i < pool.items(); ++i)
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
         if (is_coupled) scratch[blocks.block[e]] += blocks.H[e].transpose() * pool.lambda[i];

@@ -64,7 +64,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     constexpr int Ra = Rows::template rows_of<p>;
     Vec<Ra, Sum> r = pool.d[i].template cast<Sum>();
     for_each_index<Rows::set_count>([&](auto s) {
-      const auto& set = std::get<s>(pool.sets);
+      const auto& set = inner::part<s>(pool.sets);
       const auto& y = std::get<s>(y_);
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) r += set.H[e].template cast<Sum>() * y[set.block[e]];
     });
@@ -76,7 +76,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   [[gnu::always_inline]] void commit(const Rows& rows, Index i, const Vec<Rows::template rows_of<p>, T>& change) {
     const auto& pool = rows.template pool<p>();
     for_each_index<Rows::set_count>([&](auto s) {
-      const auto& set = std::get<s>(pool.sets);
+      const auto& set = inner::part<s>(pool.sets);
       auto& y = std::get<s>(y_);
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) 
         y[set.block[e]] += set.G[e].template cast<Sum>() * change.template cast<Sum>();
@@ -100,7 +100,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
       auto& W = diagonal[i];
       W.setZero();
       for_each_index<Rows::set_count>([&](auto s) {
-        const auto& set = std::get<s>(pool.sets);
+        const auto& set = inner::part<s>(pool.sets);
         for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
           for (Index f = set.offset[i]; f < set.offset[i + 1]; ++f)
             if (set.block[e] == set.block[f]) W += set.H[e] * set.G[f];

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <delassus/constraints/pool.hpp>
+#include <delassus/core/pack.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <tuple>
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -22,27 +23,27 @@ class Constraints {
   Constraints() = default;
   explicit Constraints(Laws... laws)
     requires(sizeof...(Laws) > 0)
-      : pools_{Pool<Laws>{std::move(laws)}...} {}
+      : pools_{{Pool<Laws>{std::move(laws)}}...} {}
 
   template <int p>
   auto& pool() {
-    return std::get<p>(pools_);
+    return inner::part<std::size_t(p)>(pools_);
   }
   template <int p>
   const auto& pool() const {
-    return std::get<p>(pools_);
+    return inner::part<std::size_t(p)>(pools_);
   }
   template <class Law>
   auto& of() {
-    return std::get<place_of<Law>()>(pools_);
+    return inner::part<place_of<Law>()>(pools_);
   }
   template <class Law>
   const auto& of() const {
-    return std::get<place_of<Law>()>(pools_);
+    return inner::part<place_of<Law>()>(pools_);
   }
 
   static void each_array(auto& self, auto&& f) {
-    std::apply([&](auto&... p) { (p.each_array(p, f), ...); }, self.pools_);
+    self.pools_.each([&](auto& p) { p.each_array(p, f); });
   }
 
   /// The law whose items are of this type, or void.
@@ -73,7 +74,7 @@ class Constraints {
     return place;
   }
 
-  [[no_unique_address]] std::tuple<Pool<Laws>...> pools_;
+  [[no_unique_address]] inner::Pack<Pool<Laws>...> pools_;
 };
 
 template <class... Laws>

@@ -66,8 +66,8 @@ class Islands {
 
  private:
   void join(const auto& pool, Index item, std::span<const Index> first_block, const auto& moves, Index& seen) {
-    for_each_index<int(std::tuple_size_v<decltype(pool.sets)>)>([&](auto s) {
-      const auto& set = std::get<s>(pool.sets);
+    for_each_index<std::remove_cvref_t<decltype(pool)>::set_count>([&](auto s) {
+      const auto& set = inner::part<s>(pool.sets);
       for (Index e = set.offset[item]; e < set.offset[item + 1]; ++e) {
         if (!moves(s, set.block[e])) continue;
         const Index b = first_block[s] + set.block[e];

@@ -4,10 +4,11 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/pack.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/rows/block_array.hpp>
 
-#include <array>
-#include <tuple>
+#include <cstddef>
 
 namespace delassus {
 
@@ -19,8 +20,8 @@ template <int R, int w, class T>
 struct SetBlocks {
   Array<Index> offset{0};
   Array<Index> block;
-  Array<Mat<R, w, T>> H;
-  Array<Mat<w, R, T>> G;
+  BlockArray<Mat<R, w, T>> H;
+  BlockArray<Mat<w, R, T>> G;
 
   static void each_array(auto& self, auto&& f) { f(self.offset), f(self.block), f(self.H), f(self.G); }
   void reset() {
@@ -37,40 +38,33 @@ struct SetBlocks {
 /// W_kk) join W's diagonal.
 template <int R, class T, int... widths>
 struct PoolRows {
-  static constexpr int rows = R;
+  static constexpr int rows = R, set_count = int(sizeof...(widths));
   using Scalar = T;
 
-  std::tuple<SetBlocks<R, widths, T>...> sets;
-  Array<Vec<R, T>> phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda;
+  inner::Pack<SetBlocks<R, widths, T>...> sets;
+  BlockArray<Vec<R, T>> phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda;
 
   Index items() const { return Index(phi.size()); }
 
   /// The rows of `items` items, all zero and without entries. The items are closed one by one, in order.
   void reset(Index items) {
     if (items == 0 && phi.empty()) return;  // a law without items, step after step
-    std::apply([](auto&... s) { (s.reset(), ...); }, sets);
-    for (auto* array : fields(*this)) {
-      array->resize(items);
-      for (auto& x : *array) x.setZero();
-    }
+    sets.each([](auto& s) __attribute__((always_inline)) { s.reset(); });
+    for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &relative_compliance, &d, &lambda})
+      array->assign_zeros(std::size_t(items));
   }
 
   /// f(array) for all arrays, whose room somebody wants to know or to make.
   static void each_array(auto& self, auto&& f) {
-    std::apply([&](auto&... s) { (s.each_array(s, f), ...); }, self.sets);
-    for (auto* array : fields(self)) f(*array);
+    self.sets.each([&](auto& s) { s.each_array(s, f); });
+    for (auto* array : {&self.phi, &self.stiffness, &self.damping, &self.bias, &self.compliance, &self.relative_compliance, &self.d,
+                        &self.lambda})
+      f(*array);
   }
 
   /// The entries of the next item end here in every set.
   void close() {
-    std::apply([](auto&... s) { (s.offset.push_back(Index(s.block.size())), ...); }, sets);
-  }
-
- private:
-  /// The arrays with one entry an item.
-  static auto fields(auto& self) {
-    return std::array{&self.phi,        &self.stiffness, &self.damping, &self.bias,
-                      &self.compliance, &self.relative_compliance,  &self.d,       &self.lambda};
+    sets.each([](auto& s) __attribute__((always_inline)) { s.offset.push_back(Index(s.block.size())); });
   }
 };
 

@@ -15,7 +15,7 @@ template <int R, class T, int... w, class World, class Member>
 Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, const Member& member) {
   auto u = zero<Vec<R, T>>();
   world.each([&](const auto& set, auto s) {
-    const auto& blocks = std::get<s>(pool.sets);
+    const auto& blocks = inner::part<s>(pool.sets);
     const auto& v = member(set);
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) u += blocks.H[e] * v[blocks.block[e]];
   });
@@ -32,7 +32,7 @@ template <int R, class T, int... w, class... Arrays>
 Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const std::tuple<Arrays...>& x) {
   auto u = zero<Vec<R, T>>();
   for_each_index<int(sizeof...(Arrays))>([&](auto s) {
-    const auto& blocks = std::get<s>(pool.sets);
+    const auto& blocks = inner::part<s>(pool.sets);
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
       u += blocks.H[e] * std::get<s>(x)[blocks.block[e]];
   });

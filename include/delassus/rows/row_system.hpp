@@ -1,6 +1,7 @@
 /// All rows of one step: one PoolRows per pool of constraints.
 #pragma once
 
+#include <delassus/core/pack.hpp>
 #include <delassus/rows/pool_rows.hpp>
 
 #include <algorithm>
@@ -34,28 +35,30 @@ struct RowSystem<T, Widths<w...>, R...> {
   /// The most velocities per block, and rows per item.
   static constexpr int widest = std::max({0, w...}), highest = std::max({0, R...});
 
-  std::tuple<PoolRows<R, T, w...>...> pools;
+  inner::Pack<PoolRows<R, T, w...>...> pools;
 
   template <int p>
   auto& pool() {
-    return std::get<p>(pools);
+    return inner::part<p>(pools);
   }
   template <int p>
   const auto& pool() const {
-    return std::get<p>(pools);
+    return inner::part<p>(pools);
   }
 
   /// No item in any pool.
   void reset() {
-    std::apply([](auto&... p) { (p.reset(0), ...); }, pools);
+    pools.each([](auto& p) { p.reset(0); });
   }
 
   static void each_array(auto& self, auto&& f) {
-    std::apply([&](auto&... p) { (p.each_array(p, f), ...); }, self.pools);
+    self.pools.each([&](auto& p) { p.each_array(p, f); });
   }
 
   Index row_count() const {
-    return std::apply([](const auto&... p) { return (Index(0) + ... + (p.items() * p.rows)); }, pools);
+    Index count = 0;
+    pools.each([&](const auto& p) __attribute__((always_inline)) { count += p.items() * p.rows; });
+    return count;
   }
 };
 

@@ -5,18 +5,16 @@
 #include <delassus/rows/pool_rows.hpp>
 #include <delassus/rows/row_view.hpp>
 
-#include <tuple>
+#include <type_traits>
 
 namespace delassus::inner {
 
 /// The numbers of a list of small matrices.
-template <class M>
-[[gnu::always_inline]] inline auto* numbers_of(Array<M>& list) {
-  return reinterpret_cast<typename M::Scalar*>(list.data());
-}
-template <class M>
-[[gnu::always_inline]] inline const auto* numbers_of(const Array<M>& list) {
-  return reinterpret_cast<const typename M::Scalar*>(list.data());
+template <class List>
+[[gnu::always_inline]] inline auto* numbers_of(List& list) {
+  using M = typename List::value_type;
+  if constexpr (std::is_const_v<List>) return reinterpret_cast<const typename M::Scalar*>(list.data());
+  else return reinterpret_cast<typename M::Scalar*>(list.data());
 }
 
 template <int R, int w, class T>
@@ -38,7 +36,7 @@ void show_rows(PoolRows<R, T, w...>& rows, int pool, RowView<T>& view, SetBlocks
   view.relative_compliance = numbers_of(rows.relative_compliance);
   view.set = sets;
   view.sets = int(sizeof...(w));
-  std::apply([&](const auto&... s) { (show_set(s, *sets++), ...); }, rows.sets);
+  rows.sets.each([&](const auto& s) __attribute__((always_inline)) { show_set(s, *sets++); });
 }
 
 }  // namespace delassus::inner

@@ -19,7 +19,7 @@ class RowEnd {
   RowEnd(const World& world, Pool& pool, const Anchor& anchor, const Vec3& point)
       : world_(world), pool_(pool), anchor_(anchor), point_(point) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      auto& blocks = std::get<s>(pool_.sets);
+      auto& blocks = inner::part<s>(pool_.sets);
       first_ = Index(blocks.block.size());
       const int count = set.anchor_blocks(anchor_);
       for (int k = 0; k < count; ++k) {
@@ -32,7 +32,7 @@ class RowEnd {
   /// Row k sees the velocity of the point along `direction`: u_k += direction · v(point).
   void along(int k, const Vec3& direction) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      auto& blocks = std::get<s>(pool_.sets);
+      auto& blocks = inner::part<s>(pool_.sets);
       const int count = set.anchor_blocks(anchor_);
       for (int b = 0; b < count; ++b)
         add_to_row(blocks.H[first_ + b], k, set.along(anchor_, b, point_, direction));
@@ -43,7 +43,7 @@ class RowEnd {
   template <int n>
   void along(const Mat<n, 3>& axes, double sign) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      auto& blocks = std::get<s>(pool_.sets);
+      auto& blocks = inner::part<s>(pool_.sets);
       const int count = set.anchor_blocks(anchor_);
       for (int b = 0; b < count; ++b)
         for_each_index<n>([&](auto row) {
@@ -61,7 +61,7 @@ class RowEnd {
       using Set = std::remove_cvref_t<decltype(set)>;
       if constexpr (HasInverseInertia<Set> && Set::width == 6) {
         if (set.anchor_blocks(anchor_) == 0) return;
-        auto& H = std::get<s>(pool_.sets).H[first_];
+        auto& H = inner::part<s>(pool_.sets).H[first_];
         const Vec3 r = sign * (point_ - set.centre(anchor_.block));
         const Mat<3, 3, T> cross = skew(Vec<3, T>(r.template cast<T>()));
         for (int k = 0; k < 3; ++k) {
@@ -78,7 +78,7 @@ class RowEnd {
   void about(int k, const Vec3& axis) {
     world_.visit(anchor_.set, [&](const auto& set, auto s) {
       if constexpr (requires { set.about(anchor_, 0, axis); }) {
-        auto& blocks = std::get<s>(pool_.sets);
+        auto& blocks = inner::part<s>(pool_.sets);
         const int count = set.anchor_blocks(anchor_);
         for (int b = 0; b < count; ++b)
           add_to_row(blocks.H[first_ + b], k, set.about(anchor_, b, axis));

@@ -22,7 +22,7 @@ template <int R, class T, int... w, class World>
 Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& world) {
   bool is_led = false;
   world.each([&](const auto& set, auto s) {
-    const auto& blocks = std::get<s>(pool.sets);
+    const auto& blocks = inner::part<s>(pool.sets);
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
       is_led = is_led || (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]]));
   });
@@ -72,7 +72,7 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
     using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
     constexpr auto kinds = row_kinds<Law>();
     for (Index i = 0; i < pool.items(); ++i) {
-      auto& own = std::get<p>(fade.pools)[i];
+      auto& own = inner::part<p>(fade.pools)[i];
       set_zero(own);
       if constexpr (ContactLaw<Law>) continue;
       const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
@@ -100,7 +100,7 @@ bool reject_damping(Rows& rows, const Operator& W, const Islands<pools>& islands
                    Impulses<Rows>& fade) {
   double work = 0, effort = 0;
   inner::each_item(islands, island, [&](auto p, Index i) {
-    work += 0.5 * double(rows.template pool<p>().lambda[i].dot(std::get<p>(fade.pools)[i]));
+    work += 0.5 * double(rows.template pool<p>().lambda[i].dot(inner::part<p>(fade.pools)[i]));
   });
   if (!(work > 0)) return false;
   inner::each_item(islands, island, [&](auto p, Index i) {
@@ -109,8 +109,8 @@ bool reject_damping(Rows& rows, const Operator& W, const Islands<pools>& islands
   });
   if (!(work > 0.01 * effort)) return false;
   inner::each_item(islands, island, [&](auto p, Index i) {
-    rows.template pool<p>().d[i] += std::get<p>(fade.pools)[i];
-    std::get<p>(fade.pools)[i].setZero();
+    rows.template pool<p>().d[i] += inner::part<p>(fade.pools)[i];
+    inner::part<p>(fade.pools)[i].setZero();
   });
   return true;
 }

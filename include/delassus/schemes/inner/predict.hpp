@@ -20,7 +20,7 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
   predicted.resize_like(rows);
   for_each_index<Rows::pool_count>([&](auto p) {
     for (Index i = 0; i < rows.template pool<p>().items(); ++i)
-      std::get<p>(predicted.pools)[i] = inner::response<p>(W, rows, i);
+      inner::part<p>(predicted.pools)[i] = inner::response<p>(W, rows, i);
   });
   world.each([&](auto& set, auto s) {
     for (auto& v : set.v_next) set_zero(v);
@@ -29,7 +29,7 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
   });
   each_pool(rows, [&](auto p, auto& pool) {
     for (Index i = 0; i < pool.items(); ++i) {
-      auto& response = std::get<p>(predicted.pools)[i];
+      auto& response = inner::part<p>(predicted.pools)[i];
       pool.d[i] += inner::next_rate(pool, i, world) - response;
       response = pool.lambda[i];
     }
@@ -40,7 +40,7 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
 template <class Rows, class Kept>
 void subtract_predicted(Rows& rows, Kept& predicted) {
   each_pool(rows, [&](auto p, auto& pool) {
-    auto& kept = std::get<p>(predicted.pools);
+    auto& kept = inner::part<p>(predicted.pools);
     pool.lambda.swap(kept);  // λ₀ in λ, the total kept
     for (Index i = 0; i < pool.items(); ++i) pool.lambda[i] = kept[i] - pool.lambda[i];
   });

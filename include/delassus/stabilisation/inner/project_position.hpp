@@ -96,8 +96,8 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   auto& rows = step.rows;
   const auto exchange = [&] {
     each_pool(rows, [&](auto p, auto& pool) {
-      pool.lambda.swap(std::get<p>(own.lambda.pools));
-      pool.d.swap(std::get<p>(own.d.pools));
+      pool.lambda.swap(inner::part<p>(own.lambda.pools));
+      pool.d.swap(inner::part<p>(own.d.pools));
     });
   };
   own.lambda.resize_like(rows);

@@ -25,7 +25,7 @@ template <class World, class Rows, class Answer>
 void answer_ends(const World& world, Rows& rows, const Rows& from, const Answer& answer) {
   world.each([&](const auto& set, auto s) {
     each_pool(rows, [&](auto p, auto& pool) {
-      auto& ends = std::get<s>(pool.sets);
+      auto& ends = inner::part<s>(pool.sets);
       const auto& H = std::get<s>(from.template pool<p>().sets).H;
       ends.G.resize(H.size());
       for (std::size_t e = 0; e < H.size(); ++e) {
@@ -76,7 +76,7 @@ class Equalities {
     lambda.resize_like(rows);
     each_pool(rows, [&](auto p, const auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) {
-        auto& out = std::get<p>(lambda.pools)[i];
+        auto& out = inner::part<p>(lambda.pools)[i];
         out.setZero();
         bool any = false;
         for (int k = 0; k < pool.rows; ++k) any = any || is_soft(pool, i, k);
@@ -137,7 +137,7 @@ class Equalities {
   template <class To>
   static void push_all(const Rows& rows, const Impulses<Rows>& lambda, To&& to) {
     each_pool(rows, [&](auto p, const auto& pool) {
-      for (Index i = 0; i < pool.items(); ++i) push<p>(rows, i, std::get<p>(lambda.pools)[i], to);
+      for (Index i = 0; i < pool.items(); ++i) push<p>(rows, i, inner::part<p>(lambda.pools)[i], to);
     });
   }
 

@@ -87,13 +87,13 @@ class MidpointHold {
     if (part.factorizations > 0 && !yields) newton_.take_least(world, rows);
     newton_.go(world, h);
     total_.add(newton_.impulses);
-    for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(std::get<p>(newton_.impulses.pools), h); });
+    for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(inner::part<p>(newton_.impulses.pools), h); });
     return true;
   }
 
   template <int p>
   void keep_force(const auto& lambda, double h) {
-    for (std::size_t i = 0; i < lambda.size(); ++i) std::get<p>(force_.pools)[i] = lambda[i] / T(h);
+    for (std::size_t i = 0; i < lambda.size(); ++i) inner::part<p>(force_.pools)[i] = lambda[i] / T(h);
   }
   /// λ of a step of h by the forces of the last part.
   void guess(double h) {

@@ -90,8 +90,8 @@ class MidpointNewton {
     apart_ = Equalities<Rows>::worst(rows);
     for (auto* all : {&start_, &yield_}) all->resize_like(rows);
     for_each_index<Rows::pool_count>([&](auto p) {
-      std::get<p>(start_.pools) = rows.template pool<p>().phi;
-      for (auto& x : std::get<p>(yield_.pools)) x.setZero();
+      inner::part<p>(start_.pools) = rows.template pool<p>().phi;
+      for (auto& x : inner::part<p>(yield_.pools)) x.setZero();
     });
   }
 
@@ -164,7 +164,7 @@ class MidpointNewton {
     impulse_ = force_;
     each_pool(rows, [&](auto p, auto& pool) {
       for (Index i = 0; i < pool.items(); ++i) {
-        const auto& lambda = std::get<p>(impulses.pools)[i];
+        const auto& lambda = inner::part<p>(impulses.pools)[i];
         world.each([&](auto& set, auto s) {
           each_push<p>(set, s, i, lambda, [&](Index b, const auto& by) {
             std::get<s>(impulse_)[b] += by;
@@ -172,8 +172,8 @@ class MidpointNewton {
           });
         });
         for (int k = 0; k < pool.rows; ++k) {
-          pool.compliance[i][k] = std::get<p>(yield_.pools)[i][k];
-          soften(pool, i, k, double(std::get<p>(start_.pools)[i][k]), h);
+          pool.compliance[i][k] = inner::part<p>(yield_.pools)[i][k];
+          soften(pool, i, k, double(inner::part<p>(start_.pools)[i][k]), h);
           pool.bias[i][k] += pool.phi[i][k] + pool.compliance[i][k] * lambda[k];
           most = std::max(most, std::abs(double(pool.bias[i][k])) / h);
         }
@@ -207,7 +207,7 @@ class MidpointNewton {
     each_pool(rows, [&](auto p, const auto& pool) {
       for (Index i = 0; i < pool.items(); ++i)
         world.each([&](auto& set, auto s) {
-          each_push<p>(set, s, i, std::get<p>(impulses.pools)[i], [&](Index b, const auto& by) {
+          each_push<p>(set, s, i, inner::part<p>(impulses.pools)[i], [&](Index b, const auto& by) {
             each_end(laws.template pool<p>().item(i), [&](const Anchor& end) {
               if (end.set == s && end.block == b)
                 std::get<s>(bodies_).stiffen(b, linear_part(by), end.local.template cast<T>(), T(h));
@@ -253,7 +253,7 @@ class MidpointNewton {
     const auto& pool = rows.template pool<p>();
     Vec<Rows::template rows_of<p>, T> r = pool.bias[i];
     world.each([&](const auto& set, auto s) {
-      const auto& blocks = std::get<s>(pool.sets);
+      const auto& blocks = inner::part<s>(pool.sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         if (set.moves(blocks.block[e]))
           r.noalias() -= blocks.H[e] * std::get<s>(bodies_).answer_to_missing(blocks.block[e]);
@@ -269,7 +269,7 @@ class MidpointNewton {
       const Index i = system_.node(k).item;
       Vec<Rows::template rows_of<p>, T> change;
       for (int r = 0; r < change.size(); ++r) change[r] = T(system_.answer(k)[r]);
-      std::get<p>(impulses.pools)[i] += change;
+      inner::part<p>(impulses.pools)[i] += change;
       for_each_index<Rows::set_count>([&](auto s) {
         const auto& blocks = std::get<s>(middle_.template pool<p>().sets);
         for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)

@@ -105,7 +105,7 @@ class RattleStep {
     if (!equalities_.factor(rows)) return;
     equalities_.solve(
         rows, [&](auto p, Index i) { return inner::next_rate(rows.template pool<p>(), i, world); },
-        [&](auto p, Index i, const auto& change) { std::get<p>(first_.pools)[i] += change; });
+        [&](auto p, Index i, const auto& change) { inner::part<p>(first_.pools)[i] += change; });
   }
   template <class Set, class I>
   static void kick(const Set& set, const I& integrator, Array<typename Set::Velocity>& p, double h) {
@@ -153,7 +153,7 @@ class RattleStep {
     if (!equalities_.factor(rows)) return false;
     equalities_.solve(
         rows, [&](auto p, Index i) { return rows.template pool<p>().phi[i]; },
-        [&](auto p, Index i, const auto& change) { std::get<p>(first_.pools)[i] += change; });
+        [&](auto p, Index i, const auto& change) { inner::part<p>(first_.pools)[i] += change; });
     return true;
   }
 
@@ -180,7 +180,7 @@ class RattleStep {
       equalities_.solve(
           rows, [&](auto p, Index i) { return inner::next_rate(rows.template pool<p>(), i, world); },
           [&](auto p, Index i, const auto& change) {
-            std::get<p>(second_.pools)[i] += change;
+            inner::part<p>(second_.pools)[i] += change;
             Equalities<Rows>::template push<p>(rows, i, change, inner::next_of(world));
           });
   }

@@ -109,7 +109,7 @@ class RungeKuttaStep {
         equalities_.solve(
             rows, [&](auto p, Index i) { return missing<p>(rows, i); },
             [&](auto p, Index i, const auto& force) {
-              std::get<p>(lambda_.pools)[i] += T(share) * force;
+              inner::part<p>(lambda_.pools)[i] += T(share) * force;
               Equalities<Rows>::template push<p>(rows, i, force, a_of);
             });
     }
@@ -131,7 +131,7 @@ class RungeKuttaStep {
       look(side * e);
       linearize(world, laws, rows);
       each_pool(rows, [&](auto p, const auto& pool) {
-        auto& out = std::get<p>(turned_.pools);
+        auto& out = inner::part<p>(turned_.pools);
         for (Index i = 0; i < pool.items(); ++i) {
           const auto u = inner::rate(
               pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
@@ -147,7 +147,7 @@ class RungeKuttaStep {
   /// H a + Ḣ v of an item.
   template <int p>
   Vec<Rows::template rows_of<p>, T> missing(const Rows& rows, Index i) const {
-    Vec<Rows::template rows_of<p>, T> r = std::get<p>(turned_.pools)[i];
+    Vec<Rows::template rows_of<p>, T> r = inner::part<p>(turned_.pools)[i];
     for_each_index<World::set_count>([&](auto s) {
       const auto& blocks = std::get<s>(rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)

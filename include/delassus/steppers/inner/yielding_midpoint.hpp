@@ -31,7 +31,7 @@ class YieldingMidpoint : public MidpointNewton<World, Laws, Rows> {
     assemble_masses(world, rows);
     auto& system = this->system_;
     system.each([&](auto p, Index k) {
-      auto& yield = std::get<p>(this->yield_.pools)[system.node(k).item];
+      auto& yield = inner::part<p>(this->yield_.pools)[system.node(k).item];
       for (int r = 0; r < yield.size(); ++r) yield[r] = T(1e-10 * h / 2 * system.node(k).scale[r]);
     });
     this->iterate(world, laws, rows, integrator, h, false, integrator.max_iterations, report);
@@ -45,7 +45,7 @@ class YieldingMidpoint : public MidpointNewton<World, Laws, Rows> {
 
   /// Of rows that depend on each other: λ without the share that no body feels, which else wanders.
   void take_least(World& world, Rows& rows) {
-    const auto lambda = [&](auto p, Index i) -> auto& { return std::get<p>(this->impulses.pools)[i]; };
+    const auto lambda = [&](auto p, Index i) -> auto& { return inner::part<p>(this->impulses.pools)[i]; };
     if (least_.are_least(this->system_, lambda)) return;
     assemble_masses(world, rows);
     least_.find(this->system_, lambda);
