@@ -13,7 +13,7 @@ namespace delassus {
 /// With Δv = A⁻¹ Hᵀ λ: d ← d₀ + H Δv − W̃ λ. True when that changed d by more than the operator allows, so
 /// that λ is to be found again.
 template <class Step>
-bool refine(Step& step) {
+bool correct_free_velocity(Step& step) {
   auto& world = step.world();
   auto& rows = step.rows;
   auto& W = step.W;
@@ -49,7 +49,7 @@ struct RefinedStages : Base {
   }
   static void solve_islands(auto& step, auto& observer) {
     do Base::solve_islands(step, observer);
-    while (refine(step));
+    while (correct_free_velocity(step));
     step.compliance().report = step.W.report();
     if (!step.W.is_settled()) step.summary.status = worse(step.summary.status, Status::max_iterations);
   }
