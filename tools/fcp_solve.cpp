@@ -77,7 +77,7 @@ Result run(FrictionProblem& problem, const Solver& solver, double time_limit) {
     const double before = clock.now();
     LawSet<std::remove_cvref_t<decltype(problem.laws)>, double> book(problem.laws);
     typename WithDeadline<Solver>::template Workspace<FrictionProblem::Rows> workspace;
-    workspace.reset(problem.rows);
+    workspace.reset(problem.rows.row_count());
     book.prepare(problem.W, problem.rows, problem.h);
     const double built = clock.now();
     NoObserver nobody;

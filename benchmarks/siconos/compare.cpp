@@ -121,7 +121,7 @@ double solve_own(FrictionProblem& p, const Solver& solver, Result& result) {
   const double begin = clock.now();
   Book book(p.laws);
   typename Solver::template Workspace<FrictionProblem::Rows> workspace;
-  if constexpr (requires { workspace.reset(p.rows); }) workspace.reset(p.rows);
+  if constexpr (requires { workspace.reset(Index()); }) workspace.reset(p.rows.row_count());
   book.prepare(p.W, p.rows, p.h);
   const double built = clock.now();
   NoObserver nobody;

@@ -18,12 +18,17 @@ namespace delassus::inner {
 template <class T, int width_>
 class WholeSystem : public NewtonSystem<T, width_> {
   using Base = NewtonSystem<T, width_>;
-  using Base::constraints_, Base::pairs_, Base::sides_, Base::most_rows;
 
  public:
+  using Base::most_rows;
   using typename Base::Constraint, typename Base::Velocities;
   using Base::width;
   static constexpr Index most = 400;  ///< constraints
+
+ protected:
+  using Base::constraints_, Base::pairs_, Base::sides_;
+
+ public:
 
   /// False where Newton's method cannot act, or where blocks are coupled and there are more constraints than `most`
   /// or one with more rows than a block.
