@@ -53,7 +53,7 @@ struct World {
 Rows contacts_on(const Box& box, Index contacts, Index nodes) {
   Rows rows;
   rows.pool<0>().reset(contacts);
-  auto& blocks = std::get<0>(rows.pool<0>().sets);
+  auto& blocks = inner::part<0>(rows.pool<0>().sets);
   const Index columns = box.nx - 1;
   for (Index i = 0; i < contacts; ++i) {
     const Index x = i % columns, y = i / columns % (box.ny - 1);

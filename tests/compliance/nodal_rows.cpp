@@ -100,7 +100,7 @@ TEST_CASE("W by the compliance of nodes is W by whole solves, row by row") {
     const int first[] = {0, 3 * rows.pool<0>().items()};
     const auto each_entry = [&](auto&& f) {
       for_each_index<2>([&](auto p) {
-        const auto& blocks = std::get<0>(rows.pool<p>().sets);
+        const auto& blocks = inner::part<0>(rows.pool<p>().sets);
         for (Index i = 0; i < rows.pool<p>().items(); ++i)
           for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
             f(blocks.H[e], blocks.block[e], first[p] + Rows::rows_of<p> * i);

@@ -89,8 +89,8 @@ TEMPLATE_TEST_CASE("three rows along the axes of the world are those written one
   const auto at_once = chained<BallJoint, TestType>();
   const auto one_by_one = chained<RowByRow, TestType>();
   const auto compare = [&](auto s) {
-    const auto& a = std::get<s>(at_once.rows.template pool<0>().sets);
-    const auto& b = std::get<s>(one_by_one.rows.template pool<0>().sets);
+    const auto& a = inner::part<s>(at_once.rows.template pool<0>().sets);
+    const auto& b = inner::part<s>(one_by_one.rows.template pool<0>().sets);
     REQUIRE(a.block == b.block);
     REQUIRE(a.offset == b.offset);
     REQUIRE(a.H == b.H);

@@ -116,7 +116,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   template <int p, class F>
   void each_entry_of(const Rows& rows, Index i, F&& f) {
     for_each_index<Rows::set_count>([&](auto s) {
-      const auto& set = std::get<s>(rows.template pool<p>().sets);
+      const auto& set = inner::part<s>(rows.template pool<p>().sets);
       for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) f(blocks_[s][set.block[e]]);
     });
   }

@@ -24,9 +24,9 @@ namespace inner {
 template <bool of_masses = false, class Set, class Rows, class S>
 void apply_inverse(const Set& set, Rows& rows, S s) {
   for_each_index<Rows::pool_count>([&](auto p) {
-    auto& blocks = std::get<s>(rows.template pool<p>().sets);
+    auto& blocks = inner::part<s>(rows.template pool<p>().sets);
     constexpr int R = Rows::template rows_of<p>;
-    blocks.G.resize(blocks.H.size());
+    blocks.G.resize_for_overwrite(blocks.H.size());
     for (std::size_t e = 0; e < blocks.H.size(); ++e) {
       if constexpr (of_masses) blocks.G[e] = set.template solve_mass<R>(blocks.block[e], transposed(blocks.H[e]));
       else blocks.G[e] = set.template solve_block<R>(blocks.block[e], transposed(blocks.H[e]));

@@ -150,6 +150,12 @@ class Array {
     for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T();
     memory_.size = count;
   }
+  /// New elements are whatever lies there, for who writes all of them.
+  [[gnu::always_inline]] void resize_for_overwrite(std::size_t count) {
+    static_assert(std::is_arithmetic_v<T>);
+    if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignment);
+    memory_.size = count;
+  }
   void resize(std::size_t count, const T& x) {
     const T copy = x;  // it may be one of ours
     if (count > memory_.capacity) memory_.grow(count, sizeof(T), alignment);

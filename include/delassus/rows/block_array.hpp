@@ -55,6 +55,8 @@ class BlockArray {
   [[gnu::always_inline]] void clear() { numbers.clear(); }
   /// New matrices are zero.
   [[gnu::always_inline]] void resize(std::size_t count) { numbers.resize(count * size_of); }
+  /// New matrices are whatever lies there.
+  [[gnu::always_inline]] void resize_for_overwrite(std::size_t count) { numbers.resize_for_overwrite(count * size_of); }
   /// All are zero.
   [[gnu::always_inline]] void assign_zeros(std::size_t count) { numbers.assign(count * size_of, T(0)); }
   [[gnu::always_inline]] void push_back(const M& x) { numbers.append(x.data(), size_of); }

@@ -59,7 +59,7 @@ class BlockMatrix {
   bool begin_rows(const RowView<T>* pools, int a) {
     const RowView<T>& mine = pools[a];
     if (mine.items == 0 && diagonal(a).empty()) return false;
-    diagonal(a).resize(std::size_t(mine.rows * mine.rows) * std::size_t(mine.items));
+    diagonal(a).resize_for_overwrite(std::size_t(mine.rows * mine.rows) * std::size_t(mine.items));
     for (int b = 0; b < pools_; ++b) {
       blocks(a, b).reset(mine.items);
       place_[std::size_t(b)].assign(std::size_t(pools[b].items), -1);

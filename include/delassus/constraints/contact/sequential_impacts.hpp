@@ -61,7 +61,7 @@ class ImpactRows {
   template <class F>
   void each(F&& f) {
     world_.each([&](auto& set, auto s) {
-      const auto& blocks = std::get<s>(rows_.template pool<p>().sets);
+      const auto& blocks = inner::part<s>(rows_.template pool<p>().sets);
       for (Index e = blocks.offset[i_]; e < blocks.offset[i_ + 1]; ++e)
         if (set.moves(blocks.block[e])) f(set, blocks.block[e], blocks.H[e]);
     });

@@ -116,7 +116,7 @@ class StepParts<World, Constraints<L...>> {
   static double closing(auto& step, Index i) {
     double u = 0;
     step.world().each([&](const auto& set, auto s) {
-      const auto& blocks = std::get<s>(step.rows.template pool<p>().sets);
+      const auto& blocks = inner::part<s>(step.rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
         const Index b = blocks.block[e];
         auto v = set.v_next[b];

@@ -4,6 +4,7 @@
 #include <delassus/compliance/add_impulses.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/rows/impulses.hpp>
+#include <delassus/rows/islands.hpp>
 #include <delassus/rows/rate.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/stabilisation/inner/position_laws.hpp>

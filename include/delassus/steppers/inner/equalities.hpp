@@ -26,7 +26,7 @@ void answer_ends(const World& world, Rows& rows, const Rows& from, const Answer&
   world.each([&](const auto& set, auto s) {
     each_pool(rows, [&](auto p, auto& pool) {
       auto& ends = inner::part<s>(pool.sets);
-      const auto& H = std::get<s>(from.template pool<p>().sets).H;
+      const auto& H = inner::part<s>(from.template pool<p>().sets).H;
       ends.G.resize(H.size());
       for (std::size_t e = 0; e < H.size(); ++e) {
         const Mat<World::template width_of<s>, Rows::template rows_of<p>, typename Rows::Scalar> X = H[e].transpose();
@@ -129,7 +129,7 @@ class Equalities {
   template <int p, class Lambda, class To>
   static void push(const Rows& rows, Index i, const Lambda& lambda, To&& to) {
     for_each_index<Rows::set_count>([&](auto s) {
-      const auto& blocks = std::get<s>(rows.template pool<p>().sets);
+      const auto& blocks = inner::part<s>(rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         to(s)[blocks.block[e]].noalias() += blocks.G[e] * lambda;
     });

@@ -195,7 +195,7 @@ class MidpointNewton {
   /// f(b, Hᵀλ) for the ends of item i that move.
   template <int p, class Set, class S, class Lambda, class F>
   void each_push(const Set& set, S s, Index i, const Lambda& lambda, F&& f) {
-    const auto& blocks = std::get<s>(middle_.template pool<p>().sets);
+    const auto& blocks = inner::part<s>(middle_.template pool<p>().sets);
     for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
       const Index b = blocks.block[e];
       if (!set.moves(b)) continue;
@@ -271,7 +271,7 @@ class MidpointNewton {
       for (int r = 0; r < change.size(); ++r) change[r] = T(system_.answer(k)[r]);
       inner::part<p>(impulses.pools)[i] += change;
       for_each_index<Rows::set_count>([&](auto s) {
-        const auto& blocks = std::get<s>(middle_.template pool<p>().sets);
+        const auto& blocks = inner::part<s>(middle_.template pool<p>().sets);
         for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
           std::get<s>(impulse_)[blocks.block[e]].noalias() += blocks.H[e].transpose() * change;
       });

@@ -149,7 +149,7 @@ class RungeKuttaStep {
   Vec<Rows::template rows_of<p>, T> missing(const Rows& rows, Index i) const {
     Vec<Rows::template rows_of<p>, T> r = inner::part<p>(turned_.pools)[i];
     for_each_index<World::set_count>([&](auto s) {
-      const auto& blocks = std::get<s>(rows.template pool<p>().sets);
+      const auto& blocks = inner::part<s>(rows.template pool<p>().sets);
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         r.noalias() += blocks.H[e] * std::get<s>(a_)[blocks.block[e]];
     });
@@ -184,7 +184,7 @@ class RungeKuttaStep {
             rows, [&](auto p, Index i) { return rows.template pool<p>().phi[i]; },
             [&](auto p, Index i, const auto& change) {
               world.each([&](auto& set, auto s) {
-                const auto& blocks = std::get<s>(rows.template pool<p>().sets);
+                const auto& blocks = inner::part<s>(rows.template pool<p>().sets);
                 for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
                   if (set.moves(blocks.block[e])) set.displace(blocks.block[e], blocks.G[e] * change);
               });
