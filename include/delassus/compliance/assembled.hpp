@@ -151,7 +151,17 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   void copy_matrix(const Operator& from) { matrix_.copy(from.matrix_); }
 
   /// The arrays of the matrix.
-  static void each_array(auto& self, auto&& f) { self.matrix_.each_array(self.matrix_, f); }
+  static void each_array(auto& self, auto&& f) {
+    for_each_index<pools>([&](auto a) {
+      for_each_index<pools>([&](auto b) {
+        auto W = self.template blocks<a, b>();
+        f(W.start), f(W.column), f(W.block);
+      });
+      using Numbers = std::remove_reference_t<decltype(self.matrix_.diagonal(a))>;
+      BlockList<Mat<R_of<a>, R_of<a>, T>, Numbers> diagonal(self.matrix_.diagonal(a));
+      f(diagonal);
+    });
+  }
 
   /// The off-diagonal blocks between pools a and b, for export and tests.
   template <int a, int b>

@@ -78,6 +78,7 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
       this->make_in(problem);
       slot.tool.reserve(parameters.reserve);
       slot.book.reserve(parameters.reserve);
+      slot.book.show(problem.W, problem.rows);
       Index rows = 0;  // of the largest problem there can be
       for_each_index<Rows::pool_count>([&](auto p) { rows += Rows::template rows_of<p> * Index(parameters.reserve); });
       slot.workspace.reset(rows);

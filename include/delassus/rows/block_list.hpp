@@ -25,6 +25,8 @@ class BlockList {
   Block& operator[](std::size_t k) const { return begin()[k]; }
   Block& back() const { return end()[-1]; }
   std::size_t size() const { return numbers_->size() / size_of; }
+  std::size_t capacity() const { return numbers_->capacity() / size_of; }
+  void reserve(std::size_t count) const { numbers_->reserve(count * size_of); }
   bool empty() const { return numbers_->empty(); }
   /// New matrices are zero.
   void resize(std::size_t count) const { numbers_->resize(count * size_of); }

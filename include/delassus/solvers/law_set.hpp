@@ -40,7 +40,7 @@ class LawSet;
 template <class... Laws, class T, Needs needs>
 class LawSet<Constraints<Laws...>, T, needs> {
   static constexpr int pools = int(sizeof...(Laws));
-  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<inner::innermost_t<Laws>, T>>...>;
+  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<inner::innermost_t<Laws>, double>>...>;
   template <int p>
   using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
 

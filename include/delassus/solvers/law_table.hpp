@@ -64,7 +64,7 @@ struct Sweep {
   T relaxation = 1;
   const T* x = nullptr;  ///< λ of the span's items one after the other, from before; null: `along` is nobody's
   bool tells_change = false;
-  T energy = 0, along = 0, displacement = 0, most = 0;
+  double energy = 0, along = 0, displacement = 0, most = 0;
 };
 
 /// What a law does, over a span of items each: one constant table a law and scalar.

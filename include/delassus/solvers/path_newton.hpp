@@ -110,11 +110,11 @@ struct BasicPathNewton {
     bool factor() {
       if (report.factorizations >= solver.max_iterations) return false;
       ++report.factorizations;
-      return work.factor(problem, std::exp(next));
+      return work.factor(std::exp(next));
     }
     /// Newton's step from where |r| is `size`, halved until that falls; |r| at the last try.
     double take_step(double size) {
-      work.rows.direction = work.find_direction(problem);
+      work.rows.direction = work.find_direction();
       double least = size;
       for (double t = 1; t > 1e-4 && !(least < size); t /= 2) least = evaluate(t, 0);
       if (least < size) work.advance();
@@ -179,8 +179,8 @@ struct BasicPathNewton {
         if (size <= 1) return k;
         if (!std::isfinite(size) || (k > 0 && size > 0.5 * last) || !factor()) return -1;
         last = size;
-        rows.newton = work.find_direction(problem);
-        work.find_rate(problem, std::exp(next));
+        rows.newton = work.find_direction();
+        work.find_rate(std::exp(next));
         // −J δ + ∂r/∂log τ δσ = −r across the tangent: δ = J⁻¹ r + rate δσ.
         const double change = -work.product(tau(), rows.tangent, rows.newton) / (work.product(tau(), rows.tangent, rows.rate) + rise);
         for (std::size_t n = 0; n < rows.newton.size(); ++n) rows.direction[n] += rows.newton[n] + change * rows.rate[n];
@@ -194,7 +194,7 @@ struct BasicPathNewton {
     /// within a step.
     bool turn() {
       if (!factor()) return false;
-      work.find_rate(problem, std::exp(next));
+      work.find_rate(std::exp(next));
       work.advance();
       log_tau = next;
       auto& rows = work.rows;

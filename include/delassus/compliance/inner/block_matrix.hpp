@@ -112,10 +112,6 @@ class BlockMatrix {
     blocks_ = from.blocks_;
     diagonal_ = from.diagonal_;
   }
-  static void each_array(auto& self, auto&& f) {
-    for (auto& W : self.blocks_) f(W.start), f(W.column), f(W.numbers);
-    for (auto& diagonal : self.diagonal_) f(diagonal);
-  }
 
  private:
   T* own_block(const RowView<T>& mine, int a, Index i) { return diagonal(a).data() + std::ptrdiff_t(mine.rows * mine.rows) * i; }

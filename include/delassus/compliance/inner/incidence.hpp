@@ -7,6 +7,7 @@
 #include <delassus/rows/row_view.hpp>
 
 #include <cstddef>
+#include <span>
 
 namespace delassus::inner {
 
@@ -69,7 +70,8 @@ class CoupledColumns {
     count_ = count;
     blocks_ = std::size_t(set.blocks());
     if (const std::size_t room = std::size_t((s + 1) * count); lists_.size() < room) lists_.resize(room);
-    Array<Vec<w, T>> x(blocks_);
+    x_.resize(blocks_ * std::size_t(w));
+    const std::span<Vec<w, T>> x(reinterpret_cast<Vec<w, T>*>(x_.data()), blocks_);
     for (int p = 0; p < count; ++p) {
       const RowView<T>& mine = pools[p];
       const SetBlocksView<T>& H = mine.set[s];
@@ -121,6 +123,7 @@ class CoupledColumns {
   };
   int count_ = 0;
   std::size_t blocks_ = 0;
+  Array<T> x_;  ///< velocities of the set
   OwningArray<List> lists_;
 };
 

@@ -76,10 +76,10 @@ class BodySpace : public System {
 
   /// J δ = −F; false when J is singular to working precision.
   bool find_direction(Island<T>& island) {
-    if (!this->factor(island)) return false;
+    if (!this->factor(&island)) return false;
     for (std::size_t b = 0; b < change_.size(); ++b)
       for (int k = 0; k < width; ++k) change_[b][k] = -residual_[b][k];
-    this->solve(change_, island);
+    this->solve(change_, &island);
     for (const Constraint& c : this->constraints_) {
       if (island.is_cut_off(1)) break;
       for (int k = 0; k < c.rows; ++k) move[c.at + k] = 0;

@@ -20,7 +20,7 @@ namespace delassus::inner {
 template <class Law, class T>
 struct LawItems {
   using Item = typename Law::Item;
-  using Memory = memory_of_t<innermost_t<Law>, T>;
+  using Memory = memory_of_t<innermost_t<Law>, double>;
   static constexpr int R = Law::rows;
 
   const Law& law;
@@ -39,9 +39,9 @@ struct LawItems {
     else return items[places ? places[i] : i];
   }
   /// λ that meets the law at free velocity b.
-  [[gnu::always_inline]] Vec<R, T> solve_local(Index i, const T* own, const Vec<R, T>& b, Memory& m, const Vec<R, T>& lambda) const {
-    if constexpr (requires(Vec<R, T>& x) { law.relax(as_square<R>(own), b, x); }) {
-      Vec<R, T> next = lambda;
+  [[gnu::always_inline]] Vec<R, double> solve_local(Index i, const auto* own, const Vec<R, double>& b, Memory& m, const Vec<R, double>& lambda) const {
+    if constexpr (requires(Vec<R, double>& x) { law.relax(as_square<R>(own), b, x); }) {
+      Vec<R, double> next = lambda;
       law.relax(as_square<R>(own), b, next);
       return next;
     } else {
@@ -49,16 +49,16 @@ struct LawItems {
       return inner::solve_local(law, item(i), as_square<R>(own), b, m);
     }
   }
-  [[gnu::always_inline]] void clamp(Index i, Vec<R, T>& lambda) const { inner::clamp(law, item(i), lambda, memory[i]); }
+  [[gnu::always_inline]] void clamp(Index i, Vec<R, double>& lambda) const { inner::clamp(law, item(i), lambda, memory[i]); }
   /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
-  [[gnu::always_inline]] Vec<R, T> natural_map(Index i, const T* own, const Vec<R, T>& lambda, const Vec<R, T>& u, T scale) const {
+  [[gnu::always_inline]] Vec<R, double> natural_map(Index i, const auto* own, const Vec<R, double>& lambda, const Vec<R, double>& u, double scale) const {
     if constexpr (refines<Law>(refine::natural_map)) {
       return who_refines<refine::natural_map>(law).natural_map(given<Law>(item(i)), lambda, u, scale);
     } else {
-      const Mat<R, R, T> W = load_square<R>(own);
+      const Mat<R, R, double> W = load_square<R>(own);
       Memory m = memory[i];
-      const Vec<R, T> change = lambda - solve_local(i, own, u - W * lambda, m, lambda);
-      return (scale * T(R) / trace(W)) * (W * change);
+      const Vec<R, double> change = lambda - solve_local(i, own, u - W * lambda, m, lambda);
+      return (scale * R / trace(W)) * (W * change);
     }
   }
 };
@@ -85,7 +85,7 @@ struct LawLoops {
     const Items of(*span.pool);
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items ? span.items[k] : k;
-      const Mat<R, R, T> own = load_square<R>(span.pool->own_block(i));
+      const Mat<R, R, double> own = load_square<R>(span.pool->own_block(i));
       inner::prepare(of.law, of.item(i), own, h, of.memory[i]);
     }
   }
@@ -97,13 +97,13 @@ struct LawLoops {
     const bool relaxes = here.relaxation != T(1);
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items[k];
-      const Vec<R, T> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
+      const Vec<R, double> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
       if constexpr (is_round_cone<Law>())  // without impulse, and it goes on opening, of which its normal row tells
-        if (is_zero(lambda) && pool.is_matrix() && free_normal_velocity(pool, i) >= T(0)) continue;
+        if (is_zero(lambda) && pool.is_matrix() && free_normal_velocity(pool, i) >= 0) continue;
       const T* own = block_of(pool, i);
-      Vec<R, T> next = of.solve_local(i, own, free_velocity<R>(pool, i), of.memory[i], lambda);
+      Vec<R, double> next = of.solve_local(i, own, free_velocity<R>(pool, i), of.memory[i], lambda);
       if (relaxes) {
-        next = lambda + here.relaxation * (next - lambda);
+        next = lambda + double(here.relaxation) * (next - lambda);
         of.clamp(i, next);
       }
       accept(pool, i, k, lambda, next, own, here);
@@ -117,10 +117,10 @@ struct LawLoops {
     Sweep<T> here = sums;
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items[k];
-      const Vec<R, T> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
+      const Vec<R, double> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
       const T* own = block_of(pool, i);
-      const T s = norm(load_square<R>(own));
-      const Vec<R, T> next = lambda - of.natural_map(i, own, lambda, inner::velocity<R>(pool, i), s) / s;
+      const double s = norm(load_square<R>(own));
+      const Vec<R, double> next = lambda - of.natural_map(i, own, lambda, inner::velocity<R>(pool, i), s) / s;
       accept(pool, i, k, lambda, next, own, here);
     }
     sums = here;
@@ -145,18 +145,18 @@ struct LawLoops {
     for (Index k = 0; k < span.count; ++k, before += R) {
       const Index i = span.items[k];
       T* const at = pool.lambda + std::ptrdiff_t(R) * i;
-      const Vec<R, T> here = load<R>(at), last = load<R>(before);
+      const Vec<R, double> here = load<R>(at), last = load<R>(before);
       if (here == last) continue;  // an open contact, most of all
-      Vec<R, T> next = here + beta * (here - last);
+      Vec<R, double> next = here + double(beta) * (here - last);
       store(here, before);
       of.clamp(i, next);
       store(next, at);
-      impulse_changed<R>(pool, i, Vec<R, T>(next - here));
+      impulse_changed<R>(pool, i, Vec<R, double>(next - here));
     }
   }
 
   static void clamp(const PoolView<T>& pool, Index i, T* lambda) {
-    Vec<R, T> x = load<R>(lambda);
+    Vec<R, double> x = load<R>(lambda);
     Items(pool).clamp(i, x);
     store(x, lambda);
   }
@@ -165,8 +165,8 @@ struct LawLoops {
   }
   static void velocity(const PoolView<T>& pool, Index i, T* u) { store(inner::velocity<R>(pool, i), u); }
   static void add_share(const PoolView<T>& pool, Index i, T w, const T* u, const T* lambda, MeasureSums& sums) {
-    const Mat<R, R, T> own = diagonal_of<R>(w);
-    add(Items(pool), i, own.data(), w, load<R>(u), load<R>(lambda), load<R>(pool.d + std::ptrdiff_t(R) * i), sums);
+    const Mat<R, R, double> own = diagonal_of<R>(double(w));
+    add(Items(pool), i, own.data(), double(w), load<R>(u), load<R>(lambda), load<R>(pool.d + std::ptrdiff_t(R) * i), sums);
   }
   static double friction(const PoolView<T>& pool, Index i) {
     if constexpr (is_round_cone<Law>()) return double(Items(pool).item(i).parameters.friction);
@@ -183,39 +183,40 @@ struct LawLoops {
 
  private:
   [[gnu::always_inline]] static const T* block_of(const PoolView<T>& pool, Index i) { return pool.diagonal + std::ptrdiff_t(R * R) * i; }
-  [[gnu::always_inline]] static T weight_of(const T* own) {
-    T sum = own[0];
-    for (int k = 1; k < R; ++k) sum += own[k * (R + 1)];
-    return sum * (T(1) / T(R));
+  [[gnu::always_inline]] static double weight_of(const T* own) {
+    double sum = double(own[0]);
+    for (int k = 1; k < R; ++k) sum += double(own[k * (R + 1)]);
+    return sum * (1.0 / R);
   }
 
   /// λ_i ← next, the k-th of its span.
-  [[gnu::always_inline]] static void accept(const PoolView<T>& pool, Index i, Index k, const Vec<R, T>& lambda, const Vec<R, T>& next,
+  [[gnu::always_inline]] static void accept(const PoolView<T>& pool, Index i, Index k, const Vec<R, double>& lambda, const Vec<R, double>& next,
                                             const T* own, Sweep<T>& sums) {
-    const Vec<R, T> change = next - lambda;
+    const Vec<R, double> change = next - lambda;
     store(next, pool.lambda + std::ptrdiff_t(R) * i);
     impulse_changed<R>(pool, i, change);
-    const T weight = weight_of(own), square = squared_norm(change);
+    const double weight = weight_of(own), square = squared_norm(change);
     sums.energy += weight * square;
-    if (sums.x) sums.along += weight * dot(change, Vec<R, T>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
+    if (sums.x) sums.along += weight * dot(change, Vec<R, double>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
     if (sums.tells_change) {
-      const T share = weight * std::sqrt(square);
+      const double share = weight * std::sqrt(square);
       sums.displacement += share;
       sums.most = std::max(sums.most, share);
     }
   }
 
   /// |F_i(w)|² and |F_i(1)|² of `Measure`, at once where the law knows them so, and what else it sums.
-  [[gnu::always_inline]] static void add(const Items& of, Index i, const T* own, T weight, const Vec<R, T>& u, const Vec<R, T>& lambda,
-                                         const Vec<R, T>& d, MeasureSums& sums) {
-    Vec<2, T> squares;
+  template <class Own>
+  [[gnu::always_inline]] static void add(const Items& of, Index i, const Own* own, double weight, const Vec<R, double>& u, const Vec<R, double>& lambda,
+                                         const Vec<R, double>& d, MeasureSums& sums) {
+    Vec<2, double> squares;
     if constexpr (refines<Law>(refine::natural_squares)) {
       squares = who_refines<refine::natural_squares>(of.law).natural_squares(given<Law>(of.item(i)), lambda, u, weight);
     } else {
       squares[0] = squared_norm(of.natural_map(i, own, lambda, u, weight));
-      squares[1] = squared_norm(of.natural_map(i, own, lambda, u, T(1)));
+      squares[1] = squared_norm(of.natural_map(i, own, lambda, u, 1.0));
     }
-    const double square = double(squares[0]), size = double(squared_norm(lambda));
+    const double square = squares[0], size = squared_norm(lambda);
     sums.residual += square;
     sums.worst = std::max(sums.worst, square);
     sums.siconos += double(squares[1]);

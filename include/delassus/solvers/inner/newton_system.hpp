@@ -18,8 +18,8 @@ namespace delassus::inner {
 /// Asked between the pieces of what is long and no sweep.
 template <class T>
 struct CutOff {
-  const Island<T>& island;
-  bool operator()(Index work) const { return island.is_cut_off(int(work)); }
+  const Island<T>* island;  ///< null: never
+  bool operator()(Index work) const { return island && island->is_cut_off(int(work)); }
 };
 
 /// A constraint of an island in the equations of Newton's method.
@@ -63,8 +63,8 @@ class NewtonSystem {
   std::size_t blocks() const { return unit_.size(); }
   const Array<Constraint>& constraints() const { return constraints_; }
 
-  /// Factors J; false when it is singular to working precision, or the island's time ends before that.
-  bool factor(const Island<T>& island) {
+  /// Factors J; false when it is singular to working precision, or the island's time ends before that; null: no time ends.
+  bool factor(const Island<T>* island) {
     const CutOff<T> ends{island};
     auto& J = *matrix_;
     J.set_identity(ends);
@@ -112,7 +112,7 @@ class NewtonSystem {
   }
   bool is_negative() const { return matrix_->is_negative(); }  ///< det J < 0
   /// x ← J⁻¹ x.
-  void solve(Velocities& x, const Island<T>& island) const { matrix_->solve(x, CutOff<T>{island}); }
+  void solve(Velocities& x, const Island<T>* island) const { matrix_->solve(x, CutOff<T>{island}); }
 
   /// u += Σ H x over the sides of a constraint, and x += Σ s G λ.
   void add_rates(const Constraint& c, const Velocities& x, double* u) const {

@@ -92,23 +92,23 @@ class PathLaws {
   void advance() { rows.x = rows.ahead; }
 
   /// Factors −∂r/∂x where the last evaluation was; false when it is singular.
-  bool factor(const Island<T>& island, double tau) {
+  bool factor(double tau) {
     for (const Constraint& c : system_.constraints()) {
       double* B = &rows.B[c.slope];
       for (int k = 0; k < c.rows * c.rows; ++k) B[k] = k % (c.rows + 1) == 0 ? 1 : 0;
       for (int k = 1; k < c.rows && is_cone(c); ++k) B[c.rows * k] = -rows.z[c.at + k] / slip(c, tau);
     }
-    return system_.factor(island, rows, weight_);
+    return system_.factor(rows, weight_);
   }
 
   /// (−∂r/∂x)⁻¹ r, by row.
-  const Array<double>& find_direction(const Island<T>& island) {
+  const Array<double>& find_direction() {
     rows.side = rows.residual;
-    system_.solve(island, rows);
+    system_.solve(rows);
     return system_.lambda;
   }
   /// rate ← (−∂r/∂x)⁻¹ ∂r/∂log τ: what x does along the path as log τ grows.
-  void find_rate(const Island<T>& island, double tau) {
+  void find_rate(double tau) {
     // In the algebra ∂a/∂log τ = ∂z/∂log τ = τ (a + z)⁻¹, since a ∘ z = τ and a − z = x.
     for (const Constraint& c : system_.constraints()) {
       double* change = &rows.side[c.at];
@@ -121,7 +121,7 @@ class PathLaws {
     }
     system_.answer(rows);
     for (int k = 0; k < count_; ++k) rows.side[k] -= rows.shape[k] * system_.velocity[k];
-    system_.solve(island, rows);
+    system_.solve(rows);
     rows.rate = system_.lambda;
   }
 

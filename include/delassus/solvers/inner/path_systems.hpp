@@ -31,7 +31,7 @@ class PathBodies : private NewtonSystem<T, width> {
   using Base::gather, Base::constraints, Base::slope, Base::lambda, Base::velocity;
   static constexpr double largest_ratio = 1e10;  ///< of E, whose rounding the passes of `solve` take back
 
-  bool factor(const Island<T>& island, PathRows<double>& rows, const Array<double>&) {
+  bool factor(PathRows<double>& rows, const Array<double>&) {
     double scaled[most * most];
     for (const Constraint& c : constraints_) {
       const int R = c.rows;
@@ -51,14 +51,14 @@ class PathBodies : private NewtonSystem<T, width> {
       for (int k = 0; k < R; ++k)
         for (int l = 0; l < R; ++l) slope[c.slope + k + R * l] = rows.scale[c.at + k] * scaled[k + R * l] * rows.shape[c.at + l];
     }
-    return Base::factor(island);
+    return Base::factor(nullptr);
   }
   /// Whether det(−∂r/∂x) < 0: between it and the matrix that is factored lie positive ones.
   bool is_negative() const { return Base::is_negative(); }
   /// Leaves δ in `lambda`, ρ being `side`. With g = (1 + E)⁻¹ δ what a pass has left of ρ is
   /// ρ − B g − P (W + C) P E g/w, which goes in again: where contacts carry, E is large, and so is the
   /// rounding of the matrix.
-  void solve(const Island<T>& island, PathRows<double>& rows) {
+  void solve(PathRows<double>& rows) {
     rows.error.assign(rows.error.size(), 0.0);
     lambda = rows.side;
     double first[most], second[most];
@@ -69,7 +69,7 @@ class PathBodies : private NewtonSystem<T, width> {
         multiply(c, rows.E, first, second);
         push(c, rows, second);
       }
-      Base::solve(y_, island);
+      Base::solve(y_, nullptr);
       for (const Constraint& c : constraints_) {
         std::fill(first, first + c.rows, 0.0);
         this->add_rates(c, y_, first);
@@ -164,7 +164,7 @@ class PathImpulses {
   }
   const Array<Constraint>& constraints() const { return constraints_; }
 
-  bool factor(const Island<T>&, PathRows<double>& rows, const Array<double>& weight) {
+  bool factor(PathRows<double>& rows, const Array<double>& weight) {
     matrix_.set_identity();
     for (const Constraint& c : constraints_) {
       Block own = own_[std::size_t(c.item)];
@@ -180,7 +180,7 @@ class PathImpulses {
     return matrix_.factor();
   }
   bool is_negative() const { return matrix_.is_negative(); }
-  void solve(const Island<T>&, PathRows<double>& rows) {
+  void solve(PathRows<double>& rows) {
     for (std::size_t k = 0; k < rows.side.size(); ++k) rows.side[k] /= rows.shape[k];
     rows.error.assign(rows.error.size(), 0.0);
     for (int pass = 0; pass < 3; ++pass) {  // pivots inside blocks alone leave a residual, which goes in again
