@@ -1,4 +1,4 @@
-// One sweep over a pool of Coulomb contacts with W assembled: compiled_to.py looks for calls in it.
+// One sweep over a pool of Coulomb contacts with W assembled: compiled_to.py looks for calls in its loop.
 #include <delassus/delassus.hpp>
 
 using namespace delassus;
@@ -6,9 +6,9 @@ using namespace delassus;
 using Loop = AnimationLoop<World<RigidBodies>, Constraints<Contact<Coulomb>>>;
 using Given = decltype(std::declval<const Loop&>().problem());
 using Book = LawSet<Constraints<Contact<Coulomb>>, double>;
-using Island = IslandProblem<Book, Given::Rows, decltype(Given::W), NoObserver>;
+using OneIsland = IslandProblem<Book, Given::Rows, decltype(Given::W), NoObserver>;
 
-extern "C" [[gnu::noinline]] double one_sweep(Island& island) { return island.sweep(); }
+extern "C" [[gnu::noinline]] double one_sweep(OneIsland& island) { return island.sweep(); }
 
 int main() {
   Loop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{}}}};
@@ -20,6 +20,6 @@ int main() {
   Book book(problem.laws);
   book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;
-  Island island(book, problem.rows, problem.W, problem.islands, 0, problem.h, nobody);
+  OneIsland island(book, problem.rows, problem.W, problem.islands, 0, problem.h, nobody);
   return one_sweep(island) >= 0 ? 0 : 1;
 }
