@@ -60,6 +60,11 @@ class BlockArray {
   /// All are zero.
   [[gnu::always_inline]] void assign_zeros(std::size_t count) { numbers.assign(count * size_of, T(0)); }
   [[gnu::always_inline]] void push_back(const M& x) { numbers.append(x.data(), size_of); }
+  /// One more, of whatever lies there.
+  [[gnu::always_inline]] M& emplace_back() {
+    numbers.resize_for_overwrite(numbers.size() + size_of);
+    return back();
+  }
   [[gnu::always_inline]] void swap(BlockArray& other) noexcept { numbers.swap(other.numbers); }
   [[gnu::always_inline]] friend void swap(BlockArray& a, BlockArray& b) noexcept { a.swap(b); }
   [[gnu::always_inline]] friend bool operator==(const BlockArray& a, const BlockArray& b) { return a.numbers == b.numbers; }

@@ -44,12 +44,11 @@ struct PoolRows {
   inner::Pack<SetBlocks<R, widths, T>...> sets;
   BlockArray<Vec<R, T>> phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda;
 
-  Index items() const { return items_; }
+  Index items() const { return Index(phi.size()); }
 
   /// The rows of `items` items, all zero and without entries. The items are closed one by one, in order.
   void reset(Index items) {
-    if (items == 0 && items_ == 0) return;  // a law without items, step after step
-    items_ = items;
+    if (items == 0 && phi.empty()) return;  // a law without items, step after step
     sets.each([](auto& s) __attribute__((always_inline)) { s.reset(); });
     for (auto* array : {&phi, &stiffness, &damping, &bias, &compliance, &relative_compliance, &d, &lambda})
       array->assign_zeros(std::size_t(items));
@@ -67,9 +66,6 @@ struct PoolRows {
   void close() {
     sets.each([](auto& s) __attribute__((always_inline)) { s.offset.push_back(Index(s.block.size())); });
   }
-
- private:
-  Index items_ = 0;
 };
 
 }  // namespace delassus
