@@ -48,7 +48,7 @@ struct ByRows {
   /// The rows of a pool from row `first` on, as they act on set s.
   template <int s>
   void enter(const auto& pool, Index first) {
-    const auto& blocks = inner::part<s>(pool.sets);
+    const auto& blocks = delassus::inner::part<s>(pool.sets);
     for (Index i = 0; i < pool.items(); ++i)
       for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
         for (int c = 0; c < 3; ++c)

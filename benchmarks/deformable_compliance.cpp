@@ -21,6 +21,7 @@ using Rows = RowSystem<double, Widths<3>, 3>;
 /// One soft body as a builder of W sees it.
 struct SoftBox {
   using Scalar = double;
+  static constexpr int width = 3;
   Box box;
   MultifrontalCholesky<3, double> factor;
 

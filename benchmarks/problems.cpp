@@ -49,7 +49,7 @@ void plain_product(benchmark::State& state, const std::string& path) {
   const FrictionProblem p = read_problem(path);
   const auto W = p.W.blocks<0, 0>();
   const auto& pool = p.rows.pool<0>();
-  Array<Vec3> x(pool.d), u(x.size());
+  auto x = pool.d, u = x;
   for (auto _ : state) {
     for (Index i = 0; i < pool.items(); ++i) {
       Vec3 sum = pool.d[i];
