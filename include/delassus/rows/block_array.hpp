@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 
 #include <cstddef>
+#include <initializer_list>
 #include <span>
 
 namespace delassus {
@@ -19,6 +20,7 @@ class BlockArray {
   using value_type = M;
 
   [[gnu::always_inline]] BlockArray() {}
+  BlockArray(std::initializer_list<M> list) { *this = std::span<const M>(list.begin(), list.size()); }
   [[gnu::always_inline]] BlockArray(const BlockArray& other) : numbers(other.numbers) {}
   [[gnu::always_inline]] BlockArray(BlockArray&& other) noexcept : numbers(static_cast<Array<T>&&>(other.numbers)) {}
   [[gnu::always_inline]] BlockArray& operator=(const BlockArray& other) {
