@@ -70,6 +70,12 @@ class BlockArray {
   [[gnu::always_inline]] void swap(BlockArray& other) noexcept { numbers.swap(other.numbers); }
   [[gnu::always_inline]] friend void swap(BlockArray& a, BlockArray& b) noexcept { a.swap(b); }
   [[gnu::always_inline]] friend bool operator==(const BlockArray& a, const BlockArray& b) { return a.numbers == b.numbers; }
+  friend bool operator==(const BlockArray& a, std::span<const M> b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < b.size(); ++i)
+      if (!(a[i] == b[i])) return false;
+    return true;
+  }
 
   Array<T> numbers;
 };
