@@ -87,12 +87,12 @@ TEST_CASE("a free body with a force that is not finite stays where it was, alone
   REQUIRE(loop.step(h).status == Status::converged);
 }
 
-// 1e20 kg in single precision: the squares that the residual is made of are no numbers.
+// 6e37 kg in single precision: the impulses that hold it are no numbers.
 TEST_CASE("an island whose solver met what is no number stays where it was") {
   AnimationLoop loop{World{RigidBodiesF{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
   auto& set = bodies<RigidBodiesF>(loop.world());
   set.add_fixed(HalfSpace{});
-  for (int k = 0; k < 3; ++k) set.add({.position = {0, 0, 0.5 + k}, .mass = 1e20, .shape = Box{1, 1, 1}});
+  for (int k = 0; k < 3; ++k) set.add({.position = {0, 0, 0.5 + k}, .mass = 6e37, .shape = Box{1, 1, 1}});
   int quarantined = 0;
   for (int n = 0; n < 30; ++n) {
     const StepReport report = loop.step(h);
