@@ -7,6 +7,7 @@
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/rate.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/island_problem.hpp>
 #include <delassus/stabilisation/inner/position_laws.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/row_types.hpp>
