@@ -30,6 +30,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 // constraints, a pair or a body at the most.
 
 #define DELASSUS_COMPILED_LAW(KIND, ...)              \
+  KIND struct inner::LawRows<__VA_ARGS__, double>;    \
   KIND struct inner::LawLoops<__VA_ARGS__, double>;   \
   KIND struct inner::LawTangents<__VA_ARGS__, double>;
 
@@ -74,6 +75,10 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class BlockLu<6, double>;
 
 #define DELASSUS_COMPILED_BODIES(KIND)                                                                     \
+  KIND struct inner::SetFunctions<RigidBodies, double>;                                                    \
+  KIND struct inner::SetFunctions<Particles, double>;                                                      \
+  KIND class WorldView<double>;                                                                            \
+  KIND class RowEnd<double>;                                                                               \
   KIND bool inner::RigidState<double>::drift(Index, Velocity&, const Velocity&, double, double);           \
   KIND RigidBodies::Handle BasicRigidBodies<double>::add(const RigidBody&);                                \
   KIND Anchor anchor(const RigidBodies&, RigidBodies::Handle, const Vec3&, const Quat&);                   \

@@ -126,8 +126,8 @@ struct Built {
     W.build(scene.world, scene.rows);
     Array<Vec<6>> on_rigid(1, Vec<6>::Zero()), rigid_scratch;
     Array<Vec3> on_soft(soft.blocks(), Vec3::Zero()), soft_scratch;
-    add_impulses<0>(inner::inverse_of<0>(W, rigid, 1), scene.rows, on_rigid, rigid_scratch);
-    add_impulses<1>(inner::inverse_of<1>(W, soft, 1), scene.rows, on_soft, soft_scratch);
+    add_impulses(inner::inverse_of<0>(W, rigid, 1), 0, ArraysOf(scene.rows).all(), on_rigid, rigid_scratch);
+    add_impulses(inner::inverse_of<1>(W, soft, 1), 1, ArraysOf(scene.rows).all(), on_soft, soft_scratch);
     gather(scene, on_rigid[0], on_soft);
   }
   double error() const { return (made - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff(); }

@@ -81,9 +81,11 @@ struct Written {
 
   Written(const Law& law, const typename Law::Item& item, const TwoSets& world) {
     PoolRows<Law::rows, double, 6, 3> rows;
-    rows.reset(1);
-    law.linearize(item, world, RowWriter(world, rows, 0));
-    rows.close();
+    const ArraysOf arrays(rows);
+    const ViewOf view(world);
+    arrays.reset(1);
+    law.linearize(item, view, RowWriter<double>(view, arrays, 0));
+    arrays.close();
     phi = rows.phi[0];
     const auto& rigid = inner::part<0>(rows.sets);
     const auto& points = inner::part<1>(rows.sets);

@@ -12,7 +12,7 @@ namespace {
 struct Graph {
   RowSystem<double, Widths<3>, 1, 1> rows;
   std::vector<bool> moves = std::vector<bool>(10, true);
-  Islands<2> islands;
+  Islands<double> islands;
 
   template <int p>
   void item(std::vector<Index> held) {
@@ -25,8 +25,10 @@ struct Graph {
     pool.close();
   }
   void find() {
-    const std::vector<Index> first{0};
-    islands.find(rows, first, 10, [&](auto, Index b) { return bool(moves[b]); }, [](auto&&) {});
+    const Index first[] = {0};
+    islands.clear_blocks();
+    for (const bool one : moves) islands.add_block(one);
+    islands.find(ArraysOf(rows).all(), first);
   }
   std::vector<Index> items(int pool, Index island) const {
     const auto found = islands.items(pool, island);
@@ -97,7 +99,7 @@ TEST_CASE("all items can be taken as one island, whatever they act on") {
   g.item<0>({1, 2});
   g.item<1>({7, 8});
   g.item<0>({4, 3});
-  g.islands.take_all(g.rows);
+  g.islands.take_all(ArraysOf(g.rows).all());
   REQUIRE(g.islands.count() == 1);
   CHECK(g.items(0, 0) == std::vector<Index>{0, 1});
   CHECK(g.items(1, 0) == std::vector<Index>{0});

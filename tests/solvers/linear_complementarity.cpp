@@ -156,7 +156,7 @@ Bounds make_bounds(const Square& M, const Numbers& q) {
     }
     W.start[i + 1] = Index(W.column.size());
   }
-  p.islands.take_all(p.rows);
+  p.islands.take_all(ArraysOf(p.rows).all());
   return p;
 }
 

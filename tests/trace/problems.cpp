@@ -137,7 +137,7 @@ CountedProblem counted(const FrictionProblem& from) {
   CountedProblem to;
   for (const auto& item : from.laws.pool<0>().items) to.laws.pool<0>().items.push_back({item.parameters});
   to.rows = from.rows, to.W = from.W, to.h = from.h;
-  to.islands.take_all(to.rows);
+  to.islands.take_all(ArraysOf(to.rows).all());
   return to;
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -47,7 +48,8 @@ inline void tell_inertia(const Mat3& inertia, Triple& moments, Quat& axes) {
 
 inline Geometry tell_shape(const delassus::Shape& shape, const Quat& axes) {
   using enum delassus::ShapeKind;
-  Geometry out{.form = Form::none, .size = shape.size};
+  Geometry out{.form = Form::none};
+  std::copy(shape.size.begin(), shape.size.end(), out.size.begin());
   switch (shape.kind) {
     case none:
       return {};

@@ -125,8 +125,8 @@ class Sleepers {
   }
 
   /// Correct: how long each awake body has been quiet, and the least of each island.
-  template <class Rows, int pools>
-  void watch(const Sleeping& limits, World& world, const Rows& rows, const Islands<pools>& islands,
+  template <class Rows, class T>
+  void watch(const Sleeping& limits, World& world, const Rows& rows, const Islands<T>& islands,
              std::span<const SolveReport> reports, double h) {
     island_quiet_.assign(islands.count(), std::numeric_limits<double>::infinity());
     for (Index k = 0; k < islands.count(); ++k)
@@ -154,8 +154,8 @@ class Sleepers {
   }
 
   /// Advance: islands that were quiet long enough fall asleep, and so do single bodies that nothing pulls.
-  template <int pools>
-  void settle(const Sleeping& limits, World& world, Laws& laws, const Islands<pools>& islands) {
+  template <class T>
+  void settle(const Sleeping& limits, World& world, Laws& laws, const Islands<T>& islands) {
     Array<Index>& group = island_group_;
     group.assign(islands.count(), -1);
     Index first = 0;
@@ -249,8 +249,8 @@ class Sleepers {
   }
 
   /// An island that a moving kinematic body touches stays awake.
-  template <class Rows, int pools>
-  void keep_awake_where_driven(const World& world, const Rows& rows, const Islands<pools>& islands) {
+  template <class Rows, class T>
+  void keep_awake_where_driven(const World& world, const Rows& rows, const Islands<T>& islands) {
     for (Index k = 0; k < islands.count(); ++k)
       each_pool(rows, [&](auto p, const auto& pool) {
         for (const Index i : islands.items(p, k))

@@ -3,36 +3,31 @@
 
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/core/array.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/row_arrays.hpp>
 
 #include <cstddef>
 #include <span>
-#include <tuple>
 
 namespace delassus {
 
-/// change = A⁻¹ Hᵀ λ of one set: block by block through G where A is block-diagonal, else by one solve.
-template <int s, class Set, class Rows>
-void add_impulses(const Set& set, const Rows& rows, std::span<typename Set::Velocity> to,
+/// to += A⁻¹ Hᵀ λ of set number s: block by block through G where A is block-diagonal, else by one solve.
+template <class Set>
+void add_impulses(const Set& set, int s, AllRows<typename Set::Scalar> rows, std::span<typename Set::Velocity> to,
                   Array<typename Set::Velocity>& scratch) {
-  const bool is_coupled = inner::is_coupled(set);
-  if (is_coupled) {
-    scratch.resize(set.blocks());
-    for (auto& x : scratch) set_all(x, typename Set::Scalar(0));
+  using T = typename Set::Scalar;
+  if (!inner::is_coupled(set)) {
+    for (const RowArrays<T>& pool : rows)
+      pool.set[s].products->add_motion(pool.set[s], pool.items(), pool.lambda->data(), reinterpret_cast<T*>(to.data()));
+    return;
   }
-  each_pool(rows, [&](auto, const auto& pool) {
-    const auto& blocks = inner::part<s>(pool.sets);
-    for (Index i = 0; i < pool.items(); ++i)
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) {
-        if (is_coupled) scratch[blocks.block[e]] += blocks.H[e].transpose() * pool.lambda[i];
-        else to[blocks.block[e]] += blocks.G[e] * pool.lambda[i];
-      }
-  });
-  if constexpr (requires { set.solve(scratch); })
-    if (is_coupled) {
-      set.solve(scratch);
-      for (std::size_t b = 0; b < to.size(); ++b) to[b] += scratch[b];
-    }
+  if constexpr (requires { set.solve(scratch); }) {
+    scratch.resize(set.blocks());
+    for (auto& x : scratch) set_all(x, T(0));
+    for (const RowArrays<T>& pool : rows)
+      pool.set[s].products->add_impulse(pool.set[s], pool.items(), pool.lambda->data(), reinterpret_cast<T*>(scratch.data()));
+    set.solve(scratch);
+    for (std::size_t b = 0; b < to.size(); ++b) to[b] += scratch[b];
+  }
 }
 
 }  // namespace delassus

@@ -78,7 +78,7 @@ class EnergyGuard {
     solve_again();
     shed();
     const double s = share();
-    T next[Island::most_rows];
+    T next[most_rows];
     std::size_t at = 0;
     for (const auto& span : island_)
       for (const Index i : span) {
@@ -105,7 +105,7 @@ class EnergyGuard {
   /// The energy that the impulses give the bodies, J: Σ ½ λ·(u_free + u⁺), u without bias.
   double energy() const {
     double sum = 0;
-    T u[Island::most_rows];
+    T u[most_rows];
     for (const auto& span : island_)
       for (const Index i : span) {
         island_.velocity(span, i, u);
@@ -139,7 +139,7 @@ class EnergyGuard {
   /// holds, λ ← s λ, s the largest number in [0, 1] for which it does; a cone holds s λ too.
   void shed() {
     double push = 0, free = 0, curvature = 0;  // E(s) = free s + ½ curvature s²
-    T u[Island::most_rows];
+    T u[most_rows];
     for (const auto& span : island_)
       for (const Index i : span) {
         island_.velocity(span, i, u);
@@ -153,7 +153,7 @@ class EnergyGuard {
     const double allowed = std::max(0.0, push);
     if (!(free + 0.5 * curvature > allowed) || !(curvature > 0)) return;
     const double s = std::clamp((std::sqrt(free * free + 2 * curvature * allowed) - free) / curvature, 0.0, 1.0);
-    T next[Island::most_rows];
+    T next[most_rows];
     for (const auto& span : island_)
       for (const Index i : span) {
         const T* lambda = island_.impulse(span, i);
@@ -165,7 +165,7 @@ class EnergyGuard {
   /// s, by E(s) = E_c + b s + a s² with δ = λ_N − λ_c, a = ½ δ·Wδ, b = δ·u_c, u_c the velocity after λ_c.
   double share() const {
     double a = 0, b = 0;
-    T u[Island::most_rows];
+    T u[most_rows];
     std::size_t at = 0;
     for (const auto& span : island_)
       for (const Index i : span) {

@@ -162,6 +162,12 @@ class Array {
     for (std::size_t i = memory_.size; i < count; ++i) ::new (static_cast<void*>(begin() + i)) T(copy);
     memory_.size = count;
   }
+  /// So many zeros.
+  [[gnu::always_inline]] void assign_zeros(std::size_t count) {
+    resize_for_overwrite(count);
+    T* const x = begin();
+    for (std::size_t i = 0; i < count; ++i) x[i] = T(0);
+  }
   void assign(std::size_t count, const T& x) {
     const T copy = x;
     memory_.size = 0;

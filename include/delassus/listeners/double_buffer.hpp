@@ -42,7 +42,7 @@ class Room {
     problem.laws.each_array(problem.laws, reserve);
     problem.rows.each_array(problem.rows, reserve);
     problem.W.each_array(problem.W, reserve);
-    problem.islands.each_array(problem.islands, reserve);
+    problem.islands.reserve(decltype(problem.rows)::pool_count, reserve_);
   }
 
   /// Whether the problem of the loop's last step has room; counted when it has not.

@@ -166,10 +166,9 @@ consteval bool collision_fits() {
 }
 
 /// linearize is asked with the very types it will be called with; its return type is written out, so no body is compiled.
-template <class Law, class World>
+template <class Law, class T>
 consteval bool law_linearizes() {
-  constexpr bool does = requires(const Law& law, const typename Law::Item& item, const World& world,
-                                 RowWriter<World, PoolRowsOf<World, Law::rows>> row) {
+  constexpr bool does = requires(const Law& law, const typename Law::Item& item, const WorldView<T>& world, RowWriter<T> row) {
     { law.linearize(item, world, row) } -> std::same_as<void>;
   };
   static_assert(does,
@@ -217,12 +216,13 @@ template <class Policies>
 consteval bool constraints_are_sound() {
   using World = typename Policies::World;
   using Laws = typename Policies::Laws;
+  using T = typename World::Scalar;
   constexpr std::type_identity<Laws> laws;
   if constexpr (Laws::pool_count == 0) {
     return true;
-  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L, World>(); })) {
+  } else if constexpr (!all_parts(laws, []<class L>() { return law_is_sound<L, WorldView<T>>(); })) {
     return false;
-  } else if constexpr (!all_parts(laws, []<class L>() { return law_linearizes<L, World>(); })) {
+  } else if constexpr (!all_parts(laws, []<class L>() { return law_linearizes<L, T>(); })) {
     return false;
   } else {
     using Rows = typename rows_of<World, Laws>::type;

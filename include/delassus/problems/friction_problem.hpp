@@ -89,7 +89,7 @@ inline FrictionProblem make_friction_problem(const std::vector<double>& friction
       last[W.column[e]] = i;
     }
   }
-  p.islands.take_all(p.rows);
+  p.islands.take_all(ArraysOf(p.rows).all());
   return p;
 }
 

@@ -60,7 +60,7 @@ void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
   for (Index k = 0; k < problem.islands.count(); ++k)
-    each_item(problem.islands, k, [&](auto p, Index i) { f(p, i, book.natural_error(p, i)); });
+    each_item<decltype(problem.rows)::pool_count>(problem.islands, k, [&](auto p, Index i) { f(p, i, book.natural_error(p, i)); });
 }
 
 /// Of the λ in the problem, the worst island's.

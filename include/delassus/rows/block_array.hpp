@@ -60,7 +60,7 @@ class BlockArray {
   /// New matrices are whatever lies there.
   [[gnu::always_inline]] void resize_for_overwrite(std::size_t count) { numbers.resize_for_overwrite(count * size_of); }
   /// All are zero.
-  [[gnu::always_inline]] void assign_zeros(std::size_t count) { numbers.assign(count * size_of, T(0)); }
+  [[gnu::always_inline]] void assign_zeros(std::size_t count) { numbers.assign_zeros(count * size_of); }
   [[gnu::always_inline]] void push_back(const M& x) { numbers.append(x.data(), size_of); }
   /// One more, of whatever lies there.
   [[gnu::always_inline]] M& emplace_back() {

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/owning_array.hpp>
+#include <delassus/core/slice.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <array>
+#include <cstddef>
 #include <span>
 
 namespace delassus {
@@ -13,38 +16,56 @@ namespace delassus {
 ///
 /// Islands are numbered by their lowest block, items inside go by pool and insertion: a body far away changes
 /// no order, hence no bit. An item without a moving block belongs to no island; its impulse stays zero.
-template <int pools>
+template <class T>
 class Islands {
+  struct Items {
+    Array<Index> lowest;         ///< by item: a block that it holds, or −1
+    Array<Index> sorted, start;  ///< the items of island k are sorted[start[k]] … sorted[start[k + 1] − 1]
+  };
+
  public:
   Index count() const { return count_; }
 
   /// The items of pool `p` in island `island`, ascending.
   std::span<const Index> items(int p, Index island) const {
-    const auto& start = start_[p];
-    return std::span<const Index>(items_[p]).subspan(start[island], start[island + 1] - start[island]);
+    const Items& of = pools_[std::size_t(p)];
+    return {of.sorted.data() + of.start[island], std::size_t(of.start[island + 1] - of.start[island])};
   }
 
   /// The island of a block, or −1 when no constraint holds it. `block` counts through the sets in order.
   Index island_of(Index block) const { return island_[block]; }
 
-  /// `first_block[s]` is the number of the first block of set s; moves(s, b) tells whether A⁻¹ ≠ 0 there; ties(f) calls
-  /// f(a, b) for numbers of blocks that A couples without a constraint.
-  void find(const auto& rows, std::span<const Index> first_block, Index blocks, const auto& moves, const auto& ties) {
-    parent_.resize(blocks);
-    for (Index b = 0; b < blocks; ++b) parent_[b] = b;
-    ties([this](Index a, Index b) { unite(a, b); });
-    each_pool(rows, [&](auto p, const auto& pool) {
-      lowest_[p].assign(pool.items(), -1);
-      for (Index i = 0; i < pool.items(); ++i) join(pool, i, first_block, moves, lowest_[p][i]);
-    });
+  /// Before `find`: every block of every set in order, then those that A couples without a constraint.
+  void clear_blocks() {
+    parent_.clear();
+    moves_.clear();
+  }
+  void add_block(bool moves) {
+    parent_.push_back(Index(parent_.size()));
+    moves_.push_back(moves);
+  }
+  void tie(Index a, Index b) { unite(a, b); }
+
+  /// `first_block[s]` is the number of the first block of set s.
+  void find(AllRows<T> rows, const Index* first_block) {
+    pools_.resize(rows.size());
+    for (std::size_t p = 0; p < rows.size(); ++p) {
+      pools_[p].lowest.resize_for_overwrite(std::size_t(rows[p].items()));
+      for (Index i = 0; i < rows[p].items(); ++i) pools_[p].lowest[i] = join(rows[p], i, first_block);
+    }
     number();
-    for_each_index<pools>([&](auto p) { sort(p); });
+    for (Items& of : pools_) sort(of);
   }
 
   static void each_array(auto& self, auto&& f) {
-    f(self.parent_), f(self.island_), f(self.next_);
-    for (auto* arrays : {&self.lowest_, &self.items_, &self.start_})
-      for (auto& array : *arrays) f(array);
+    f(self.parent_), f(self.island_), f(self.next_), f(self.moves_);
+    for (auto& of : self.pools_) f(of.lowest), f(of.sorted), f(of.start);
+  }
+
+  /// Room for islands of `count` items of each pool and as many blocks.
+  void reserve(int pools, std::size_t count) {
+    pools_.resize(std::size_t(pools));
+    each_array(*this, [count](auto& array) { array.reserve(count); });
   }
 
   /// No islands; what they were kept in stays.
@@ -54,27 +75,31 @@ class Islands {
   }
 
   /// One island of all items: a problem without bodies, or one whose errors shall be measured over the whole.
-  void take_all(const auto& rows) {
-    parent_.assign(1, 0);
+  void take_all(AllRows<T> rows) {
+    clear_blocks();
+    add_block(true);
     island_.assign(1, 0);
     count_ = 1;
-    for_each_index<pools>([&](auto p) {
-      lowest_[p].assign(rows.template pool<p>().items(), 0);
-      sort(p);
-    });
+    pools_.resize(rows.size());
+    for (std::size_t p = 0; p < rows.size(); ++p) {
+      pools_[p].lowest.assign(std::size_t(rows[p].items()), 0);
+      sort(pools_[p]);
+    }
   }
 
  private:
-  void join(const auto& pool, Index item, std::span<const Index> first_block, const auto& moves, Index& seen) {
-    for_each_index<std::remove_cvref_t<decltype(pool)>::set_count>([&](auto s) {
-      const auto& set = inner::part<s>(pool.sets);
-      for (Index e = set.offset[item]; e < set.offset[item + 1]; ++e) {
-        if (!moves(s, set.block[e])) continue;
-        const Index b = first_block[s] + set.block[e];
+  Index join(const RowArrays<T>& pool, Index item, const Index* first_block) {
+    Index seen = -1;
+    for (int s = 0; s < pool.sets; ++s) {
+      const Index *offset = pool.set[s].offset->data(), *block = pool.set[s].block->data();
+      for (Index e = offset[item]; e < offset[item + 1]; ++e) {
+        const Index b = first_block[s] + block[e];
+        if (!moves_[b]) continue;
         if (seen >= 0) unite(seen, b);
         seen = b;
       }
-    });
+    }
+    return seen;
   }
 
   Index root(Index b) {
@@ -93,8 +118,8 @@ class Islands {
   void number() {
     const Index blocks = Index(parent_.size());
     island_.assign(blocks, -1);
-    for (const auto& pool : lowest_)
-      for (const Index b : pool)
+    for (const Items& of : pools_)
+      for (const Index b : of.lowest)
         if (b >= 0) island_[root(b)] = 0;
     count_ = 0;
     for (Index b = 0; b < blocks; ++b) {
@@ -105,28 +130,28 @@ class Islands {
   }
 
   /// Counting sort of one pool's items by island; stable, so insertion order stays.
-  void sort(int p) {
-    auto& start = start_[p];
-    start.assign(count_ + 1, 0);
-    for (const Index b : lowest_[p])
-      if (b >= 0) ++start[island_[b] + 1];
-    for (Index k = 0; k < count_; ++k) start[k + 1] += start[k];
-    items_[p].resize(start[count_]);
-    next_.assign(start.begin(), start.end());
-    for (Index i = 0; i < Index(lowest_[p].size()); ++i)
-      if (lowest_[p][i] >= 0) items_[p][next_[island_[lowest_[p][i]]]++] = i;
+  void sort(Items& of) {
+    of.start.assign(std::size_t(count_ + 1), 0);
+    for (const Index b : of.lowest)
+      if (b >= 0) ++of.start[island_[b] + 1];
+    for (Index k = 0; k < count_; ++k) of.start[k + 1] += of.start[k];
+    of.sorted.resize(std::size_t(of.start[count_]));
+    next_ = of.start;
+    for (Index i = 0; i < Index(of.lowest.size()); ++i)
+      if (of.lowest[i] >= 0) of.sorted[next_[island_[of.lowest[i]]]++] = i;
   }
 
   Index count_ = 0;
   Array<Index> parent_, island_, next_;
-  std::array<Array<Index>, pools> lowest_, items_, start_;
+  Array<char> moves_;
+  OwningArray<Items> pools_;
 };
 
 namespace inner {
 
 /// f(p, i) for every item of an island.
-template <int pools, class F>
-void each_item(const Islands<pools>& islands, Index island, F&& f) {
+template <int pools, class T, class F>
+void each_item(const Islands<T>& islands, Index island, F&& f) {
   for_each_index<pools>([&](auto p) {
     for (const Index i : islands.items(p, island)) f(p, i);
   });

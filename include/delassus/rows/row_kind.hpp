@@ -10,6 +10,9 @@ namespace delassus {
 /// equality φ = 0, λ free · lower φ ≥ 0, λ ≥ 0 · upper φ ≤ 0, λ ≤ 0 · friction: bounded by its law, with no φ but a spring's.
 enum class RowKind : std::uint8_t { equality, lower, upper, friction };
 
+/// Rows of one constraint, at most.
+inline constexpr int most_rows = 32;
+
 /// The kinds of a law's rows: its own `kinds`, else all equalities when it says `bilateral`, else all `lower`.
 template <class Law>
 constexpr std::array<RowKind, Law::rows> row_kinds() {

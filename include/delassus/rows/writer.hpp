@@ -3,125 +3,84 @@
 
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/anchor.hpp>
-#include <delassus/rows/body_set.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/row_arrays.hpp>
+#include <delassus/rows/world_view.hpp>
 
-#include <type_traits>
+#include <cstddef>
 
 namespace delassus {
 
 /// One end of a constraint: the blocks that move one material point, where the law enters its directions.
-template <class World, class Pool>
+template <class T>
 class RowEnd {
  public:
-  using T = typename Pool::Scalar;
-
-  RowEnd(const World& world, Pool& pool, const Anchor& anchor, const Vec3& point)
-      : world_(world), pool_(pool), anchor_(anchor), point_(point) {
-    world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      auto& blocks = inner::part<s>(pool_.sets);
-      first_ = Index(blocks.block.size());
-      const int count = set.anchor_blocks(anchor_);
-      for (int k = 0; k < count; ++k) {
-        blocks.block.push_back(set.anchor_block(anchor_, k));
-        blocks.H.push_back(zero<typename std::remove_cvref_t<decltype(blocks.H)>::value_type>());
-      }
-    });
+  RowEnd(const WorldView<T>& world, const RowArrays<T>& rows, const Anchor& anchor, const Vec3& point)
+      : anchor_(anchor), point_(point), rows_(rows.rows) {
+    if (anchor.set < 0) return;
+    set_ = &world.set(anchor);
+    const SetArrays<T>& blocks = rows.set[anchor.set];
+    set_->table->add_blocks(set_->set, anchor, *blocks.block);
+    H_ = blocks.H;
+    first_ = H_->size();
+    H_->resize(blocks.block->size() * std::size_t(rows_) * std::size_t(blocks.width));
   }
 
   /// Row k sees the velocity of the point along `direction`: u_k += direction · v(point).
   void along(int k, const Vec3& direction) {
-    world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      auto& blocks = inner::part<s>(pool_.sets);
-      const int count = set.anchor_blocks(anchor_);
-      for (int b = 0; b < count; ++b)
-        add_to_row(blocks.H[first_ + b], k, set.along(anchor_, b, point_, direction));
-    });
+    if (set_) set_->table->along(set_->set, anchor_, point_, direction, H(), rows_, k);
   }
-
-  /// The first n rows see the velocity of the point along the rows of `axes`, times `sign`: one visit for all of them.
+  /// The first n rows see the velocity of the point along the rows of `axes`, times `sign`: one call for all of them.
   template <int n>
   void along(const Mat<n, 3>& axes, double sign) {
-    world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      auto& blocks = inner::part<s>(pool_.sets);
-      const int count = set.anchor_blocks(anchor_);
-      for (int b = 0; b < count; ++b)
-        for_each_index<n>([&](auto row) {
-          constexpr int k = row;
-          const Vec3 direction(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2));
-          add_to_row(blocks.H[first_ + b], k, set.along(anchor_, b, point_, direction));
-        });
-    });
+    if (!set_) return;
+    if constexpr (n == 3) set_->table->along_three(set_->set, anchor_, point_, axes, sign, H(), rows_);
+    else
+      for (int k = 0; k < n; ++k) along(k, Vec3(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2)));
   }
-
-  /// The first three rows see the velocity of the point along the axes of the world, times `sign`. With r from the centre
-  /// of a body to the point, v + ω × r = [1, −skew(r)] (v, ω).
+  /// The first three rows see the velocity of the point along the axes of the world, times `sign`.
   void along_axes(double sign) {
-    world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      using Set = std::remove_cvref_t<decltype(set)>;
-      if constexpr (HasInverseInertia<Set> && Set::width == 6) {
-        if (set.anchor_blocks(anchor_) == 0) return;
-        auto& H = inner::part<s>(pool_.sets).H[first_];
-        const Vec3 r = sign * (point_ - set.centre(anchor_.block));
-        const Mat<3, 3, T> cross = skew(Vec<3, T>(r.template cast<T>()));
-        for (int k = 0; k < 3; ++k) {
-          H(k, k) += T(sign);
-          for (int i = 0; i < 3; ++i) H(i, 3 + k) -= cross(i, k);
-        }
-      } else {
-        for (int k = 0; k < 3; ++k) along(k, sign * unit_axis(k));
-      }
-    });
+    if (set_) set_->table->along_axes(set_->set, anchor_, point_, sign, H(), rows_);
   }
-
   /// Row k sees the rate of turn about `axis`: u_k += axis · ω. The anchor must have a frame.
   void about(int k, const Vec3& axis) {
-    world_.visit(anchor_.set, [&](const auto& set, auto s) {
-      if constexpr (requires { set.about(anchor_, 0, axis); }) {
-        auto& blocks = inner::part<s>(pool_.sets);
-        const int count = set.anchor_blocks(anchor_);
-        for (int b = 0; b < count; ++b)
-          add_to_row(blocks.H[first_ + b], k, set.about(anchor_, b, axis));
-      }
-    });
+    if (set_ && set_->table->about) set_->table->about(set_->set, anchor_, axis, H(), rows_, k);
   }
 
  private:
-  template <int R, int width, class S>
-  static void add_to_row(Mat<R, width, T>& H, int k, const Vec<width, S>& x) {
-    for (int j = 0; j < width; ++j) H(k, j) += T(x[j]);
-  }
+  T* H() { return H_->data() + first_; }
 
-  const World& world_;
-  Pool& pool_;
   const Anchor& anchor_;
   Vec3 point_;
-  Index first_ = 0;
+  const SetView<T>* set_ = nullptr;  ///< null: the world, which nothing moves
+  Array<T>* H_ = nullptr;
+  std::size_t first_ = 0;
+  int rows_;
 };
 
 /// Writes H and φ of one item. A law never divides by h: φ becomes a rate in step/bias.hpp.
-template <class World, class Pool>
+template <class T>
 class RowWriter {
  public:
-  RowWriter(const World& world, Pool& pool, Index item) : world_(world), pool_(pool), item_(item) {}
+  RowWriter(const WorldView<T>& world, const RowArrays<T>& rows, Index item)
+      : world_(world), rows_(rows), first_(std::size_t(item) * std::size_t(rows.rows)) {}
 
   /// The blocks that move the material point of `anchor` that is at `point` (world, m) now.
-  RowEnd<World, Pool> end(const Anchor& anchor, const Vec3& point) { return {world_, pool_, anchor, point}; }
+  RowEnd<T> end(const Anchor& anchor, const Vec3& point) { return {world_, rows_, anchor, point}; }
 
   /// Violation of row k, m or rad.
-  void phi(int k, double value) { pool_.phi[item_][k] = typename Pool::Scalar(value); }
+  void phi(int k, double value) { (*rows_.phi)[first_ + std::size_t(k)] = T(value); }
 
   /// Makes row k a spring with a damper, N/m and N·s/m (N·m/rad and N·m·s/rad for a row about an axis). A row of kind
   /// `friction` is one only if its law has speed(item).
   void soft(int k, double stiffness, double damping) {
-    pool_.stiffness[item_][k] = typename Pool::Scalar(stiffness);
-    pool_.damping[item_][k] = typename Pool::Scalar(damping);
+    (*rows_.stiffness)[first_ + std::size_t(k)] = T(stiffness);
+    (*rows_.damping)[first_ + std::size_t(k)] = T(damping);
   }
 
  private:
-  const World& world_;
-  Pool& pool_;
-  Index item_;
+  const WorldView<T>& world_;
+  const RowArrays<T>& rows_;
+  std::size_t first_;
 };
 
 }  // namespace delassus

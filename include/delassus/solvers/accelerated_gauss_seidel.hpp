@@ -27,9 +27,11 @@ struct SweepSpace {
   History history;
   [[no_unique_address]] Newton newton;
   void reset(Index rows) {
-    for (auto* impulses : {&x, &best}) impulses->reserve(std::size_t(rows));
-    history.each([rows](Array<double>& v) { v.reserve(std::size_t(rows)); });
-    newton.reserve(std::size_t(rows));
+    const std::size_t room = std::size_t(rows);
+    if (x.capacity() >= room && history.change_z[0].capacity() >= room) return;  // all grow together
+    for (auto* impulses : {&x, &best}) impulses->reserve(room);
+    history.each([room](Array<double>& v) { v.reserve(room); });
+    newton.reserve(room);
   }
 };
 

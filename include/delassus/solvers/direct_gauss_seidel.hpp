@@ -89,7 +89,7 @@ struct BasicDirectGaussSeidel {
     report.ended_by = "factorization";
     bool is_contradiction = false;
     for (const double epsilon : {fine, coarse}) {
-      const T nothing[Island<T>::most_rows] = {};
+      const T nothing[most_rows] = {};
       for (Index k = 0; k < joints.bilateral(); ++k) problem.assign(span_of(problem, joints.node(k)), joints.node(k).item, nothing);
       ++report.factorizations;
       if (!joints.factor(epsilon)) continue;
@@ -152,7 +152,7 @@ struct BasicDirectGaussSeidel {
   template <class T, class System>
   static double load(Island<T>& problem, System& joints) {
     return joints.load([&](const auto& node, auto& to) {
-      T u[Island<T>::most_rows];
+      T u[most_rows];
       problem.velocity(span_of(problem, node), node.item, u);
       for (int r = 0; r < node.rows; ++r) to[r] = double(u[r]);
     });
@@ -194,7 +194,7 @@ struct BasicDirectGaussSeidel {
   /// λ_b ← λ_b + sign δ.
   template <class T, class System>
   static void push(Island<T>& problem, const System& joints, double sign) {
-    T next[Island<T>::most_rows];
+    T next[most_rows];
     for (Index k = 0; k < joints.bilateral(); ++k) {
       const auto& node = joints.node(k);
       const Span<T>& span = span_of(problem, node);
@@ -216,7 +216,7 @@ struct BasicDirectGaussSeidel {
     report.sweeps += swept.sweeps;
     report.factorizations += swept.factorizations;
     if (swept.factorizations > 0) report.ended_by = swept.ended_by;
-    T found[Island<T>::most_rows];
+    T found[most_rows];
     const T* before = work.before.data();
     for (const Span<T>& span : problem) {
       const int R = span.pool->rows;

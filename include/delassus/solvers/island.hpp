@@ -227,9 +227,6 @@ class Island {
   }
   static const RowKind* kinds(const Span<T>& span) { return span.pool->table->kinds; }
 
-  /// Rows of a law, at most.
-  static constexpr int most_rows = 32;
-
  protected:
   void take(const Span<T>* spans, int count) {
     spans_ = spans;

@@ -48,7 +48,7 @@ class IslandProblem : public Island<typename Rows::Scalar> {
  public:
   using T = typename Rows::Scalar;
 
-  IslandProblem(Book& book, Rows&, Operator&, const Islands<Rows::pool_count>& islands, Index island, double h, Observer& observer)
+  IslandProblem(Book& book, Rows&, Operator&, const Islands<T>& islands, Index island, double h, Observer& observer)
       : Island<T>(spans_, 0, island, h) {
     int count = 0;
     for (int p = 0; p < Rows::pool_count; ++p)

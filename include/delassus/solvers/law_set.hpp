@@ -68,6 +68,7 @@ class LawSet<Constraints<Laws...>, T, needs> {
     for_each_index<pools>([&](auto p) { show_pool<p>(W, rows); });
   }
   const PoolView<T>& view(int pool) const { return views_[pool]; }
+  inner::Slice<const PoolView<T>> views() const { return {views_, pools}; }
 
   /// |F_i| of item i of a pool: of its natural map at w_i.
   double natural_error(int pool, Index i) const {

@@ -113,7 +113,7 @@ struct MinimumNorm {
     /// Which constraints are free: those whose velocity is within the error of the solve.
     void sort(const Measure& measure) {
       problem.save(work.solved);
-      T u[Island<T>::most_rows];
+      T u[most_rows];
       double d = 0, moved = 0;
       for (const Span<T>& span : problem)
         for (const Index i : span) {
@@ -208,7 +208,7 @@ struct MinimumNorm {
     void multiply(const Array<double>& x, Array<double>& y) {
       problem.clear();
       std::size_t k = 0;
-      T numbers[Island<T>::most_rows];
+      T numbers[most_rows];
       each_free([&](const Free& free) {
         free.impulse(&x[k], numbers);
         problem.assign(free.span, free.i, numbers);
@@ -231,7 +231,7 @@ struct MinimumNorm {
       std::size_t k = 0, place = 0;
       bool is_inside = true;
       search.outside.assign(search.how.size(), 0);
-      T next[Island<T>::most_rows], inside[Island<T>::most_rows];
+      T next[most_rows], inside[most_rows];
       each_free([&](const Free& free) {
         free.impulse(&search.x[k], next);
         double size = 0, apart = 0;

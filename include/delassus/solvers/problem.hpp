@@ -17,7 +17,7 @@ struct Problem {
   Laws laws;
   Rows rows;
   Operator W;
-  Islands<Laws::pool_count> islands;
+  Islands<typename Rows::Scalar> islands;
   double h = 0;  ///< s
 };
 

@@ -1,15 +1,12 @@
 /// Bias: the stabilisation turns violations into velocities, and d is made.
 #pragma once
 
-#include <delassus/constraints/constraints.hpp>
-#include <delassus/rows/pool_rows.hpp>
-#include <delassus/rows/rate.hpp>
+#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/step/law_rows.hpp>
 
-#include <array>
 #include <cstddef>
-#include <type_traits>
 
 namespace delassus {
 
@@ -21,15 +18,6 @@ double lower_bias(const S& stabilisation, double phi, double h) {
 }
 
 namespace inner {
-
-/// Rows of friction beside a contact's normal: rows 1 and 2.
-template <std::size_t rows>
-constexpr bool has_slip(const std::array<RowKind, rows>& kinds) {
-  if constexpr (rows >= 3)
-    return kinds[0] == RowKind::lower && kinds[1] == RowKind::friction && kinds[2] == RowKind::friction;
-  else
-    return false;
-}
 
 /// What turns the direction of u⁺ into that of its mean with u, the slip at the start: (1−θ) of u across `free`, the
 /// slip without friction. It is of order h, as the turn of the slip is. Slips that may end within the step keep the
@@ -52,27 +40,87 @@ inline SoftRow soft_row(double stiffness, double damping, double phi, double h, 
   return {.compliance = 1 / (theta * (theta * h * h * stiffness + h * damping)),
           .bias = stiffness * phi / (theta * (theta * h * stiffness + damping))};
 }
-template <class Pool>
-void soften(Pool& pool, Index i, int k, double h, double theta = 1) {
-  using T = typename Pool::Scalar;
-  const SoftRow row =
-      soft_row(double(pool.stiffness[i][k]), double(pool.damping[i][k]), double(pool.phi[i][k]), h, theta);
-  pool.compliance[i][k] = T(row.compliance);
-  pool.bias[i][k] = T(row.bias);
+template <class T>
+void soften(const RowArrays<T>& pool, std::size_t row, double h, double theta) {
+  const SoftRow soft = soft_row(double((*pool.stiffness)[row]), double((*pool.damping)[row]), double((*pool.phi)[row]), h, theta);
+  (*pool.compliance)[row] = T(soft.compliance);
+  (*pool.bias)[row] = T(soft.bias);
 }
 
-/// A law whose springs see the mean velocity of the step.
-template <class Law>
-inline constexpr bool has_mean_springs = requires(const Law& contact) {
-  requires std::remove_cvref_t<decltype(contact.law)>::takes_mean;
-};
+/// One item's rows from `first` on. u: H v_free, which becomes d; start: H v, where θ < 1.
+template <class T, class S>
+[[gnu::always_inline]] inline void make_bias_of_item(const LawSteps<T>& law, const RowArrays<T>& pool, std::size_t first, T* u, const T* start, const S& stabilisation,
+                       double h, double theta) {
+  const T before = T((1 - theta) / theta);
+  if (theta != 1 && law.has_slip) {
+    const auto rotated = rotated_slip<T>({start[1], start[2]}, {u[1], u[2]}, theta);
+    u[1] += rotated[0], u[2] += rotated[1];
+  }
+  for (int k = 0; k < pool.rows; ++k) {
+    const std::size_t row = first + std::size_t(k);
+    const RowKind kind = law.kinds[k];
+    const double phi = double((*pool.phi)[row]);
+    if (kind == RowKind::friction) continue;
+    if (pool.is_soft(row)) {
+      soften(pool, row, h, law.has_mean_springs ? theta : 1.0);
+      if (law.has_mean_springs) u[k] += before * start[k];
+    } else if (kind == RowKind::equality) {
+      (*pool.bias)[row] = T(stabilisation.equality(phi, theta * h));
+      u[k] += before * start[k];
+      if constexpr (requires { stabilisation.joint_compliance(h); }) (*pool.compliance)[row] = T(stabilisation.joint_compliance(h));
+    } else {
+      const double sign = kind == RowKind::lower ? 1 : -1;
+      (*pool.bias)[row] = T(sign * lower_bias(stabilisation, sign * phi, h));
+      if constexpr (requires { stabilisation.contact_compliance(h); }) (*pool.compliance)[row] = T(stabilisation.contact_compliance(h));
+      // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
+      if constexpr (requires { stabilisation.relative_compliance(h); })
+        (*pool.relative_compliance)[row] = T(stabilisation.relative_compliance(h));
+    }
+  }
+}
 
 /// Rows that shall have a speed s: u⁺ − s in place of u⁺, in the soft row above as in a rigid one.
-template <class Pool>
-void drive(Pool& pool, Index i, double speed, double h) {
-  for (int k = 0; k < Pool::rows; ++k) {
-    if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) soften(pool, i, k, h);
-    pool.bias[i][k] -= typename Pool::Scalar(speed);
+template <class T>
+void drive(const RowArrays<T>& pool, std::size_t first, double speed, double h) {
+  for (std::size_t row = first; row < first + std::size_t(pool.rows); ++row) {
+    if (pool.is_soft(row)) soften(pool, row, h, 1.0);
+    (*pool.bias)[row] -= T(speed);
+  }
+}
+
+/// The velocities of all sets by number, as numbers by block.
+template <class World>
+struct VelocitiesOf {
+  using T = typename World::Scalar;
+  const T *free[World::set_count + 1], *start[World::set_count + 1];
+
+  explicit VelocitiesOf(const World& world) {
+    world.each([&](const auto& set, auto s) __attribute__((always_inline)) {
+      free[s] = reinterpret_cast<const T*>(set.v_free.data());
+      start[s] = reinterpret_cast<const T*>(set.velocity().data());
+    });
+  }
+};
+
+template <class T, class S>
+void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T* const* v, const S& stabilisation, double h, double theta) {
+  for (std::size_t p = 0; p < laws.size(); ++p) {
+    const RowArrays<T>& pool = rows[p];
+    const LawSteps<T>& law = *laws[p].law;
+    const Index items = pool.items();
+    T start[most_rows] = {};
+    for (Index i = 0; i < items; ++i) {
+      const std::size_t first = std::size_t(i) * std::size_t(pool.rows);
+      T* const d = pool.d->data() + first;
+      for (int k = 0; k < pool.rows; ++k) d[k] = start[k] = T(0);
+      for (int s = 0; s < pool.sets; ++s) {
+        pool.set[s].products->add_rate(pool.set[s], i, v_free[s], d);
+        if (theta != 1) pool.set[s].products->add_rate(pool.set[s], i, v[s], start);
+      }
+      make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta);
+      if (law.speed) drive(pool, first, law.speed(laws[p].pool, i), h);
+      for (int k = 0; k < pool.rows; ++k) d[k] += (*pool.bias)[first + std::size_t(k)];
+    }
   }
 }
 
@@ -80,51 +128,10 @@ void drive(Pool& pool, Index i, double speed, double h) {
 
 /// bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
 /// as do springs that ask for it and the direction of friction (`inner::rotated_slip`), all other rows for v_next.
-template <class World, class Laws, class Rows, class S>
-void make_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h, double theta) {
-  using T = typename Rows::Scalar;
-  each_pool(laws, [&](auto p, const auto& constraints) {
-    auto& pool = rows.template pool<p>();
-    using Law = std::remove_cvref_t<decltype(constraints.law)>;
-    constexpr auto kinds = row_kinds<Law>();
-    for (Index i = 0; i < pool.items(); ++i) {
-      const auto free = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_free; });
-      auto start = zero<Vec<Law::rows, T>>();
-      if (theta != 1) start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
-      pool.d[i] = free;
-      if constexpr (inner::has_slip(kinds))
-        if (theta != 1) {
-          const auto rotated = inner::rotated_slip<T>({start[1], start[2]}, {free[1], free[2]}, theta);
-          pool.d[i][1] += rotated[0], pool.d[i][2] += rotated[1];
-        }
-      for (int k = 0; k < Law::rows; ++k) {
-        if (kinds[k] == RowKind::friction) continue;
-        if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) {
-          if constexpr (inner::has_mean_springs<Law>) {
-            inner::soften(pool, i, k, h, theta);
-            pool.d[i][k] += T((1 - theta) / theta) * start[k];
-          } else {
-            inner::soften(pool, i, k, h);
-          }
-        } else if (kinds[k] == RowKind::equality) {
-          pool.bias[i][k] = T(stabilisation.equality(double(pool.phi[i][k]), theta * h));
-          pool.d[i][k] += T((1 - theta) / theta) * start[k];
-          if constexpr (requires { stabilisation.joint_compliance(h); })
-            pool.compliance[i][k] = T(stabilisation.joint_compliance(h));
-        } else {
-          const double sign = kinds[k] == RowKind::lower ? 1 : -1;
-          pool.bias[i][k] = T(sign * lower_bias(stabilisation, sign * double(pool.phi[i][k]), h));
-          if constexpr (requires { stabilisation.contact_compliance(h); })
-            pool.compliance[i][k] = T(stabilisation.contact_compliance(h));
-          // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
-          if constexpr (requires { stabilisation.relative_compliance(h); }) pool.relative_compliance[i][k] = T(stabilisation.relative_compliance(h));
-        }
-      }
-      if constexpr (refines<Law>(refine::speed))
-        inner::drive(pool, i, constraints.law.speed(constraints.item(i)), h);
-      pool.d[i] += pool.bias[i];
-    }
-  });
+template <class World, class T, class S>
+void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const S& stabilisation, double h, double theta) {
+  const inner::VelocitiesOf<World> v(world);
+  inner::make_bias(laws, rows, v.free, v.start, stabilisation, h, theta);
 }
 
 }  // namespace delassus

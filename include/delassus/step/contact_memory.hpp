@@ -36,6 +36,7 @@ class BasicContactMemory {
   }
   void sort() {
     ordered_begin_ = ordered_end_ = 0;
+    next_ = 0;
     const auto before = [](const Entry& x, const Entry& y) {
       return x.pair != y.pair ? x.pair < y.pair : x.feature < y.feature;
     };
@@ -50,9 +51,15 @@ class BasicContactMemory {
     const auto is_before = [](const Entry& e, const std::pair<std::uint64_t, std::uint32_t>& name) {
       return e.pair != name.first ? e.pair < name.first : e.feature < name.second;
     };
+    const auto has_name = [&](const Entry& e) { return e.pair == pair && e.feature == feature; };
+    // Contacts ask in the order of their names, mostly.
+    if (next_ < entries_.size() && has_name(entries_[next_]) && !entries_[next_].is_taken) return claim(entries_[next_++]);
     for (auto e = inner::lower_bound(entries_.data(), entries_.data() + entries_.size(), std::pair(pair, feature), is_before);
-         e != entries_.end() && e->pair == pair && e->feature == feature; ++e)
-      if (!e->is_taken) return claim(*e);
+         e != entries_.end() && has_name(*e); ++e)
+      if (!e->is_taken) {
+        next_ = std::size_t(e - entries_.begin()) + 1;
+        return claim(*e);
+      }
     Entry* const nearest = find_near(pair, point, reach());
     return nearest ? claim(*nearest) : zero<Vec3>();
   }
@@ -60,6 +67,7 @@ class BasicContactMemory {
   void memory(auto& archive) {
     archive(entries_);
     ordered_begin_ = ordered_end_ = 0;
+    next_ = 0;
   }
 
  private:
@@ -108,6 +116,7 @@ class BasicContactMemory {
   Array<Index> order_;                   ///< of one pair, by `axis_`
   Index ordered_begin_ = 0, ordered_end_ = 0;  ///< that pair's entries
   int axis_ = 0;
+  std::size_t next_ = 0;  ///< behind the entry that was found last by its name: all of that name before it are taken
 };
 
 using ContactMemory = BasicContactMemory<double>;

@@ -1,52 +1,58 @@
 /// Linearize: every law writes H and φ of its items.
 #pragma once
 
-#include <delassus/constraints/constraints.hpp>
-#include <delassus/rows/row_system.hpp>
-#include <delassus/rows/writer.hpp>
+#include <delassus/rows/row_arrays.hpp>
+#include <delassus/rows/world_view.hpp>
+#include <delassus/step/law_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <cstddef>
 
 namespace delassus {
 
-/// Items that remember something of their pose (how often a wheel has turned) see the start of the step.
+/// Items that remember something of their pose see the start of the step.
+template <class T>
+void follow(const WorldView<T>& world, AllLaws<T> laws) {
+  for (const LawPool<T>& pool : laws)
+    if (pool.law->follow) pool.law->follow(pool.pool, world);
+}
 template <class World, class Laws>
 void follow(const World& world, Laws& laws) {
-  each_pool(laws, [&](auto, auto& pool) {
-    if constexpr (refines<std::remove_cvref_t<decltype(pool.law)>>(refine::follow))
-      for (const Index place : pool.slots.active()) pool.law.follow(pool.items[place], world);
-  });
+  follow(ViewOf<World>(world), PoolsOf<Laws, typename World::Scalar>(laws).all());
 }
 
 /// H and φ at the present configuration of the world.
+template <class T>
+void linearize(const WorldView<T>& world, AllLaws<T> laws, AllRows<T> rows) {
+  for (std::size_t p = 0; p < laws.size(); ++p) laws[p].law->linearize(laws[p].pool, world, rows[p]);
+}
 template <class World, class Laws, class Rows>
 void linearize(const World& world, const Laws& laws, Rows& rows) {
-  each_pool(laws, [&](auto p, const auto& pool) {
-    auto& out = rows.template pool<p>();
-    using Pool = std::remove_cvref_t<decltype(out)>;
-    out.reset(pool.count());
-    for (Index i = 0; i < pool.count(); ++i) {
-      pool.law.linearize(pool.item(i), world, RowWriter<World, Pool>(world, out, i));
-      out.close();
-    }
-  });
+  using T = typename World::Scalar;
+  linearize(ViewOf<World>(world), PoolsOf<Laws, T>(laws).all(), ArraysOf<Rows>(rows).all());
 }
 
 /// The largest |φ| among the rows that are equalities, m or rad.
-template <class Laws, class Rows>
-double worst_equality(const Laws& laws, const Rows& rows) {
+template <class T>
+double worst_equality(AllLaws<T> laws, AllRows<T> rows) {
   double worst = 0;
-  each_pool(rows, [&](auto p, const auto& pool) {
-    using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
-    constexpr auto kinds = row_kinds<Law>();
-    for (Index i = 0; i < pool.items(); ++i)
-      for (int k = 0; k < Law::rows; ++k)
-        if (kinds[k] == RowKind::equality && !(pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0))
-          worst = std::max(worst, double(std::abs(pool.phi[i][k])));
-  });
+  for (std::size_t p = 0; p < laws.size(); ++p) {
+    const RowArrays<T>& pool = rows[p];
+    for (std::size_t first = 0; first < pool.phi->size(); first += std::size_t(pool.rows))
+      for (int k = 0; k < pool.rows; ++k)
+        if (laws[p].law->kinds[k] == RowKind::equality && !pool.is_soft(first + std::size_t(k)))
+          worst = std::max(worst, double(std::abs((*pool.phi)[first + std::size_t(k)])));
+  }
   return worst;
+}
+
+/// Of all pools.
+template <class T>
+Index row_count(AllRows<T> rows) {
+  Index count = 0;
+  for (const RowArrays<T>& pool : rows) count += Index(pool.phi->size());
+  return count;
 }
 
 }  // namespace delassus

@@ -34,7 +34,7 @@ struct PlainStages : StagesWithoutConstraints {
     step.begin_clock(h);
     // Before all else: Detect and Linearize ask how fast kinematic bodies go.
     step.world().each([&](auto& set, auto) { set.begin_step(h); });
-    step.law_set.attach(step.laws());
+    step.attach();
     attach_contacts(step.laws(), step.contact_cache);
     inner::drop_broken(step.laws());
     inner::drop_stale(std::as_const(step).world(), step.laws(), step.versions);
@@ -61,11 +61,11 @@ struct PlainStages : StagesWithoutConstraints {
   }
 
   static void linearize(auto& step) {
-    follow(std::as_const(step).world(), step.laws());
-    delassus::linearize(std::as_const(step).world(), step.laws(), step.rows);
-    warm_start(step.laws(), step.rows, step.contact_cache, step.h, step.last_h);
-    step.summary.rows = step.rows.row_count();
-    step.summary.max_joint_violation = std::max(step.summary.max_joint_violation, worst_equality(step.laws(), step.rows));
+    follow(step.view, step.pools.all());
+    delassus::linearize(step.view, step.pools.all(), step.arrays.all());
+    warm_start(step.pools.all(), step.arrays.all(), step.contact_cache, step.h, step.last_h);
+    step.summary.rows = row_count(step.arrays.all());
+    step.summary.max_joint_violation = std::max(step.summary.max_joint_violation, worst_equality(step.pools.all(), step.arrays.all()));
   }
 
   static void free_motion(auto& step) {
@@ -75,13 +75,13 @@ struct PlainStages : StagesWithoutConstraints {
   }
 
   static void find_islands(auto& step) {
-    delassus::find_islands(step.world(), step.rows, step.islands);
+    delassus::find_islands(step.world(), step.arrays.all(), step.islands);
     step.summary.islands = step.islands.count();
   }
 
   static void make_bias(auto& step) {
     using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
-    delassus::make_bias(std::as_const(step).world(), step.laws(), step.rows, step.stabilisation(), step.h, theta<Integrator>());
+    delassus::make_bias(std::as_const(step).world(), step.pools.all(), step.arrays.all(), step.stabilisation(), step.h, theta<Integrator>());
   }
 
   static void build(auto& step) {
@@ -113,14 +113,14 @@ struct PlainStages : StagesWithoutConstraints {
   }
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {
-    delassus::keep_impulses(step.laws(), step.rows, step.contact_cache);
+    delassus::keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache);
     inner::note_broken(step.laws(), step.h);
-    forget_lost_islands(step.laws(), step.rows, step.W, step.contact_cache, step.islands, step.reports);
+    forget_lost_islands(step.pools.all(), step.law_set.views(), step.contact_cache, step.islands, step.reports);
     step.contact_cache.remember();
   }
 
   static void correct(auto& step) {
-    delassus::correct(step.world(), step.rows, step.W, step.scratch, step.islands, step.reports, step.is_nonfinite);
+    delassus::correct(step.world(), step.arrays.all(), step.W, step.scratch, step.islands, step.reports, step.is_nonfinite);
   }
 };
 

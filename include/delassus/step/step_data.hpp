@@ -10,12 +10,15 @@
 #include <delassus/core/handle.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/local.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/rows/world_view.hpp>
 #include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/problem.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/channels.hpp>
 #include <delassus/step/contact_cache.hpp>
+#include <delassus/step/law_rows.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/step_report.hpp>
 
@@ -34,7 +37,10 @@ struct RowData {
   using Operator = typename P::Operator;
 
   Rows rows;
-  Islands<P::Laws::pool_count> islands;
+  ArraysOf<Rows> arrays;                                          ///< of `rows`
+  PoolsOf<typename P::Laws, typename P::World::Scalar> pools;     ///< of the laws
+  ViewOf<typename P::World> view;
+  Islands<typename P::World::Scalar> islands;
   Operator W;
   LawSet<typename P::Laws, typename P::World::Scalar, inner::needs_of<typename P::Solver>> law_set;
   typename P::Solver::template Workspace<Rows> solver_workspace;
@@ -199,6 +205,14 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   template <class F>
   void each_problem_part(F&& f) const {
     f(laws()), f(this->rows), f(this->W), f(this->islands);
+  }
+
+  /// The loop may have moved since its last step.
+  void attach() {
+    this->law_set.attach(laws());
+    this->pools.attach(laws());
+    this->view.attach(world());
+    this->arrays.attach(this->rows);
   }
 
   // --- the clock ------------------------------------------------------------------------------------------------------

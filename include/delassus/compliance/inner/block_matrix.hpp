@@ -62,7 +62,7 @@ class BlockMatrix {
     diagonal(a).resize_for_overwrite(std::size_t(mine.rows * mine.rows) * std::size_t(mine.items));
     for (int b = 0; b < pools_; ++b) {
       blocks(a, b).reset(mine.items);
-      place_[std::size_t(b)].assign(std::size_t(pools[b].items), -1);
+      if (place_[std::size_t(b)].size() != std::size_t(pools[b].items)) place_[std::size_t(b)].assign(std::size_t(pools[b].items), -1);
     }
     return true;
   }
@@ -119,7 +119,7 @@ class BlockMatrix {
   int pools_ = 0;
   OwningArray<BlockRowsOfNumbers<T>> blocks_;
   OwningArray<Array<T>> diagonal_;
-  OwningArray<Array<Index>> place_;  ///< of column j of pool b in the row that is being built, or −1
+  OwningArray<Array<Index>> place_;  ///< of column j of pool b in the row that is being built; −1 between rows
 };
 
 }  // namespace delassus::inner

@@ -95,20 +95,20 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
 /// is below a hundredth while h √α < 0.2. It is above where rows of the middle depend on each other: where they
 /// see across a chain drawn straight the other way round than those of the start, f makes grow what it should
 /// take. There f is put back into d, and the joints do no work. True: the island has to be solved again.
-template <class Rows, class Operator, int pools>
-bool reject_damping(Rows& rows, const Operator& W, const Islands<pools>& islands, Index island,
+template <class Rows, class Operator>
+bool reject_damping(Rows& rows, const Operator& W, const Islands<typename Rows::Scalar>& islands, Index island,
                    Impulses<Rows>& fade) {
   double work = 0, effort = 0;
-  inner::each_item(islands, island, [&](auto p, Index i) {
+  inner::each_item<Rows::pool_count>(islands, island, [&](auto p, Index i) {
     work += 0.5 * double(rows.template pool<p>().lambda[i].dot(inner::part<p>(fade.pools)[i]));
   });
   if (!(work > 0)) return false;
-  inner::each_item(islands, island, [&](auto p, Index i) {
+  inner::each_item<Rows::pool_count>(islands, island, [&](auto p, Index i) {
     const auto& pool = rows.template pool<p>();
     effort += 0.5 * double(dot(pool.lambda[i], W.template residual<p>(rows, i) - pool.d[i]));
   });
   if (!(work > 0.01 * effort)) return false;
-  inner::each_item(islands, island, [&](auto p, Index i) {
+  inner::each_item<Rows::pool_count>(islands, island, [&](auto p, Index i) {
     rows.template pool<p>().d[i] += inner::part<p>(fade.pools)[i];
     inner::part<p>(fade.pools)[i].setZero();
   });

@@ -194,7 +194,7 @@ class JointVisits {
       if (!visit.answers()) return;
       const Row lambda = pool.impulse[place], d = visit.template velocity<VisitVelocity::free>();
       sums.add(d, Row(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda)), lambda);
-      loads.add(visit.trace() / int(Row::RowsAtCompileTime), d, lambda);
+      loads.add(visit.trace() / int(Row::RowsAtCompileTime), d.data(), lambda.data(), int(Row::RowsAtCompileTime));
     });
     if (sums.u > far * far * sums.velocity() && loads.are_exceeded())
       each_pool(laws, [&](auto, auto& pool) {

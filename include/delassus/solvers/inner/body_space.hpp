@@ -22,7 +22,7 @@ class BodySpace : public System {
  public:
   using Constraint = typename System::Constraint;
   using System::best, System::centre, System::compliance, System::lambda, System::slope, System::velocity;
-  using System::most_rows, System::width;
+  using System::width;
 
   Laws laws;
 

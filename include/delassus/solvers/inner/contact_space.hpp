@@ -72,7 +72,7 @@ class ContactSpace {
   /// The island takes λ, each brought into its law's cone.
   void give(Island<T>& island) const {
     std::size_t at = 0;
-    T next[Island<T>::most_rows];
+    T next[most_rows];
     for (const Span<T>& span : island)
       for (const Index i : span) {
         for (int k = 0; k < span.pool->rows; ++k) next[k] = T(lambda[at++]);
@@ -136,7 +136,7 @@ class ContactSpace {
     for (const Span<T>& span : island)
       for (const Index i : span) {
         const double size = 1e3 * scale / span.pool->weight(i);
-        T impulse[Island<T>::most_rows] = {};
+        T impulse[most_rows] = {};
         for (int k = 0; k < span.pool->rows; ++k, ++column) {
           impulse[k] = T(size);
           island.assign(span, i, impulse);
@@ -150,7 +150,7 @@ class ContactSpace {
     island.load(was_);
   }
   static void read(const Island<T>& island, double* to) {
-    T u[Island<T>::most_rows];
+    T u[most_rows];
     for (const Span<T>& span : island)
       for (const Index i : span) {
         island.velocity(span, i, u);

@@ -30,7 +30,6 @@ template <class T>
 class Contradiction {
   static constexpr double rounding = std::numeric_limits<double>::epsilon();
   static constexpr double margin = 1.5e10;
-  static constexpr int most_rows = Island<T>::most_rows;
   struct Sums {
     double work = 0, moved = 0, free = 0, size = 0;
   };

@@ -37,7 +37,7 @@ class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
   using Base::constraints_, Base::laws, Base::error, Base::move, Base::slope, Base::square_of;
 
  public:
-  using Base::best, Base::centre, Base::lambda, Base::velocity, Base::most_rows;
+  using Base::best, Base::centre, Base::lambda, Base::velocity;
   using Base::evaluate, Base::hand_over;
 
   bool gather(Island<T>& island) {

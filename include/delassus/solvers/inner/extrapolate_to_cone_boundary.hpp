@@ -56,7 +56,7 @@ double reach(const Island<T>& island, const Array<T>& before, double length, dou
       if (!span.pool->table->clamp) continue;
       const double root = island.root_of_weight(span, i);
       const auto is_outside = [&](double t) {
-        T there[Island<T>::most_rows], inside[Island<T>::most_rows];
+        T there[most_rows], inside[most_rows];
         for (int k = 0; k < R; ++k) there[k] = inside[k] = lambda[k] + T(t) * (lambda[k] - start[k]);
         island.clamp(span, i, inside);
         double square = 0;

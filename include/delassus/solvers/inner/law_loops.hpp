@@ -234,15 +234,17 @@ struct LawTangents {
   static constexpr int R = Law::rows;
 
   static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
-    const Items of(pool);
-    Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
-    for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
-    Mat<R, R> S;
-    const auto& asked = who_refines<refine::tangent>(of.law);
-    if constexpr (requires { asked.tangent(given<Law>(of.item(i)), c); }) S = asked.tangent(given<Law>(of.item(i)), c);
-    else if constexpr (refines<Law>(refine::tangent)) S = asked.tangent(given<Law>(of.item(i)), c, of.memory[i]);
-    for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
-    store(c.lambda, lambda);
+    if constexpr (refines<Law>(refine::tangent)) {
+      const Items of(pool);
+      Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
+      for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
+      Mat<R, R> S;
+      const auto& asked = who_refines<refine::tangent>(of.law);
+      if constexpr (requires { asked.tangent(given<Law>(of.item(i)), c); }) S = asked.tangent(given<Law>(of.item(i)), c);
+      else S = asked.tangent(given<Law>(of.item(i)), c, of.memory[i]);
+      for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+      store(c.lambda, lambda);
+    }
   }
   static void convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
                              double* slope) {

@@ -142,7 +142,6 @@ class NewtonSystem {
   Array<double> velocity;          ///< by row: u = d + W λ̂ + H y
   Array<double> slope;             ///< S, rows × rows a constraint
 
-  static constexpr int most_rows = Island<T>::most_rows;
 
  protected:
   struct Side {

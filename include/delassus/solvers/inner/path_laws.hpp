@@ -33,7 +33,7 @@ class PathLaws {
     for (const Constraint& c : system_.constraints()) {
       const int R = c.rows;
       const PoolView<T>& pool = *c.span->pool;
-      const T nothing[Island<T>::most_rows] = {};
+      const T nothing[most_rows] = {};
       island.assign(*c.span, c.item, nothing);
       const T* own = pool.own_block(c.item);
       double& weight = weight_[std::size_t(c.number)];
@@ -47,7 +47,7 @@ class PathLaws {
       for (int k = 0; k < R; ++k) rows.scale[c.at + k] = rows.shape[c.at + k] / weight;
     }
     double square = 0;
-    T d[Island<T>::most_rows];
+    T d[most_rows];
     for (const Constraint& c : system_.constraints()) {
       island.velocity(*c.span, c.item, d);
       for (int k = 0; k < c.rows; ++k) square += std::pow(rows.shape[c.at + k] * double(d[k]), 2);
@@ -67,7 +67,7 @@ class PathLaws {
   /// |r| at x + t δ + s dx/ds; λ is handed over to the island.
   double evaluate(Island<T>& island, double tau, double t = 0, double s = 0) {
     reach_ = scale_;
-    T numbers[Island<T>::most_rows];
+    T numbers[most_rows];
     for (const Constraint& c : system_.constraints()) {
       for (Index k = c.at; k < c.at + c.rows; ++k) rows.ahead[k] = rows.x[k] + t * rows.direction[k] + s * rows.tangent[k];
       smooth(is_cone(c), c.rows, island.kinds(*c.span), &rows.ahead[c.at], tau, System::largest_ratio, &rows.a[c.at], &rows.z[c.at],

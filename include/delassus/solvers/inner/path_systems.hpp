@@ -25,7 +25,7 @@ class PathBodies : private NewtonSystem<T, width> {
   using Base = NewtonSystem<T, width>;
   using Constraint = typename Base::Constraint;
   using Base::constraints_, Base::compliance;
-  static constexpr int most = Base::most_rows;
+  static constexpr int most = most_rows;
 
  public:
   using Base::gather, Base::constraints, Base::slope, Base::lambda, Base::velocity;

@@ -55,7 +55,7 @@ class SchurComplement {
     diagonal_.resize(squares);
     T* diagonal = diagonal_.data();
     Index at = 0;
-    T u[Island<T>::most_rows];
+    T u[most_rows];
     for (std::size_t n = 0; n < spans_.size(); ++n) {
       PoolView<T>& pool = pools_[n];
       const int R = pool.rows;

@@ -20,7 +20,6 @@ class WholeSystem : public NewtonSystem<T, width_> {
   using Base = NewtonSystem<T, width_>;
 
  public:
-  using Base::most_rows;
   using typename Base::Constraint, typename Base::Velocities;
   using Base::width;
   static constexpr Index most = 400;  ///< constraints
@@ -75,16 +74,16 @@ class WholeSystem : public NewtonSystem<T, width_> {
     for (Index j = 0; j < count; ++j)
       for (int k = 0; k < R * width; ++k) this->H(c.first + j)[k] = this->G(c.first + j)[k] = 0;
     for (int k = 0; k < R; ++k) this->H(c.first + block)[k + R * k] = 1;
-    T lambda[most_rows], pushed[most_rows];
-    for (int k = 0; k < R; ++k) lambda[k] = pushed[k] = island.impulse(span, i)[k];
+    T present[most_rows], pushed[most_rows];
+    for (int k = 0; k < R; ++k) present[k] = pushed[k] = island.impulse(span, i)[k];
     for (int k = 0; k < R; ++k) {
-      pushed[k] = lambda[k] + T(1 / c.weight);
+      pushed[k] = present[k] + T(1 / c.weight);
       island.assign(span, i, pushed);
-      pushed[k] = lambda[k];
+      pushed[k] = present[k];
       each_velocity(island, [&](Index j, int l, double u) {
         this->G(c.first + j)[l + width * k] = c.weight * (u - before[std::size_t(j)][l]);
       });
-      island.assign(span, i, lambda);
+      island.assign(span, i, present);
     }
     for (Index j = 0; j < count; ++j) {
       if (j != block) pairs_.push_back(std::minmax(j, block));

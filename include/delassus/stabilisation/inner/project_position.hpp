@@ -57,7 +57,7 @@ double share_that_closes(Step& step, const typename Step::Rows& at_end, Index is
   const auto& w = step.template state<role::Stabilisation>().displacement;
   double closed = 0, square = 0;
   bool are_joints = true;
-  inner::each_item(step.islands, island, [&](auto p, Index i) {
+  inner::each_item<Step::Laws::pool_count>(step.islands, island, [&](auto p, Index i) {
     using Law = std::remove_cvref_t<decltype(step.laws().template pool<p>().law)>;
     constexpr auto kinds = row_kinds<Law>();
     are_joints &= inner::are_equalities(kinds);
@@ -123,7 +123,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
     auto& to = std::get<s>(own.displacement);
     to.resize(set.blocks());
     for (auto& x : to) x.setZero();
-    add_impulses<s>(inner::inverse_of<s>(step.W, set, 1), rows, to, std::get<s>(step.scratch));
+    add_impulses(inner::inverse_of<s>(step.W, set, 1), s, ArraysOf(rows).all(), to, std::get<s>(step.scratch));
   });
   if (at_end) bound_displacements(step, *at_end);
   exchange();

@@ -32,7 +32,7 @@ void solve_at_once(auto& step) {
     step.summary.status = worse(step.summary.status, step.reports[0].status);
     step.summary.residual = std::max(step.summary.residual, step.reports[0].measure.residual);
     step.summary.islands = 1;
-    keep_impulses(step.laws(), step.rows, step.contact_cache);
+    keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache);
     note_broken(step.laws(), step.h);
   } else {
     typename std::remove_reference_t<decltype(step)>::Policies::Rows none;

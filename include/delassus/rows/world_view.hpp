@@ -1,0 +1,211 @@
+/// The bodies as laws see them: where an anchor is, and what moves it.
+#pragma once
+
+#include <delassus/core/array.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/math/fits.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/rows/anchor.hpp>
+#include <delassus/rows/body_set.hpp>
+#include <delassus/rows/row_system.hpp>
+
+#include <string>
+#include <type_traits>
+
+namespace delassus {
+
+/// What laws ask of a body set, as functions of the set. Rows of H are R × width numbers a block, by columns, for every block of the
+/// anchor one after the other.
+template <class T>
+struct SetTable {
+  /// Whether the anchor speaks of this set; refuses one whose body was removed.
+  bool (*owns)(const void* set, const Anchor&, const char* what);
+  Vec3 (*point)(const void* set, const Anchor&);
+  Quat (*frame)(const void* set, const Anchor&);  ///< null: its bodies have no orientation
+  Mat3 (*axes)(const void* set, const Anchor&);   ///< null: those of `frame`
+  void (*add_blocks)(const void* set, const Anchor&, Array<Index>& blocks);
+  /// Row k of H += that of the velocity of `point` along `direction`.
+  void (*along)(const void* set, const Anchor&, const Vec3& point, const Vec3& direction, T* H, int R, int k);
+  /// The first three rows of H += those of the velocity of `point` along the rows of `axes`, times `sign`.
+  void (*along_three)(const void* set, const Anchor&, const Vec3& point, const Mat3& axes, double sign, T* H, int R);
+  /// The same along the axes of the world.
+  void (*along_axes)(const void* set, const Anchor&, const Vec3& point, double sign, T* H, int R);
+  /// Row k of H += that of the rate of turn about `axis`; null: nothing turns.
+  void (*about)(const void* set, const Anchor&, const Vec3& axis, T* H, int R, int k);
+};
+
+namespace inner {
+
+/// The functions of one set.
+template <class Set, class T>
+struct SetFunctions {
+  static const Set& of(const void* set) { return *static_cast<const Set*>(set); }
+
+  static bool owns(const void* set, const Anchor& a, const char* what) {
+    if (of(set).owner() != a.owner) return false;
+    using Handle = std::remove_cvref_t<decltype(of(set).handle(0))>;
+    DELASSUS_EXPECT(of(set).contains(Handle{a.block, a.generation, a.owner}),
+                    std::string(what) + ": " + of(set).who(a.block) + " was removed; its anchor is stale");
+    return true;
+  }
+  static Vec3 point(const void* set, const Anchor& a) { return of(set).point(a); }
+  static Quat frame(const void* set, const Anchor& a)
+    requires requires { of(set).frame(a); }
+  {
+    return of(set).frame(a);
+  }
+  static Mat3 axes(const void* set, const Anchor& a)
+    requires requires { of(set).axes(a); }
+  {
+    return of(set).axes(a);
+  }
+  static void add_blocks(const void* set, const Anchor& a, Array<Index>& blocks) {
+    const int count = of(set).anchor_blocks(a);
+    for (int k = 0; k < count; ++k) blocks.push_back(of(set).anchor_block(a, k));
+  }
+
+  /// Row k of H += x.
+  [[gnu::always_inline]] static void add(const auto& x, T* H, int R, int k) {
+    for (int j = 0; j < Set::width; ++j) H[R * j + k] += T(x[j]);
+  }
+  static void along(const void* set, const Anchor& a, const Vec3& point, const Vec3& direction, T* H, int R, int k) {
+    const int count = of(set).anchor_blocks(a);
+    for (int b = 0; b < count; ++b, H += R * Set::width) add(of(set).along(a, b, point, direction), H, R, k);
+  }
+  static void along_three(const void* set, const Anchor& a, const Vec3& point, const Mat3& axes, double sign, T* H, int R) {
+    const int count = of(set).anchor_blocks(a);
+    if constexpr (HasInverseInertia<Set> && Set::width == 6) {
+      if (count == 0) return;
+      const Vec3 r = point - of(set).centre(a.block);
+      for (int k = 0; k < 3; ++k) {
+        const double d[3] = {sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2)};
+        for (int i = 0; i < 3; ++i) {
+          const int j = (i + 1) % 3, l = (i + 2) % 3;
+          H[R * i + k] += T(d[i]);
+          H[R * (3 + i) + k] += T(r[j] * d[l] - r[l] * d[j]);
+        }
+      }
+      return;
+    }
+    for (int b = 0; b < count; ++b, H += R * Set::width)
+      for (int k = 0; k < 3; ++k)
+        add(of(set).along(a, b, point, Vec3(sign * axes(k, 0), sign * axes(k, 1), sign * axes(k, 2))), H, R, k);
+  }
+  /// With r from the centre of a body to the point, v + ω × r = [1, −skew(r)] (v, ω).
+  static void along_axes(const void* set, const Anchor& a, const Vec3& point, double sign, T* H, int R) {
+    if constexpr (HasInverseInertia<Set> && Set::width == 6) {
+      if (of(set).anchor_blocks(a) == 0) return;
+      const Vec3 r = sign * (point - of(set).centre(a.block));
+      const T x = T(r[0]), y = T(r[1]), z = T(r[2]);
+      const T minus_cross[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}};
+      for (int k = 0; k < 3; ++k) {
+        H[R * k + k] += T(sign);
+        for (int i = 0; i < 3; ++i) H[R * (3 + k) + i] += minus_cross[i][k];
+      }
+    } else {
+      for (int k = 0; k < 3; ++k) along(set, a, point, sign * unit_axis(k), H, R, k);
+    }
+  }
+  static void about(const void* set, const Anchor& a, const Vec3& axis, T* H, int R, int k)
+    requires requires { of(set).about(a, 0, axis); }
+  {
+    const int count = of(set).anchor_blocks(a);
+    for (int b = 0; b < count; ++b, H += R * Set::width) add(of(set).about(a, b, axis), H, R, k);
+  }
+};
+
+/// Those of the functions that a set has.
+template <class Set, class T>
+constexpr SetTable<T> table_of_set() {
+  using F = SetFunctions<Set, T>;
+  SetTable<T> table{F::owns, F::point, nullptr, nullptr, F::add_blocks, F::along, F::along_three, F::along_axes, nullptr};
+  if constexpr (requires { F::frame(nullptr, Anchor{}); }) table.frame = F::frame;
+  if constexpr (requires { F::axes(nullptr, Anchor{}); }) table.axes = F::axes;
+  if constexpr (requires { F::about(nullptr, Anchor{}, Vec3(), nullptr, 1, 0); }) table.about = F::about;
+  return table;
+}
+template <class Set, class T>
+inline constexpr SetTable<T> set_table = table_of_set<Set, T>();
+
+}  // namespace inner
+
+/// A set of a world and its functions.
+template <class T>
+struct SetView {
+  const void* set;
+  const SetTable<T>* table;
+};
+
+/// A world as laws see it: its sets by number, and no more of their types than the scalar.
+template <class T>
+class WorldView {
+ public:
+  using Scalar = T;
+
+  WorldView(const SetView<T>* sets, int count) : sets_(sets), count_(count) {}
+
+  /// Where an anchor is in the world now, m. One that no loop has seen, fresh from `anchor(set, body)`, is looked for among the
+  /// sets; those of removed bodies and of other worlds are refused then.
+  Vec3 point(const Anchor& a) const {
+    if (a.set >= 0) return set(a).table->point(set(a).set, a);
+    if (a.owner != 0) [[unlikely]] return point(found(a, "point"));
+    return a.local;
+  }
+  /// How the frame of an anchor is turned in the world now; a particle has none and says its anchor's own.
+  Quat frame(const Anchor& a) const {
+    if (a.set < 0 && a.owner != 0) [[unlikely]] return frame(found(a, "frame"));
+    if (a.set >= 0 && set(a).table->frame) return set(a).table->frame(set(a).set, a);
+    return a.frame;
+  }
+  /// The same as a matrix: its axes are the columns. Between the ends of a step of the midpoint rule it is no rotation.
+  Mat3 axes(const Anchor& a) const {
+    if (a.set >= 0 && set(a).table->axes) return set(a).table->axes(set(a).set, a);
+    return frame(a).toRotationMatrix();
+  }
+  const SetView<T>& set(const Anchor& a) const { return sets_[a.set]; }
+
+ private:
+  Anchor found(Anchor a, const char* what) const {
+    while (++a.set < count_)
+      if (set(a).table->owns(set(a).set, a, what)) return a;
+    throw_stranger(what);
+  }
+  [[noreturn]] static void throw_stranger(const char* what) {
+    throw InvalidArgument("delassus: " + std::string(what) + ": the anchor belongs to a body of another world");
+  }
+
+  const SetView<T>* sets_;
+  int count_;
+};
+
+/// The view of a world, with room for what it says of its sets.
+template <class World>
+class ViewOf : public WorldView<typename World::Scalar> {
+  using T = typename World::Scalar;
+
+ public:
+  ViewOf() : WorldView<T>(of_set_, World::set_count) {}  ///< of nothing, before it is attached
+  explicit ViewOf(const World& world) : ViewOf() { attach(world); }
+
+  /// The world may have moved with its loop.
+  void attach(const World& world) {
+    if (of_ == &world) return;
+    of_ = &world;
+    world.each([&](const auto& set, auto s) __attribute__((always_inline)) {
+      of_set_[s] = {&set, &inner::set_table<std::remove_cvref_t<decltype(set)>, T>};
+    });
+  }
+  /// A copy is of nothing.
+  ViewOf(const ViewOf&) : ViewOf() {}
+  ViewOf& operator=(const ViewOf&) {
+    of_ = nullptr;
+    return *this;
+  }
+
+ private:
+  const void* of_ = nullptr;
+  SetView<T> of_set_[World::set_count + 1];
+};
+
+}  // namespace delassus

@@ -1,0 +1,181 @@
+/// What laws do once a step, pool by pool, without their types.
+#pragma once
+
+#include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/contact.hpp>
+#include <delassus/rows/row_arrays.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/world_view.hpp>
+#include <delassus/rows/writer.hpp>
+#include <delassus/step/contact_cache.hpp>
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+
+namespace delassus {
+
+/// One constant table a law and scalar. `pool` is its Pool of constraints.
+template <class T>
+struct LawSteps {
+  const RowKind* kinds;   ///< of the rows of an item
+  bool has_slip;          ///< rows 1 and 2 are friction beside a contact's normal
+  bool has_mean_springs;  ///< its springs see the mean velocity of the step
+  /// Items that remember something of their pose (how often a wheel has turned) see the start of the step; null: none does.
+  void (*follow)(void* pool, const WorldView<T>&);
+  /// H and φ of all items at the present configuration of the world.
+  void (*linearize)(const void* pool, const WorldView<T>&, const RowArrays<T>&);
+  /// The speed that the rows of item i shall have, m/s or rad/s; null: zero.
+  double (*speed)(const void* pool, Index i);
+  /// λ ← `ratio` · λ of the last step, by contact id or by item; h in s.
+  void (*warm_start)(const void* pool, const RowArrays<T>&, ContactCache&, double ratio, double h);
+  /// Hands the impulses back: to the items of the pool, or to the contacts as world vectors.
+  void (*keep_impulses)(void* pool, const RowArrays<T>&, ContactCache&);
+  /// Item i starts the next step from zero.
+  void (*forget)(void* pool, Index i, ContactCache&);
+};
+
+/// A pool of constraints and what its law does.
+template <class T>
+struct LawPool {
+  void* pool;
+  const LawSteps<T>* law;
+};
+
+namespace inner {
+
+/// Rows of friction beside a contact's normal: rows 1 and 2.
+template <std::size_t rows>
+constexpr bool has_slip(const std::array<RowKind, rows>& kinds) {
+  if constexpr (rows >= 3)
+    return kinds[0] == RowKind::lower && kinds[1] == RowKind::friction && kinds[2] == RowKind::friction;
+  else
+    return false;
+}
+
+/// A law whose springs see the mean velocity of the step.
+template <class Law>
+inline constexpr bool has_mean_springs = requires(const Law& contact) {
+  requires std::remove_cvref_t<decltype(contact.law)>::takes_mean;
+};
+
+template <class Law, class T>
+struct LawRows {
+  static constexpr int R = Law::rows;
+  static constexpr std::array<RowKind, R> kinds = row_kinds<Law>();
+
+  static Pool<Law>& of(void* pool) { return *static_cast<Pool<Law>*>(pool); }
+  static const Pool<Law>& of(const void* pool) { return *static_cast<const Pool<Law>*>(pool); }
+  static Vec<R, T>* blocks(Array<T>& numbers) { return reinterpret_cast<Vec<R, T>*>(numbers.data()); }
+
+  static void follow(void* pool, const WorldView<T>& world)
+    requires(refines<Law>(refine::follow))
+  {
+    for (const Index place : of(pool).slots.active()) of(pool).law.follow(of(pool).items[place], world);
+  }
+  static void linearize(const void* at, const WorldView<T>& world, const RowArrays<T>& rows) {
+    const Pool<Law>& pool = of(at);
+    const Index count = pool.count();
+    rows.reset(count);
+    for (Index i = 0; i < count; ++i) {
+      pool.law.linearize(pool.item(i), world, RowWriter<T>(world, rows, i));
+      rows.close();
+    }
+  }
+  static double speed(const void* pool, Index i)
+    requires(refines<Law>(refine::speed))
+  {
+    return of(pool).law.speed(of(pool).item(i));
+  }
+
+  static void warm_start(const void* at, const RowArrays<T>& rows, ContactCache& cache, double ratio, double h) {
+    const Pool<Law>& pool = of(at);
+    Vec<R, T>* lambda = blocks(*rows.lambda);
+    for (Index i = 0; i < pool.count(); ++i) {
+      if constexpr (ContactLaw<Law>) {
+        const auto& item = pool.item(i);
+        const Vec3 impulse = ratio * cache.remembered(item.result, h);
+        if (is_zero(impulse)) continue;
+        const Vec3 own = item.frame * impulse;
+        for (int k = 0; k < rows_along<R>; ++k) lambda[i][k] = T(own[k]);
+        clamp(pool.law, item, lambda[i], NoMemory{});
+      } else {
+        (void)cache, (void)h;
+        const Index place = pool.slots.active()[i];
+        if (pool.starts_cold[place]) set_all(lambda[i], T(0));
+        else
+          for (int k = 0; k < R; ++k) lambda[i][k] = T(ratio * pool.impulse[place][k]);
+      }
+    }
+  }
+  static void keep_impulses(void* at, const RowArrays<T>& rows, ContactCache& cache) {
+    Pool<Law>& pool = of(at);
+    const Vec<R, T>* lambda = blocks(*rows.lambda);
+    for (Index i = 0; i < pool.count(); ++i) {
+      if constexpr (ContactLaw<Law>) {
+        const auto& item = pool.item(i);
+        ContactResult& result = cache.results[item.result];
+        assign(result.impulse, world_impulse<R>(item.frame, lambda[i]));
+        result.starts_cold = !is_finite(lambda[i]);
+        result.is_sliding = who_refines<refine::is_sliding>(pool.law).is_sliding(given<Law>(item), lambda[i]);
+      } else {
+        (void)cache;
+        const Index place = pool.slots.active()[i];
+        for (int k = 0; k < R; ++k) pool.impulse[place][k] = double(lambda[i][k]);
+        pool.starts_cold[place] = !is_finite(lambda[i]);
+      }
+    }
+  }
+  static void forget(void* at, Index i, ContactCache& cache) {
+    Pool<Law>& pool = of(at);
+    if constexpr (ContactLaw<Law>) cache.results[pool.item(i).result].starts_cold = true;
+    else (void)cache, pool.starts_cold[pool.slots.active()[i]] = 1;
+  }
+
+  static constexpr LawSteps<T> table = [] {
+    LawSteps<T> out{kinds.data(), inner::has_slip(kinds), inner::has_mean_springs<Law>, nullptr, linearize, nullptr, warm_start, keep_impulses, forget};
+    if constexpr (refines<Law>(refine::follow)) out.follow = follow;
+    if constexpr (refines<Law>(refine::speed)) out.speed = speed;
+    return out;
+  }();
+};
+
+}  // namespace inner
+
+/// The pools of a loop's laws: `PoolsOf laws(step.laws())`.
+template <class Laws, class T>
+class PoolsOf;
+template <class... L, class T>
+class PoolsOf<Constraints<L...>, T> {
+ public:
+  PoolsOf() = default;  ///< of nothing, before it is attached
+  /// Const laws too: who only reads writes nothing.
+  explicit PoolsOf(const Constraints<L...>& laws) { attach(laws); }
+
+  /// The laws may have moved with their loop.
+  void attach(const Constraints<L...>& laws) {
+    if (of_ == &laws) return;
+    of_ = &laws;
+    each_pool(const_cast<Constraints<L...>&>(laws), [&]<class Law>(auto p, Pool<Law>& pool) __attribute__((always_inline)) {
+      pools_[p] = {&pool, &inner::LawRows<Law, T>::table};
+    });
+  }
+  /// A copy is of nothing.
+  PoolsOf(const PoolsOf&) {}
+  PoolsOf& operator=(const PoolsOf&) {
+    of_ = nullptr;
+    return *this;
+  }
+
+  inner::Slice<const LawPool<T>> all() const { return {pools_, sizeof...(L)}; }
+
+ private:
+  const void* of_ = nullptr;
+  LawPool<T> pools_[sizeof...(L) + 1];
+};
+
+/// All laws of a step, in the order of the sweep.
+template <class T>
+using AllLaws = inner::Slice<const LawPool<T>>;
+
+}  // namespace delassus
