@@ -29,75 +29,156 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 // One list, of which each entry is declared here and compiled by `compile_here.hpp`: what a loop calls once a step, a span of
 // constraints, a pair or a body at the most.
 
-#define DELASSUS_COMPILED_LAW(KIND, ...)              \
-  KIND struct inner::LawRows<__VA_ARGS__, double>;    \
-  KIND struct inner::LawLoops<__VA_ARGS__, double>;   \
+#define DELASSUS_COMPILED_LAW(KIND, ...)               \
+  KIND struct Pool<__VA_ARGS__>;                       \
+  KIND struct inner::LawRows<__VA_ARGS__, double>;     \
+  KIND struct inner::LawLoops<__VA_ARGS__, double>;    \
   KIND struct inner::LawTangents<__VA_ARGS__, double>;
 
-#define DELASSUS_COMPILED_LAWS(KIND)                                     \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Coulomb>)                          \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Frictionless>)                     \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Pyramid>)                          \
-  DELASSUS_COMPILED_LAW(KIND, Contact<RollingCoulomb>)                   \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Restitution<Coulomb>>)             \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Penalty<Coulomb>>)                 \
-  DELASSUS_COMPILED_LAW(KIND, Contact<SequentialRestitution<Coulomb>>)   \
-  DELASSUS_COMPILED_LAW(KIND, BallJoint)                                 \
-  DELASSUS_COMPILED_LAW(KIND, Cylindrical)                               \
-  DELASSUS_COMPILED_LAW(KIND, DistanceJoint)                             \
-  DELASSUS_COMPILED_LAW(KIND, Hinge)                                     \
-  DELASSUS_COMPILED_LAW(KIND, Planar)                                    \
-  DELASSUS_COMPILED_LAW(KIND, PointOnLine)                               \
-  DELASSUS_COMPILED_LAW(KIND, Screw)                                     \
-  DELASSUS_COMPILED_LAW(KIND, Slider)                                    \
-  DELASSUS_COMPILED_LAW(KIND, Universal)                                 \
-  DELASSUS_COMPILED_LAW(KIND, Weld)                                      \
-  DELASSUS_COMPILED_LAW(KIND, VirtualCoupling)                           \
-  DELASSUS_COMPILED_LAW(KIND, Gear)                                      \
-  DELASSUS_COMPILED_LAW(KIND, Rack)                                      \
-  DELASSUS_COMPILED_LAW(KIND, Limit<Turn>)                               \
-  DELASSUS_COMPILED_LAW(KIND, Limit<Slide>)                              \
-  DELASSUS_COMPILED_LAW(KIND, Motor<Turn>)                               \
-  DELASSUS_COMPILED_LAW(KIND, Motor<Slide>)                              \
-  DELASSUS_COMPILED_LAW(KIND, Drive<Turn>)                               \
+#define DELASSUS_COMPILED_LAWS(KIND)                                   \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Coulomb>)                        \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Frictionless>)                   \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Pyramid>)                        \
+  DELASSUS_COMPILED_LAW(KIND, Contact<RollingCoulomb>)                 \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Restitution<Coulomb>>)           \
+  DELASSUS_COMPILED_LAW(KIND, Contact<Penalty<Coulomb>>)               \
+  DELASSUS_COMPILED_LAW(KIND, Contact<SequentialRestitution<Coulomb>>) \
+  DELASSUS_COMPILED_LAW(KIND, BallJoint)                               \
+  DELASSUS_COMPILED_LAW(KIND, Cylindrical)                             \
+  DELASSUS_COMPILED_LAW(KIND, DistanceJoint)                           \
+  DELASSUS_COMPILED_LAW(KIND, Hinge)                                   \
+  DELASSUS_COMPILED_LAW(KIND, Planar)                                  \
+  DELASSUS_COMPILED_LAW(KIND, PointOnLine)                             \
+  DELASSUS_COMPILED_LAW(KIND, Screw)                                   \
+  DELASSUS_COMPILED_LAW(KIND, Slider)                                  \
+  DELASSUS_COMPILED_LAW(KIND, Universal)                               \
+  DELASSUS_COMPILED_LAW(KIND, Weld)                                    \
+  DELASSUS_COMPILED_LAW(KIND, VirtualCoupling)                         \
+  DELASSUS_COMPILED_LAW(KIND, Gear)                                    \
+  DELASSUS_COMPILED_LAW(KIND, Rack)                                    \
+  DELASSUS_COMPILED_LAW(KIND, Limit<Turn>)                             \
+  DELASSUS_COMPILED_LAW(KIND, Limit<Slide>)                            \
+  DELASSUS_COMPILED_LAW(KIND, Motor<Turn>)                             \
+  DELASSUS_COMPILED_LAW(KIND, Motor<Slide>)                            \
+  DELASSUS_COMPILED_LAW(KIND, Drive<Turn>)                             \
   DELASSUS_COMPILED_LAW(KIND, Drive<Slide>)
 
-#define DELASSUS_COMPILED_SOLVERS(KIND)                                                                                           \
-  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(                                                      \
-      Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const;                                          \
-  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(                                                      \
-      Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const;                                          \
-  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, SweepsAlone>::solve(                                                     \
-      Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const;                                          \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 3, 6>&) const;                    \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 5, 6>&) const;                    \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 6, 6>&) const;                    \
-  KIND class BlockLu<6, double>;
+// Of laws with R rows, and body sets of one width.
+#define DELASSUS_COMPILED_HEIGHT(KIND, R)                                                                       \
+  KIND void inner::AssembledRows<double>::build_pool<R>(inner::AssembledRows<double>&, int, const CrowdedRow*); \
+  KIND struct inner::BlockLoops<R, 3, double>;                                                                  \
+  KIND struct inner::BlockLoops<R, 6, double>;                                                                  \
+  KIND void inner::apply_inverse<false>(const RigidBodies&, SetBlocks<R, 6, double>&);                          \
+  KIND void inner::apply_inverse<false>(const Particles&, SetBlocks<R, 3, double>&);
 
-#define DELASSUS_COMPILED_BODIES(KIND)                                                                     \
-  KIND struct inner::SetFunctions<RigidBodies, double>;                                                    \
-  KIND struct inner::SetFunctions<Particles, double>;                                                      \
-  KIND class WorldView<double>;                                                                            \
-  KIND class RowEnd<double>;                                                                               \
-  KIND bool inner::RigidState<double>::drift(Index, Velocity&, const Velocity&, double, double);           \
-  KIND RigidBodies::Handle BasicRigidBodies<double>::add(const RigidBody&);                                \
-  KIND Anchor anchor(const RigidBodies&, RigidBodies::Handle, const Vec3&, const Quat&);                   \
+#define DELASSUS_COMPILED_ROWS(KIND)                                                                                              \
+  DELASSUS_COMPILED_HEIGHT(KIND, 1)                                                                                               \
+  DELASSUS_COMPILED_HEIGHT(KIND, 2)                                                                                               \
+  DELASSUS_COMPILED_HEIGHT(KIND, 3)                                                                                               \
+  DELASSUS_COMPILED_HEIGHT(KIND, 4)                                                                                               \
+  DELASSUS_COMPILED_HEIGHT(KIND, 5)                                                                                               \
+  DELASSUS_COMPILED_HEIGHT(KIND, 6)                                                                                               \
+  KIND class Islands<double>;                                                                                                     \
+  KIND class WorldView<double>;                                                                                                   \
+  KIND class RowEnd<double>;                                                                                                      \
+  KIND struct RowArrays<double>;                                                                                                  \
+  KIND class inner::AssembledRows<double>;                                                                                        \
+  KIND class inner::BlockMatrix<double>;                                                                                          \
+  KIND class inner::Incidence<double>;                                                                                            \
+  KIND void follow(const WorldView<double>&, AllLaws<double>);                                                                    \
+  KIND void linearize(const WorldView<double>&, AllLaws<double>, AllRows<double>);                                                \
+  KIND double worst_equality(AllLaws<double>, AllRows<double>);                                                                   \
+  KIND Index row_count(AllRows<double>);                                                                                          \
+  KIND void add_restitution(AllLaws<double>, AllRows<double>, const double* const*, const double* const*, double, OwningArray<Array<double>>&); \
+  KIND class EnergyGuard<double>;                                                                                                 \
+  KIND class inner::CoupledColumns<double>;                                                                                       \
+  KIND class inner::NodalRows<double>;                                                                                            \
+  KIND class Array<double>;                                                                                                       \
+  KIND class Array<Index>;                                                                                                        \
+  KIND class Array<char>;                                                                                                         \
+  KIND class OwningArray<Array<double>>;                                                                                          \
+  KIND class OwningArray<Array<Index>>;                                                                                           \
+  KIND void inner::make_bias(AllLaws<double>, AllRows<double>, const double* const*, const double* const*, const Baumgarte&, double, double); \
+  KIND void warm_start(AllLaws<double>, AllRows<double>, ContactCache&, double, double);                                          \
+  KIND void keep_impulses(AllLaws<double>, AllRows<double>, ContactCache&);                                                       \
+  KIND void forget_lost_islands(AllLaws<double>, inner::Slice<const PoolView<double>>, ContactCache&, const Islands<double>&, inner::Slice<const SolveReport>);
+
+#define DELASSUS_COMPILED_SOLVERS(KIND)                                                                                           \
+  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const; \
+  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const; \
+  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, SweepsAlone>::solve(Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const; \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 3, 6>&) const;   \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 5, 6>&) const;   \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 6, 6>&) const;   \
+  KIND class inner::NewtonSystem<double, 6>;                                                                                      \
+  KIND class BlockLu<6, double>;                                                                                                  \
+  KIND class OwningArray<inner::IslandGraph<BlockLu<6, double>>>;                                                                 \
+  KIND class inner::SchurComplement<double, inner::DirectSystem<3, 6>>;                                                           \
+  KIND class inner::SchurComplement<double, inner::DirectSystem<5, 6>>;                                                           \
+  KIND class inner::SchurComplement<double, inner::DirectSystem<6, 6>>;                                                           \
+  KIND class OwningArray<inner::IslandGraph<SparseLu<3, double>>>;                                                                \
+  KIND class OwningArray<inner::IslandGraph<SparseLu<5, double>>>;                                                                \
+  KIND class OwningArray<inner::IslandGraph<SparseLu<6, double>>>;                                                                \
+  KIND class Island<double>;                                                                                                      \
+  KIND struct inner::SweepSpace<double, inner::NewtonSpace<double, 6>>;                                                           \
+  KIND struct inner::NewtonSpace<double, 6>;
+
+#define DELASSUS_COMPILED_BODIES(KIND, ...)                                                                                       \
+  KIND struct inner::SetFunctions<__VA_ARGS__, double>;                                                                           \
+  KIND void inner::correct_set(__VA_ARGS__&, const __VA_ARGS__&, int, Index, AllRows<double>, Array<__VA_ARGS__::Velocity>&, const Islands<double>&, Array<char>&); \
+  KIND void inner::void_set(__VA_ARGS__&, Index, const Islands<double>&, const Array<char>&);                                     \
+  KIND void free_motion(__VA_ARGS__&, __VA_ARGS__&, const SymplecticEuler&, Array<__VA_ARGS__::Velocity>&, double);               \
+  KIND void ContactCache::add(const __VA_ARGS__&, Index, Index, bool);
+
+#define DELASSUS_COMPILED_WORLD(KIND)                                                                  \
+  KIND class BasicRigidBodies<double>;                                                                 \
+  KIND class BasicParticles<double>;                                                                   \
+  KIND struct inner::RigidState<double>;                                                               \
+  KIND class inner::BodyStorage<RigidBodies, double, 6>;                                               \
+  KIND class inner::BodyStorage<Particles, double, 3>;                                                 \
+  KIND class inner::BasicShapes<ConvexHull>;                                                           \
+  KIND class BasicConvexHull<double>;                                                                  \
+  DELASSUS_COMPILED_BODIES(KIND, RigidBodies)                                                          \
+  DELASSUS_COMPILED_BODIES(KIND, Particles)                                                            \
+  KIND Anchor anchor(const RigidBodies&, RigidBodies::Handle, const Vec3&, const Quat&);               \
+  KIND Anchor anchor(const Particles&, Particles::Handle, const Vec3&, const Quat&);                   \
   KIND MidpointRate<double> midpoint_rate(const Mat3&, const Vec3&, const Vec3&, const Vec3&, double);
 
-#define DELASSUS_COMPILED_COLLISION(KIND)                                                                                        \
-  KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&,   \
-                                                                const NoFilter&);                                                \
-  KIND void CollisionEngine<GjkEpa, BoxTree>::recall_pairs();                                                                    \
-  KIND void CollisionEngine<GjkEpa, BoxTree>::collide(inner::Slice<const Collider>, const Job&, double, const CollisionSettings&,   \
-                                                      RestingPair&, std::vector<ContactPoint>&);                                 \
+#define DELASSUS_COMPILED_COLLISION(KIND)                                                                                         \
+  KIND class BasicContactCache<double>;                                                                                           \
+  KIND class BasicContactMemory<double>;                                                                                          \
+  KIND class BasicBoxTree<double>;                                                                                                \
+  KIND class inner::BasicDynamicTree<double>;                                                                                     \
+  KIND class NativeDetection<GjkEpa, BoxTree>;                                                                                    \
+  KIND class CollisionEngine<GjkEpa, BoxTree>;                                                                                    \
+  KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
+
+// What a file that makes scenes does with vectors: each would cost it some twenty functions of Eigen's.
+#define DELASSUS_COMPILED_VECTORS(KIND)                                                                     \
+  KIND delassus::Vec3& delassus::Vec3::operator=(const delassus::Vec3&);                                    \
+  KIND delassus::Vec<6>& delassus::Vec<6>::operator=(const delassus::Vec<6>&);                              \
+  KIND delassus::Vec<4>& delassus::Vec<4>::operator=(const delassus::Vec<4>&);                              \
+  KIND delassus::Mat3& delassus::Mat3::operator=(const delassus::Mat3&);                                    \
+  KIND delassus::Vec3::Matrix(const double&, const double&, const double&);                                 \
+  KIND delassus::Vec3 Eigen::QuaternionBase<delassus::Quat>::_transformVector(const delassus::Vec3&) const; \
+  KIND delassus::Quat Eigen::QuaternionBase<delassus::Quat>::normalized() const;                            \
+  KIND delassus::Mat3 Eigen::QuaternionBase<delassus::Quat>::toRotationMatrix() const;                      \
+  KIND double Eigen::MatrixBase<delassus::Vec3>::norm() const;                                              \
+  KIND double Eigen::MatrixBase<delassus::Vec3>::squaredNorm() const;                                       \
+  KIND const delassus::Vec3 Eigen::MatrixBase<delassus::Vec3>::normalized() const;                          \
+  KIND class std::vector<delassus::ContactPoint>;                                                           \
+  KIND class std::vector<delassus::CandidatePair>;
 
 #define DELASSUS_COMPILED_PARTS(KIND) \
   DELASSUS_COMPILED_LAWS(KIND)        \
+  DELASSUS_COMPILED_ROWS(KIND)        \
   DELASSUS_COMPILED_SOLVERS(KIND)     \
-  DELASSUS_COMPILED_BODIES(KIND)      \
+  DELASSUS_COMPILED_WORLD(KIND)       \
   DELASSUS_COMPILED_COLLISION(KIND)
 
 DELASSUS_COMPILED_PARTS(extern template)
 
 }  // namespace delassus
+
+DELASSUS_COMPILED_VECTORS(extern template)

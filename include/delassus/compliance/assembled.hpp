@@ -106,7 +106,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     view.form = FormOfW::square_blocks;
     view.diagonal = own_.matrix.diagonal(p).data();
     const T* impulses[pools];
-    for_each_index<pools>([&](auto b) { impulses[b] = inner::numbers_of(rows.template pool<b>().lambda); });
+    for_each_index<pools>([&](auto b) __attribute__((always_inline)) { impulses[b] = inner::numbers_of(rows.template pool<b>().lambda); });
     constexpr int heights[] = {R...};
     for (int b = 0; b < pools; ++b) {
       const auto& W = own_.matrix.blocks(p, b);
@@ -188,11 +188,11 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
                     "delassus: UncoupledCompliance takes the mass of each node alone, which this set of bodies does not give (Rods "
                     "do not); use AssembledCompliance");
       if constexpr (has_masses) {
-        if (set.is_coupled()) inner::apply_inverse<true>(set, rows, s);
-        else inner::apply_inverse(set, rows, s);
+        if (set.is_coupled()) inner::apply_inverse_to_all<true>(set, rows, s);
+        else inner::apply_inverse_to_all(set, rows, s);
       }
     } else {
-      inner::apply_inverse(set, rows, s);
+      inner::apply_inverse_to_all(set, rows, s);
     }
   }
   [[gnu::always_inline]] void prepare(const auto& world, Rows& rows) {

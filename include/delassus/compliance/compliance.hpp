@@ -20,17 +20,20 @@ concept Compliance = Plays<C, role::Compliance>;
 
 namespace inner {
 
-/// G_e = A⁻¹ H_eᵀ for every entry of every pool in one block-diagonal set; M⁻¹ H_eᵀ of the masses alone.
+/// G_e = A⁻¹ H_eᵀ for every entry of one pool in one block-diagonal set; M⁻¹ H_eᵀ of the masses alone.
+template <bool of_masses, class Set, int R, int w, class T>
+void apply_inverse(const Set& set, SetBlocks<R, w, T>& blocks) {
+  blocks.G.resize_for_overwrite(blocks.H.size());
+  for (std::size_t e = 0; e < blocks.H.size(); ++e) {
+    if constexpr (of_masses) assign(blocks.G[e], set.template solve_mass<R>(blocks.block[e], transposed(blocks.H[e])));
+    else assign(blocks.G[e], set.template solve_block<R>(blocks.block[e], transposed(blocks.H[e])));
+  }
+}
+/// The same of every pool.
 template <bool of_masses = false, class Set, class Rows, class S>
-void apply_inverse(const Set& set, Rows& rows, S s) {
-  for_each_index<Rows::pool_count>([&](auto p) {
-    auto& blocks = inner::part<s>(rows.template pool<p>().sets);
-    constexpr int R = Rows::template rows_of<p>;
-    blocks.G.resize_for_overwrite(blocks.H.size());
-    for (std::size_t e = 0; e < blocks.H.size(); ++e) {
-      if constexpr (of_masses) blocks.G[e] = set.template solve_mass<R>(blocks.block[e], transposed(blocks.H[e]));
-      else blocks.G[e] = set.template solve_block<R>(blocks.block[e], transposed(blocks.H[e]));
-    }
+[[gnu::always_inline]] inline void apply_inverse_to_all(const Set& set, Rows& rows, S s) {
+  for_each_index<Rows::pool_count>([&](auto p) __attribute__((always_inline)) {
+    apply_inverse<of_masses>(set, inner::part<s>(rows.template pool<p>().sets));
   });
 }
 

@@ -31,7 +31,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
       DELASSUS_EXPECT(!inner::is_coupled(set),
                       "MatrixFreeCompliance: springs between particles couple A under an implicit integrator, and so do "
                       "the elements of soft bodies; use AssembledCompliance");
-      inner::apply_inverse(set, rows, s);
+      inner::apply_inverse_to_all(set, rows, s);
       std::get<s>(y_).resize(set.blocks());
     });
     for_each_index<Rows::pool_count>([&](auto p) { own_blocks<p>(rows); });

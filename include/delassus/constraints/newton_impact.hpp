@@ -4,9 +4,8 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/owning_array.hpp>
-#include <delassus/rows/rate.hpp>
 #include <delassus/rows/row_kind.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/world_view.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,67 +14,63 @@
 #include <utility>
 
 namespace delassus {
-namespace inner {
-
-template <class Law, class Item>
-double restitution_of(const Law& law, const Item& item) {
-  if constexpr (refines<Law>(refine::restitution)) return law.restitution(item);
-  else return 0;
-}
-
-}  // namespace inner
-
 /// A row with a bound (`RowKind::lower` or `upper`) that closes within the step with u⁻ < 0 gets the stronger of e u⁻ and the push-out speed, never their sum.
 /// Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that symplectic Euler itself
 /// keeps. `bounce` takes what this added to the bias, by pool and row.
-template <class World, class Laws, class Rows, class T>
-void add_restitution(const World& world, const Laws& laws, Rows& rows, double h, OwningArray<Array<T>>& bounce) {
-  bounce.resize(std::size_t(Rows::pool_count));
-  each_pool(laws, [&](auto p, const auto& constraints) {
-    auto& pool = rows.template pool<p>();
-    using Law = std::remove_cvref_t<decltype(constraints.law)>;
-    Array<T>& added = bounce[std::size_t(p)];
-    added.assign(std::size_t(Law::rows) * std::size_t(pool.items()), T(0));
-    if constexpr (refines<Law>(refine::restitution)) {
-      constexpr auto kinds = row_kinds<Law>();
-      for (Index i = 0; i < pool.items(); ++i) {
-        const double restitution = inner::restitution_of(constraints.law, constraints.item(i));
-        if (!(restitution > 0)) continue;
-        const auto free = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_free; });
-        const auto start = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
-        for (int k = 0; k < Law::rows; ++k) {
-          if (kinds[k] != RowKind::lower && kinds[k] != RowKind::upper) continue;
-          if (pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) continue;
-          const double sign = kinds[k] == RowKind::lower ? 1 : -1, phi = sign * double(pool.phi[i][k]);
-          const double closing = sign * double(start[k]), plain = sign * double(pool.bias[i][k]);
-          if (!(phi + h * sign * double(free[k]) < 0 && closing < 0)) continue;
-          const double bias = std::min(phi < 0 ? plain : 0.0, restitution * closing);
-          added[std::size_t(Law::rows * i + k)] = T(sign * (bias - plain));
-          pool.bias[i][k] = T(sign * bias);
-          pool.d[i][k] = free[k] + pool.bias[i][k];
-        }
+template <class Laws, class Rows, class T>
+void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* const* v, double h, OwningArray<Array<T>>& bounce) {
+  bounce.resize(rows.size());
+  for (std::size_t p = 0; p < rows.size(); ++p) {
+    const auto& pool = rows[p];
+    const auto& law = *laws[p].law;
+    Array<T>& added = bounce[p];
+    added.assign_zeros(pool.phi->size());
+    if (!law.restitution) continue;
+    T free[most_rows], start[most_rows];
+    for (Index i = 0; i < pool.items(); ++i) {
+      const double restitution = law.restitution(laws[p].pool, i);
+      if (!(restitution > 0)) continue;
+      for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = T(0);
+      for (int s = 0; s < pool.sets; ++s) {
+        pool.set[s].products->add_rate(pool.set[s], i, v_free[s], free);
+        pool.set[s].products->add_rate(pool.set[s], i, v[s], start);
+      }
+      for (int k = 0; k < pool.rows; ++k) {
+        const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
+        if (law.kinds[k] != RowKind::lower && law.kinds[k] != RowKind::upper) continue;
+        if (pool.is_soft(row)) continue;
+        const double sign = law.kinds[k] == RowKind::lower ? 1 : -1, phi = sign * double((*pool.phi)[row]);
+        const double closing = sign * double(start[k]), plain = sign * double((*pool.bias)[row]);
+        if (!(phi + h * sign * double(free[k]) < 0 && closing < 0)) continue;
+        const double bias = std::min(phi < 0 ? plain : 0.0, restitution * closing);
+        added[row] = T(sign * (bias - plain));
+        (*pool.bias)[row] = T(sign * bias);
+        (*pool.d)[row] = free[k] + (*pool.bias)[row];
       }
     }
-  });
+  }
 }
+
+/// A solver's, which takes its pools from what `rows/` shows.
+template <class T>
+class Island;
 
 /// Newton's restitution on several contacts with friction can add energy. Where it did, λ becomes λ_c + s (λ_N − λ_c):
 /// λ_N the solution with restitution, λ_c the one without, s the largest number in [0, 1] for which the impulses add no
-/// more energy than those of λ_c do. Both lie in the cone, which is convex, so λ does. An island is a solver's.
-template <class Island>
+/// more energy than those of λ_c do. Both lie in the cone, which is convex, so λ does.
+template <class T>
 class EnergyGuard {
-  using T = typename Island::T;
-
  public:
-  EnergyGuard(Island& island, const OwningArray<Array<T>>& bounce, Array<T>& newton, Array<T>& newton_velocity)
+  EnergyGuard(Island<T>& island, const OwningArray<Array<T>>& bounce, Array<T>& newton, Array<T>& newton_velocity)
       : island_(island), bounce_(bounce), newton_(newton), velocity_(newton_velocity) {}
 
-  /// After a solve that converged; `solve_again` solves anew, from the λ there is.
-  template <class Solve>
-  void act(const Solve& solve_again) {
-    if (!has_bounced() || !(energy() > 0)) return;
+  /// After a solve that converged: whether to solve anew, from the λ there is, and then to `finish`.
+  bool asks_again() {
+    if (!has_bounced() || !(energy() > 0)) return false;
     take_bounce_away();
-    solve_again();
+    return true;
+  }
+  void finish() {
     shed();
     const double s = share();
     T next[most_rows];
@@ -183,7 +178,7 @@ class EnergyGuard {
     return a > 0 ? std::clamp(b > 0 ? 2 * room / (b + root) : (root - b) / (2 * a), 0.0, 1.0) : 0;
   }
 
-  Island& island_;
+  Island<T>& island_;
   const OwningArray<Array<T>>& bounce_;
   Array<T>&newton_, &velocity_;  ///< λ_N and its velocity without bias
 };
@@ -203,13 +198,19 @@ struct NewtonImpact {
       Base::make_bias(step);
       auto& own = step.template state<NewtonImpact>();
       for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
-      add_restitution(std::as_const(step).world(), step.laws(), step.rows, step.h, own.bounce);
+      const inner::BodyVelocities v(std::as_const(step).world());
+      add_restitution(step.pools.all(), step.arrays.all(), v.free, v.start, step.h, own.bounce);
     }
     static void solve_island(auto& step, auto& island) {
       Base::solve_island(step, island);
       auto& own = step.template state<NewtonImpact>();
       const auto report = step.reports[island.island()];
-      EnergyGuard(island, own.bounce, own.newton, own.newton_velocity).act([&] { Base::solve_island(step, island); });
+      EnergyGuard<typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T> guard(island, own.bounce, own.newton,
+                                                                                                     own.newton_velocity);
+      if (guard.asks_again()) {
+        Base::solve_island(step, island);
+        guard.finish();
+      }
       step.reports[island.island()] = report;
     }
   };

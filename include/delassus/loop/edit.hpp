@@ -62,7 +62,7 @@ void remove_body(World& world, Laws& laws, Handle<Set> body) {
         set.remove(body);
         // Where a body is more than its block, joints are found by the ends that have become stale.
         if constexpr (!std::is_same_v<typename std::remove_reference_t<decltype(set)>::Handle, Handle<Set>>)
-          drop_stale(std::as_const(world), laws);
+          drop_stale<typename World::Scalar>(ViewOf<World>(world), PoolsOf<Laws, typename World::Scalar>(laws).all());
         each_pool(laws, [&](auto, auto& pool) {
           if constexpr (requires { pool.remove_on(body.owner, body.index); }) pool.remove_on(body.owner, body.index);
         });

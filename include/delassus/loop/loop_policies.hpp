@@ -39,7 +39,7 @@ struct SoundPolicies : HeldTypes<Args...> {
 /// Parts that do not: the sentence has been said, and the loop never steps.
 template <class... Args>
 struct UnsoundPolicies : HeldTypes<Args...> {
-  using Scratch = std::tuple<>;
+  using Scratch = inner::Pack<>;
   using Rows = void;
   using Operator = void;
   using Stages = StagesWithoutConstraints;

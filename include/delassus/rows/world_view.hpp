@@ -21,6 +21,7 @@ template <class T>
 struct SetTable {
   /// Whether the anchor speaks of this set; refuses one whose body was removed.
   bool (*owns)(const void* set, const Anchor&, const char* what);
+  bool (*is_current)(const void* set, const Anchor&);  ///< the body behind it is still there
   Vec3 (*point)(const void* set, const Anchor&);
   Quat (*frame)(const void* set, const Anchor&);  ///< null: its bodies have no orientation
   Mat3 (*axes)(const void* set, const Anchor&);   ///< null: those of `frame`
@@ -48,6 +49,9 @@ struct SetFunctions {
     DELASSUS_EXPECT(of(set).contains(Handle{a.block, a.generation, a.owner}),
                     std::string(what) + ": " + of(set).who(a.block) + " was removed; its anchor is stale");
     return true;
+  }
+  static bool is_current(const void* set, const Anchor& a) {
+    return of(set).is_alive(a.block) && of(set).handle(a.block).generation == a.generation;
   }
   static Vec3 point(const void* set, const Anchor& a) { return of(set).point(a); }
   static Quat frame(const void* set, const Anchor& a)
@@ -119,7 +123,7 @@ struct SetFunctions {
 template <class Set, class T>
 constexpr SetTable<T> table_of_set() {
   using F = SetFunctions<Set, T>;
-  SetTable<T> table{F::owns, F::point, nullptr, nullptr, F::add_blocks, F::along, F::along_three, F::along_axes, nullptr};
+  SetTable<T> table{F::owns, F::is_current, F::point, nullptr, nullptr, F::add_blocks, F::along, F::along_three, F::along_axes, nullptr};
   if constexpr (requires { F::frame(nullptr, Anchor{}); }) table.frame = F::frame;
   if constexpr (requires { F::axes(nullptr, Anchor{}); }) table.axes = F::axes;
   if constexpr (requires { F::about(nullptr, Anchor{}, Vec3(), nullptr, 1, 0); }) table.about = F::about;
@@ -163,6 +167,8 @@ class WorldView {
     if (a.set >= 0 && set(a).table->axes) return set(a).table->axes(set(a).set, a);
     return frame(a).toRotationMatrix();
   }
+  /// Whether the body behind an anchor is still there; the world always is.
+  bool is_current(const Anchor& a) const { return a.set < 0 || set(a).table->is_current(set(a).set, a); }
   const SetView<T>& set(const Anchor& a) const { return sets_[a.set]; }
 
  private:
@@ -178,6 +184,24 @@ class WorldView {
   const SetView<T>* sets_;
   int count_;
 };
+
+namespace inner {
+
+/// The velocities of all sets by number, as numbers by block.
+template <class World>
+struct BodyVelocities {
+  using T = typename World::Scalar;
+  const T *free[World::set_count + 1], *start[World::set_count + 1];
+
+  explicit BodyVelocities(const World& world) {
+    world.each([&](const auto& set, auto s) __attribute__((always_inline)) {
+      free[s] = reinterpret_cast<const T*>(set.v_free.data());
+      start[s] = reinterpret_cast<const T*>(set.velocity().data());
+    });
+  }
+};
+
+}  // namespace inner
 
 /// The view of a world, with room for what it says of its sets.
 template <class World>

@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/pack.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/show_rows.hpp>
 #include <delassus/solvers/inner/functions_of_w.hpp>
@@ -40,7 +41,7 @@ class LawSet;
 template <class... Laws, class T, Needs needs>
 class LawSet<Constraints<Laws...>, T, needs> {
   static constexpr int pools = int(sizeof...(Laws));
-  using Memories = std::tuple<ArrayOrVector<inner::memory_of_t<inner::innermost_t<Laws>, double>>...>;
+  using Memories = inner::Pack<ArrayOrVector<inner::memory_of_t<inner::innermost_t<Laws>, double>>...>;
   template <int p>
   using Law = std::tuple_element_t<p, std::tuple<Laws...>>;
 
@@ -53,7 +54,7 @@ class LawSet<Constraints<Laws...>, T, needs> {
 
   /// Room for `items` of each law: `prepare` allocates nothing up to there.
   void reserve(std::size_t items) {
-    std::apply([&](auto&... memory) { (memory.reserve(items), ...); }, memory_);
+    memory_.each([items](auto& memory) { memory.reserve(items); });
   }
 
   /// Shows the rows and W, and lets each law prepare what it keeps of its own blocks of W.
@@ -65,7 +66,7 @@ class LawSet<Constraints<Laws...>, T, needs> {
   template <class Operator, class Rows>
   void show(Operator& W, Rows& rows) {
     sets_.resize(std::size_t(pools * Rows::set_count));
-    for_each_index<pools>([&](auto p) { show_pool<p>(W, rows); });
+    for_each_index<pools>([&](auto p) __attribute__((always_inline)) { show_pool<p>(W, rows); });
   }
   const PoolView<T>& view(int pool) const { return views_[pool]; }
   inner::Slice<const PoolView<T>> views() const { return {views_, pools}; }
@@ -80,9 +81,9 @@ class LawSet<Constraints<Laws...>, T, needs> {
 
  private:
   template <int p, class Operator, class Rows>
-  void show_pool(Operator& W, Rows& rows) {
+  [[gnu::always_inline]] void show_pool(Operator& W, Rows& rows) {
     PoolView<T>& view = views_[p];
-    auto& memory = std::get<p>(memory_);
+    auto& memory = inner::part<p>(memory_);
     const auto& pool = constraints_->template pool<p>();
     auto* sets = sets_.data() + p * Rows::set_count;
     inner::show_rows(rows.template pool<p>(), p, view, sets);

@@ -4,6 +4,7 @@
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/world_view.hpp>
 #include <delassus/step/law_rows.hpp>
 
 #include <cstddef>
@@ -88,20 +89,6 @@ void drive(const RowArrays<T>& pool, std::size_t first, double speed, double h) 
   }
 }
 
-/// The velocities of all sets by number, as numbers by block.
-template <class World>
-struct VelocitiesOf {
-  using T = typename World::Scalar;
-  const T *free[World::set_count + 1], *start[World::set_count + 1];
-
-  explicit VelocitiesOf(const World& world) {
-    world.each([&](const auto& set, auto s) __attribute__((always_inline)) {
-      free[s] = reinterpret_cast<const T*>(set.v_free.data());
-      start[s] = reinterpret_cast<const T*>(set.velocity().data());
-    });
-  }
-};
-
 template <class T, class S>
 void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T* const* v, const S& stabilisation, double h, double theta) {
   for (std::size_t p = 0; p < laws.size(); ++p) {
@@ -130,7 +117,7 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
 /// as do springs that ask for it and the direction of friction (`inner::rotated_slip`), all other rows for v_next.
 template <class World, class T, class S>
 void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const S& stabilisation, double h, double theta) {
-  const inner::VelocitiesOf<World> v(world);
+  const inner::BodyVelocities<World> v(world);
   inner::make_bias(laws, rows, v.free, v.start, stabilisation, h, theta);
 }
 

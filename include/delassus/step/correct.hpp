@@ -65,7 +65,7 @@ void correct(World& world, AllRows<T> rows, Operator& W, Scratch& scratch, const
   for (std::size_t k = 0; k < std::min(reports.size(), is_nonfinite.size()); ++k)
     is_nonfinite[k] = reports[k].status == Status::quarantined;
   world.each([&](auto& set, auto s) __attribute__((always_inline)) {
-    inner::correct_set(set, inner::inverse_of<s>(W, set, 1), s, first, rows, std::get<s>(scratch), islands, is_nonfinite);
+    inner::correct_set(set, inner::inverse_of<s>(W, set, 1), s, first, rows, inner::part<s>(scratch), islands, is_nonfinite);
     first += set.blocks();
   });
   bool are_finite = true;

@@ -5,27 +5,23 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/core/handle.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/world_view.hpp>
+#include <delassus/step/law_rows.hpp>
 
 #include <cstddef>
 
 namespace delassus::inner {
 
 /// Takes out every constraint one of whose bodies is gone: a host may remove bodies through their set.
-template <class World, class Laws>
-void drop_stale(const World& world, Laws& laws) {
-  each_kept_pool(laws, [&](auto, auto& pool) {
-    for (Index i = 0; i < pool.count(); ++i) {
-      bool is_stale = false;
-      each_end(pool.item(i), [&](const Anchor& end) { is_stale = is_stale || !world.is_current(end); });
-      if (is_stale) pool.slots.release(pool.slots.active()[i--]);
-    }
-  });
+template <class T>
+void drop_stale(const WorldView<T>& world, AllLaws<T> laws) {
+  for (const LawPool<T>& pool : laws)
+    if (pool.law->drop_stale) pool.law->drop_stale(pool.pool, world);
 }
 
 /// The same, where bodies may have gone since the last call: `seen` is what the sets were then.
-template <class World, class Laws>
-void drop_stale(const World& world, Laws& laws, FixedArray<SetVersion, std::size_t(World::set_count)>& seen) {
+template <class World, class T>
+void drop_stale(const World& world, const WorldView<T>& view, AllLaws<T> laws, FixedArray<SetVersion, std::size_t(World::set_count)>& seen) {
   bool may_be_stale = false;
   world.each([&](const auto& set, auto s) {
     if constexpr (requires { set.version(); }) {
@@ -37,7 +33,7 @@ void drop_stale(const World& world, Laws& laws, FixedArray<SetVersion, std::size
     }
   });
   if (may_be_stale) [[unlikely]]
-    drop_stale(world, laws);
+    drop_stale(view, laws);
 }
 
 /// f(pool) for the pools of laws that break.

@@ -21,12 +21,16 @@ struct LawSteps {
   const RowKind* kinds;   ///< of the rows of an item
   bool has_slip;          ///< rows 1 and 2 are friction beside a contact's normal
   bool has_mean_springs;  ///< its springs see the mean velocity of the step
+  /// Takes out every item one of whose bodies is gone; null: detection makes them anew.
+  void (*drop_stale)(void* pool, const WorldView<T>&);
   /// Items that remember something of their pose (how often a wheel has turned) see the start of the step; null: none does.
   void (*follow)(void* pool, const WorldView<T>&);
   /// H and φ of all items at the present configuration of the world.
   void (*linearize)(const void* pool, const WorldView<T>&, const RowArrays<T>&);
   /// The speed that the rows of item i shall have, m/s or rad/s; null: zero.
   double (*speed)(const void* pool, Index i);
+  /// e of item i, in [0, 1]; null: zero.
+  double (*restitution)(const void* pool, Index i);
   /// λ ← `ratio` · λ of the last step, by contact id or by item; h in s.
   void (*warm_start)(const void* pool, const RowArrays<T>&, ContactCache&, double ratio, double h);
   /// Hands the impulses back: to the items of the pool, or to the contacts as world vectors.
@@ -68,6 +72,16 @@ struct LawRows {
   static const Pool<Law>& of(const void* pool) { return *static_cast<const Pool<Law>*>(pool); }
   static Vec<R, T>* blocks(Array<T>& numbers) { return reinterpret_cast<Vec<R, T>*>(numbers.data()); }
 
+  static void drop_stale(void* at, const WorldView<T>& world)
+    requires(!ContactLaw<Law>)
+  {
+    Pool<Law>& pool = of(at);
+    for (Index i = 0; i < pool.count(); ++i) {
+      bool is_stale = false;
+      each_end(pool.item(i), [&](const Anchor& end) __attribute__((always_inline)) { is_stale = is_stale || !world.is_current(end); });
+      if (is_stale) pool.slots.release(pool.slots.active()[i--]);
+    }
+  }
   static void follow(void* pool, const WorldView<T>& world)
     requires(refines<Law>(refine::follow))
   {
@@ -86,6 +100,11 @@ struct LawRows {
     requires(refines<Law>(refine::speed))
   {
     return of(pool).law.speed(of(pool).item(i));
+  }
+  static double restitution(const void* pool, Index i)
+    requires(refines<Law>(refine::restitution))
+  {
+    return of(pool).law.restitution(of(pool).item(i));
   }
 
   static void warm_start(const void* at, const RowArrays<T>& rows, ContactCache& cache, double ratio, double h) {
@@ -133,9 +152,11 @@ struct LawRows {
   }
 
   static constexpr LawSteps<T> table = [] {
-    LawSteps<T> out{kinds.data(), inner::has_slip(kinds), inner::has_mean_springs<Law>, nullptr, linearize, nullptr, warm_start, keep_impulses, forget};
+    LawSteps<T> out{kinds.data(), inner::has_slip(kinds), inner::has_mean_springs<Law>, nullptr, nullptr, linearize, nullptr, nullptr, warm_start, keep_impulses, forget};
+    if constexpr (!ContactLaw<Law>) out.drop_stale = drop_stale;
     if constexpr (refines<Law>(refine::follow)) out.follow = follow;
     if constexpr (refines<Law>(refine::speed)) out.speed = speed;
+    if constexpr (refines<Law>(refine::restitution)) out.restitution = restitution;
     return out;
   }();
 };

@@ -99,7 +99,7 @@ void move_freely(Step& step) {
     } else if (set.is_separable()) {
       move_freely(set, step.integrator(), step.h);
     } else {
-      delassus::free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);
+      delassus::free_motion(set, set, step.integrator(), inner::part<s>(step.scratch), step.h);
       set.v_next = set.v_free;
       step.integrator().advance(set, step.h);
     }

@@ -37,7 +37,7 @@ struct PlainStages : StagesWithoutConstraints {
     step.attach();
     attach_contacts(step.laws(), step.contact_cache);
     inner::drop_broken(step.laws());
-    inner::drop_stale(std::as_const(step).world(), step.laws(), step.versions);
+    inner::drop_stale(std::as_const(step).world(), step.view, step.pools.all(), step.versions);
   }
 
   static void detect(auto& step) {
@@ -70,7 +70,7 @@ struct PlainStages : StagesWithoutConstraints {
 
   static void free_motion(auto& step) {
     step.world().each([&](auto& set, auto s) {
-      delassus::free_motion(set, inner::inverse_of<s>(step.W, set, 0), step.integrator(), std::get<s>(step.scratch), step.h);
+      delassus::free_motion(set, inner::inverse_of<s>(step.W, set, 0), step.integrator(), inner::part<s>(step.scratch), step.h);
     });
   }
 

@@ -15,7 +15,7 @@ struct widths_of;
 template <class... S>
 struct widths_of<World<S...>> {
   using type = Widths<S::width...>;
-  using Scratch = std::tuple<Array<typename S::Velocity>...>;
+  using Scratch = Pack<Array<typename S::Velocity>...>;
 };
 
 template <class W, int R, class Widths = typename widths_of<W>::type>

@@ -17,7 +17,7 @@ struct StagesWithoutConstraints {
   static void linearize(auto&) {}
   static void free_motion(auto& step) {
     step.world().each([&](auto& set, auto s) {
-      delassus::free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);
+      delassus::free_motion(set, set, step.integrator(), inner::part<s>(step.scratch), step.h);
     });
   }
   static void find_islands(auto&) {}

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/math/rotation.hpp>
 
 #include <cstddef>
 

@@ -19,6 +19,14 @@ enum class HowCoupled : char { not_at_all, columns, nodes };
 template <class T>
 class AssembledRows {
  public:
+  // Written out, so that who leaves them to `delassus::compiled` does not compile them.
+  AssembledRows() {}
+  AssembledRows(const AssembledRows&) = default;
+  AssembledRows(AssembledRows&&) = default;
+  AssembledRows& operator=(const AssembledRows&) = default;
+  AssembledRows& operator=(AssembledRows&&) = default;
+  ~AssembledRows() {}
+
   /// For so many pools and sets.
   void resize(int pools, int sets) {
     pools_ = pools;

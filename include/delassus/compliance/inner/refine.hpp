@@ -21,7 +21,7 @@ bool correct_free_velocity(Step& step) {
   using T = typename Rows::Scalar;
   world.each([&](auto& set, auto s) {
     for (auto& v : set.v_next) v.setZero();
-    add_impulses(inner::inverse_of<s>(W, set, 1), s, ArraysOf(rows).all(), set.v_next, std::get<s>(step.scratch));
+    add_impulses(inner::inverse_of<s>(W, set, 1), s, ArraysOf(rows).all(), set.v_next, inner::part<s>(step.scratch));
   });
   if (W.renew(world, rows)) step.law_set.prepare(W, rows, step.h);
   double miss = 0;

@@ -19,6 +19,12 @@ struct SequentialImpacts;
 
 namespace inner {
 
+template <class Law, class Item>
+double restitution_of(const Law& law, const Item& item) {
+  if constexpr (refines<Law>(refine::restitution)) return law.restitution(item);
+  else return 0;
+}
+
 /// Contacts of this law are hit one after the other.
 template <class L>
 inline constexpr bool hits_in_turn = []<class... O>(Overrides<O...>) {

@@ -216,7 +216,7 @@ void visit_joints(auto& step) {
     if (set.is_separable()) {
       delassus::kick(set, step.integrator(), step.h);
     } else {
-      delassus::free_motion(set, set, step.integrator(), std::get<s>(step.scratch), step.h);
+      delassus::free_motion(set, set, step.integrator(), inner::part<s>(step.scratch), step.h);
       set.v_next = set.v_free;
     }
   });

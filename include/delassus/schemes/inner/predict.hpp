@@ -24,7 +24,7 @@ void predict(World& world, Rows& rows, Operator& W, Scratch& scratch, Kept& pred
   });
   world.each([&](auto& set, auto s) {
     for (auto& v : set.v_next) set_zero(v);
-    add_impulses(inner::inverse_of<s>(W, set, 1), s, ArraysOf(rows).all(), set.v_next, std::get<s>(scratch));
+    add_impulses(inner::inverse_of<s>(W, set, 1), s, ArraysOf(rows).all(), set.v_next, inner::part<s>(scratch));
     for (std::size_t b = 0; b < set.v_free.size(); ++b) set.v_free[b] += set.v_next[b];
   });
   each_pool(rows, [&](auto p, auto& pool) {

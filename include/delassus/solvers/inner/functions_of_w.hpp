@@ -29,7 +29,7 @@ struct CallsOf {
 
 /// `blocks` has room for a view of each pool; `diagonal` takes W_ii of an operator that has it nowhere.
 template <int p, class Operator, class Rows, class T = typename Rows::Scalar>
-void show_W(Operator& W, Rows& rows, RowView<T>& view, SetBlocksView<T>* sets, BlockRowsView<T>* blocks, Array<T>& diagonal) {
+[[gnu::always_inline]] inline void show_W(Operator& W, Rows& rows, RowView<T>& view, SetBlocksView<T>* sets, BlockRowsView<T>* blocks, Array<T>& diagonal) {
   view.blocks = blocks;
   view.block_rows = 0;
   if constexpr (requires { W.template show<p>(rows, view, sets, blocks); }) {

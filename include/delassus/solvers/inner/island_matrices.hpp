@@ -3,11 +3,18 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/owning_array.hpp>
 
 #include <utility>
-#include <vector>
 
 namespace delassus::inner {
+
+template <class Matrix>
+struct IslandGraph {
+  Index blocks = -1;
+  Array<std::pair<Index, Index>> pairs;
+  Matrix matrix;
+};
 
 /// One `Matrix` an island: it keeps its analysis while the graph of its blocks stands.
 template <class Matrix>
@@ -16,7 +23,7 @@ class IslandMatrices {
   /// That of an island with so many blocks, of which these pairs meet.
   Matrix& of(Index island, Index blocks, const Array<std::pair<Index, Index>>& pairs) {
     if (Index(graphs_.size()) <= island) graphs_.resize(island + 1);
-    Graph& graph = graphs_[island];
+    IslandGraph<Matrix>& graph = graphs_[island];
     if (graph.blocks != blocks || graph.pairs != pairs) {
       graph.blocks = blocks;
       graph.pairs.assign(pairs.begin(), pairs.end());
@@ -26,12 +33,7 @@ class IslandMatrices {
   }
 
  private:
-  struct Graph {
-    Index blocks = -1;
-    Array<std::pair<Index, Index>> pairs;
-    Matrix matrix;
-  };
-  std::vector<Graph> graphs_;
+  OwningArray<IslandGraph<Matrix>> graphs_;
 };
 
 }  // namespace delassus::inner

@@ -45,6 +45,10 @@ class RestartRule {
   bool is_strict_ = false, was_short_ = false, is_futile_ = false;
 };
 
+struct NeverPauses {
+  bool operator()() const { return false; }
+};
+
 /// With z = sweep(y), y = P_K(x + (θ₋ − 1)/θ (x − x₋)):
 ///
 ///   x⁺ = z,  θ⁺ = (1 + √(1 + 4 θ²))/2,
@@ -55,7 +59,7 @@ class RestartRule {
 /// and returns how much it moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
 /// gradient restart.
 template <class Problem, class ConvergenceMonitor, class Impulses, class Sweep,
-          class Pause = decltype([] { return false; })>
+          class Pause = NeverPauses>
 bool momentum(Problem& problem, ConvergenceMonitor& monitor, Impulses& x, Sweep&& sweep, Pause&& pause = {}) {
   RestartRule rule;
   double theta = 1;

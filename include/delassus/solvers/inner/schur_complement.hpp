@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
 
 namespace delassus::inner {
 
@@ -153,7 +152,7 @@ class SchurComplement {
   Array<Span<T>> spans_;
   Array<Index> first_, place_;  ///< the first place of a pool; of an item its first row in S
   Array<T> diagonal_;
-  std::vector<typename System::Twist> velocity_;
+  Array<typename System::Twist> velocity_;
 };
 
 }  // namespace delassus::inner

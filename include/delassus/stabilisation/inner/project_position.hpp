@@ -123,7 +123,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
     auto& to = std::get<s>(own.displacement);
     to.resize(set.blocks());
     for (auto& x : to) x.setZero();
-    add_impulses(inner::inverse_of<s>(step.W, set, 1), s, ArraysOf(rows).all(), to, std::get<s>(step.scratch));
+    add_impulses(inner::inverse_of<s>(step.W, set, 1), s, ArraysOf(rows).all(), to, inner::part<s>(step.scratch));
   });
   if (at_end) bound_displacements(step, *at_end);
   exchange();
@@ -144,7 +144,7 @@ namespace inner {
 template <class P>
 struct ProjectionState {
   Impulses<typename P::Rows> lambda, d;  ///< those of the velocities, meanwhile
-  typename widths_of<typename P::World>::Scratch displacement;  ///< w, m/s
+  typename P::World::template PerSet<VelocitiesOf> displacement;  ///< w, m/s
 };
 
 /// What position projection changes: bodies are displaced as well as moved. Rows of the midpoint rule cannot say what

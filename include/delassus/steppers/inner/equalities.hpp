@@ -4,6 +4,7 @@
 
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/rows/impulses.hpp>
+#include <delassus/rows/rate.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/linearize.hpp>

@@ -1,6 +1,7 @@
 /// What a whole step with joints does with a result that is none: for `Rattle` and `RungeKutta4`.
 #pragma once
 
+#include <delassus/rows/rate.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 
@@ -15,7 +16,7 @@ namespace delassus::inner {
 template <class World, class Rows>
 double contradiction(World& world, Rows& rows, Equalities<Rows>& equalities) {
   world.each([&](auto& set, auto s) {
-    apply_inverse(set, rows, s);
+    apply_inverse_to_all(set, rows, s);
     for (auto& v : set.v_next) v.setZero();
   });
   if (!equalities.factor(rows)) return 0;

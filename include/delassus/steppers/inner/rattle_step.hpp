@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/impulses.hpp>
+#include <delassus/rows/rate.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/leave_step.hpp>
@@ -65,7 +66,7 @@ class RattleStep {
     Equalities<Rows>::pull(world, rows, first_, h / 2);
     world.each([&](auto& set, auto s) {
       set.factor(integrator.scale(h));
-      inner::apply_inverse(set, rows, s);
+      inner::apply_inverse_to_all(set, rows, s);
       auto& path = std::get<s>(paths_);
       path.resize(std::size_t(set.blocks()));
       kick(set, integrator, std::get<s>(force_), h / 2);
@@ -89,7 +90,7 @@ class RattleStep {
   void begin_part(World& world, Rows& rows, const I& integrator, double h, SolveReport& report) {
     world.each([&](auto& set, auto s) {
       set.factor(integrator.scale(h));
-      inner::apply_inverse(set, rows, s);
+      inner::apply_inverse_to_all(set, rows, s);
       std::get<s>(free_) = set.v_next;
       for (const Index b : set.active()) std::get<s>(paths_).begin(set.state(), b, set.velocity()[b]);
     });
@@ -161,7 +162,7 @@ class RattleStep {
   void find_velocities(World& world, Rows& rows, const I& integrator, double h) {
     world.each([&](auto& set, auto s) {
       set.factor(integrator.scale(h));
-      inner::apply_inverse(set, rows, s);
+      inner::apply_inverse_to_all(set, rows, s);
       auto& v = set.velocity();
       for (const Index b : set.active())
         if (set.moves(b)) v[b] = set.v_next[b] + (std::get<s>(kicked_)[b] - v[b]);

@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/impulses.hpp>
+#include <delassus/rows/rate.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/leave_step.hpp>
@@ -98,7 +99,7 @@ class RungeKuttaStep {
     if constexpr (Rows::pool_count > 0) {
       turn_directions(world, laws, rows, h);
       linearize(world, laws, rows);
-      world.each([&](const auto& set, auto s) { inner::apply_inverse(set, rows, s); });
+      world.each([&](const auto& set, auto s) { inner::apply_inverse_to_all(set, rows, s); });
       Equalities<Rows>::pull(world, rows, force_, 1);
       lambda_.add(force_, T(share));
       const auto a_of = [this](auto s) -> auto& { return std::get<s>(a_); };
@@ -167,7 +168,7 @@ class RungeKuttaStep {
       const int first = report.factorizations;
       for (double last = std::numeric_limits<double>::infinity();;) {
         linearize(world, laws, rows);
-        world.each([&](const auto& set, auto s) { inner::apply_inverse(set, rows, s); });
+        world.each([&](const auto& set, auto s) { inner::apply_inverse_to_all(set, rows, s); });
         const double size = Equalities<Rows>::worst(rows) / unit;
         report.measure.residual = size;
         if (size <= integrator.tolerance)
