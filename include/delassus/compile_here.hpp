@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/compiled.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
 
 namespace delassus {
 
@@ -10,5 +11,10 @@ const int inner::CompiledWithAlignment<alignment>::bytes = alignment;
 template struct inner::CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 
 DELASSUS_COMPILED_PARTS(template)
+DELASSUS_COMPILED_DIRECT(template, 3)
+DELASSUS_COMPILED_DIRECT(template, 5)
+DELASSUS_COMPILED_DIRECT(template, 6)
 
 }  // namespace delassus
+
+DELASSUS_COMPILED_VECTORS(template)

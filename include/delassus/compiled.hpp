@@ -6,7 +6,6 @@
 #pragma once
 
 #include <delassus/delassus.hpp>
-#include <delassus/solvers/direct_gauss_seidel.hpp>
 
 #include <span>
 #include <utility>
@@ -107,21 +106,18 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const; \
   KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const; \
   KIND SolveReport BasicAcceleratedGaussSeidel<Residual, SweepsAlone>::solve(Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const; \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 3, 6>&) const;   \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 5, 6>&) const;   \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, 6, 6>&) const;   \
   KIND class inner::NewtonSystem<double, 6>;                                                                                      \
   KIND class BlockLu<6, double>;                                                                                                  \
   KIND class OwningArray<inner::IslandGraph<BlockLu<6, double>>>;                                                                 \
-  KIND class inner::SchurComplement<double, inner::DirectSystem<3, 6>>;                                                           \
-  KIND class inner::SchurComplement<double, inner::DirectSystem<5, 6>>;                                                           \
-  KIND class inner::SchurComplement<double, inner::DirectSystem<6, 6>>;                                                           \
-  KIND class OwningArray<inner::IslandGraph<SparseLu<3, double>>>;                                                                \
-  KIND class OwningArray<inner::IslandGraph<SparseLu<5, double>>>;                                                                \
-  KIND class OwningArray<inner::IslandGraph<SparseLu<6, double>>>;                                                                \
   KIND class Island<double>;                                                                                                      \
   KIND struct inner::SweepSpace<double, inner::NewtonSpace<double, 6>>;                                                           \
   KIND struct inner::NewtonSpace<double, 6>;
+
+// Declared at the end of solvers/direct_gauss_seidel.hpp, whose reading costs something, for who includes it behind this header.
+#define DELASSUS_COMPILED_DIRECT(KIND, R)                                                                                       \
+  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, R, 6>&) const; \
+  KIND class inner::SchurComplement<double, inner::DirectSystem<R, 6>>;                                                         \
+  KIND class OwningArray<inner::IslandGraph<SparseLu<R, double>>>;
 
 #define DELASSUS_COMPILED_BODIES(KIND, ...)                                                                                       \
   KIND struct inner::SetFunctions<__VA_ARGS__, double>;                                                                           \
@@ -149,7 +145,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class BasicContactMemory<double>;                                                                                          \
   KIND class BasicBoxTree<double>;                                                                                                \
   KIND class inner::BasicDynamicTree<double>;                                                                                     \
-  KIND class NativeDetection<GjkEpa, BoxTree>;                                                                                    \
+  KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                    \
   KIND class CollisionEngine<GjkEpa, BoxTree>;                                                                                    \
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);

@@ -62,8 +62,11 @@ struct BlockLoops {
       for (Index e = (*set.offset)[i]; e < (*set.offset)[i + 1]; ++e)
         reinterpret_cast<Column*>(to)[(*set.block)[e]] += H[e].transpose() * reinterpret_cast<const Row*>(lambda)[i];
   }
-  static constexpr BlockProducts<T> table{add_rate, add_motion, add_impulse};
+  static const BlockProducts<T> table;
 };
+
+template <int R, int w, class T>
+constinit const BlockProducts<T> BlockLoops<R, w, T>::table = {add_rate, add_motion, add_impulse};
 
 }  // namespace inner
 

@@ -54,15 +54,17 @@ struct SetFunctions {
     return of(set).is_alive(a.block) && of(set).handle(a.block).generation == a.generation;
   }
   static Vec3 point(const void* set, const Anchor& a) { return of(set).point(a); }
-  static Quat frame(const void* set, const Anchor& a)
-    requires requires { of(set).frame(a); }
-  {
-    return of(set).frame(a);
+  static constexpr bool has_frame = requires(const Set& set, const Anchor& a) { set.frame(a); };
+  static constexpr bool has_axes = requires(const Set& set, const Anchor& a) { set.axes(a); };
+  static constexpr bool turns = requires(const Set& set, const Anchor& a, Vec3 axis) { set.about(a, 0, axis); };
+
+  static Quat frame([[maybe_unused]] const void* set, const Anchor& a) {
+    if constexpr (has_frame) return of(set).frame(a);
+    else return a.frame;
   }
-  static Mat3 axes(const void* set, const Anchor& a)
-    requires requires { of(set).axes(a); }
-  {
-    return of(set).axes(a);
+  static Mat3 axes([[maybe_unused]] const void* set, const Anchor& a) {
+    if constexpr (has_axes) return of(set).axes(a);
+    else return frame(set, a).toRotationMatrix();
   }
   static void add_blocks(const void* set, const Anchor& a, Array<Index>& blocks) {
     const int count = of(set).anchor_blocks(a);
@@ -111,26 +113,27 @@ struct SetFunctions {
       for (int k = 0; k < 3; ++k) along(set, a, point, sign * unit_axis(k), H, R, k);
     }
   }
-  static void about(const void* set, const Anchor& a, const Vec3& axis, T* H, int R, int k)
-    requires requires { of(set).about(a, 0, axis); }
-  {
-    const int count = of(set).anchor_blocks(a);
-    for (int b = 0; b < count; ++b, H += R * Set::width) add(of(set).about(a, b, axis), H, R, k);
+  static void about([[maybe_unused]] const void* set, [[maybe_unused]] const Anchor& a, [[maybe_unused]] const Vec3& axis,
+                    [[maybe_unused]] T* H, [[maybe_unused]] int R, [[maybe_unused]] int k) {
+    if constexpr (turns) {
+      const int count = of(set).anchor_blocks(a);
+      for (int b = 0; b < count; ++b, H += R * Set::width) add(of(set).about(a, b, axis), H, R, k);
+    }
   }
+
+  /// Those of the functions that a set has.
+  static constexpr SetTable<T> make_table() {
+    SetTable<T> out{owns, is_current, point, nullptr, nullptr, add_blocks, along, along_three, along_axes, nullptr};
+    if constexpr (has_frame) out.frame = frame;
+    if constexpr (has_axes) out.axes = axes;
+    if constexpr (turns) out.about = about;
+    return out;
+  }
+  static const SetTable<T> table;
 };
 
-/// Those of the functions that a set has.
 template <class Set, class T>
-constexpr SetTable<T> table_of_set() {
-  using F = SetFunctions<Set, T>;
-  SetTable<T> table{F::owns, F::is_current, F::point, nullptr, nullptr, F::add_blocks, F::along, F::along_three, F::along_axes, nullptr};
-  if constexpr (requires { F::frame(nullptr, Anchor{}); }) table.frame = F::frame;
-  if constexpr (requires { F::axes(nullptr, Anchor{}); }) table.axes = F::axes;
-  if constexpr (requires { F::about(nullptr, Anchor{}, Vec3(), nullptr, 1, 0); }) table.about = F::about;
-  return table;
-}
-template <class Set, class T>
-inline constexpr SetTable<T> set_table = table_of_set<Set, T>();
+constinit const SetTable<T> SetFunctions<Set, T>::table = make_table();
 
 }  // namespace inner
 
@@ -217,7 +220,7 @@ class ViewOf : public WorldView<typename World::Scalar> {
     if (of_ == &world) return;
     of_ = &world;
     world.each([&](const auto& set, auto s) __attribute__((always_inline)) {
-      of_set_[s] = {&set, &inner::set_table<std::remove_cvref_t<decltype(set)>, T>};
+      of_set_[s] = {&set, &inner::SetFunctions<std::remove_cvref_t<decltype(set)>, T>::table};
     });
   }
   /// A copy is of nothing.

@@ -77,50 +77,7 @@ struct BasicDirectGaussSeidel {
   }
 
   template <class T, class Space>
-  SolveReport solve(Island<T>& problem, Space& work) const {
-    SolveReport report{.measure = problem.measure()};
-    if (!std::isfinite(report.measure.residual))
-      return {.status = Status::quarantined, .measure = report.measure};
-    auto& joints = work.joints;
-    if (!gather(problem, joints))
-      return inner::sweeps_of<Criterion>(*this, max_iterations, min_iterations)
-          .solve(problem, work.contacts.newton.sweeps);
-    problem.notify(0, report.measure);
-    report.ended_by = "factorization";
-    bool is_contradiction = false;
-    for (const double epsilon : {fine, coarse}) {
-      const T nothing[most_rows] = {};
-      for (Index k = 0; k < joints.bilateral(); ++k) problem.assign(span_of(problem, joints.node(k)), joints.node(k).item, nothing);
-      ++report.factorizations;
-      if (!joints.factor(epsilon)) continue;
-      if (settle(problem, joints)) break;
-      is_contradiction = is_contradiction || contradicts(problem, work);
-    }
-    report.measure = problem.measure();
-    // What is met by the others' own scale can miss by the whole island's: each round asks for half as much.
-    double share = 1;
-    for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
-      const Status swept = sweep_others(problem, work, report, share);
-      settle(problem, joints);
-      if (round == 0 && (swept == Status::infeasible || swept == Status::max_iterations)) {
-        problem.save(work.after);
-        if (inner::Contradiction<T>(problem).is_proved(work.before)) {
-          auto& space = work.contacts.newton.sweeps;
-          return inner::compromise(problem, report, space.best, space.x);
-        }
-        problem.load(work.after);
-      }
-      report.measure = problem.measure();
-      report.status = swept;
-      if (swept == Status::infeasible) return report;
-      if (inner::is_done<Criterion>(*this, report.measure, problem.row_count()) || problem.is_out_of_time()) break;
-    }
-    problem.notify(report.sweeps + report.factorizations, report.measure);
-    report.status = is_contradiction
-                        ? Status::infeasible
-                        : inner::verdict<Criterion>(*this, report.measure, problem.row_count());
-    return report;
-  }
+  SolveReport solve(Island<T>& problem, Space& work) const;
 
  private:
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
@@ -233,6 +190,59 @@ struct BasicDirectGaussSeidel {
   }
 };
 
+template <class Criterion>
+template <class T, class Space>
+SolveReport BasicDirectGaussSeidel<Criterion>::solve(Island<T>& problem, Space& work) const {
+  SolveReport report{.measure = problem.measure()};
+  if (!std::isfinite(report.measure.residual))
+    return {.status = Status::quarantined, .measure = report.measure};
+  auto& joints = work.joints;
+  if (!gather(problem, joints))
+    return inner::sweeps_of<Criterion>(*this, max_iterations, min_iterations)
+        .solve(problem, work.contacts.newton.sweeps);
+  problem.notify(0, report.measure);
+  report.ended_by = "factorization";
+  bool is_contradiction = false;
+  for (const double epsilon : {fine, coarse}) {
+    const T nothing[most_rows] = {};
+    for (Index k = 0; k < joints.bilateral(); ++k) problem.assign(span_of(problem, joints.node(k)), joints.node(k).item, nothing);
+    ++report.factorizations;
+    if (!joints.factor(epsilon)) continue;
+    if (settle(problem, joints)) break;
+    is_contradiction = is_contradiction || contradicts(problem, work);
+  }
+  report.measure = problem.measure();
+  // What is met by the others' own scale can miss by the whole island's: each round asks for half as much.
+  double share = 1;
+  for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
+    const Status swept = sweep_others(problem, work, report, share);
+    settle(problem, joints);
+    if (round == 0 && (swept == Status::infeasible || swept == Status::max_iterations)) {
+      problem.save(work.after);
+      if (inner::Contradiction<T>(problem).is_proved(work.before)) {
+        auto& space = work.contacts.newton.sweeps;
+        return inner::compromise(problem, report, space.best, space.x);
+      }
+      problem.load(work.after);
+    }
+    report.measure = problem.measure();
+    report.status = swept;
+    if (swept == Status::infeasible) return report;
+    if (inner::is_done<Criterion>(*this, report.measure, problem.row_count()) || problem.is_out_of_time()) break;
+  }
+  problem.notify(report.sweeps + report.factorizations, report.measure);
+  report.status = is_contradiction
+                      ? Status::infeasible
+                      : inner::verdict<Criterion>(*this, report.measure, problem.row_count());
+  return report;
+}
+
 using DirectGaussSeidel = BasicDirectGaussSeidel<>;
+
+#ifdef DELASSUS_COMPILED_DIRECT  // after delassus/compiled.hpp
+DELASSUS_COMPILED_DIRECT(extern template, 3)
+DELASSUS_COMPILED_DIRECT(extern template, 5)
+DELASSUS_COMPILED_DIRECT(extern template, 6)
+#endif
 
 }  // namespace delassus

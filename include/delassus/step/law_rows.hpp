@@ -72,20 +72,19 @@ struct LawRows {
   static const Pool<Law>& of(const void* pool) { return *static_cast<const Pool<Law>*>(pool); }
   static Vec<R, T>* blocks(Array<T>& numbers) { return reinterpret_cast<Vec<R, T>*>(numbers.data()); }
 
-  static void drop_stale(void* at, const WorldView<T>& world)
-    requires(!ContactLaw<Law>)
-  {
-    Pool<Law>& pool = of(at);
-    for (Index i = 0; i < pool.count(); ++i) {
-      bool is_stale = false;
-      each_end(pool.item(i), [&](const Anchor& end) __attribute__((always_inline)) { is_stale = is_stale || !world.is_current(end); });
-      if (is_stale) pool.slots.release(pool.slots.active()[i--]);
+  static void drop_stale([[maybe_unused]] void* at, [[maybe_unused]] const WorldView<T>& world) {
+    if constexpr (!ContactLaw<Law>) {
+      Pool<Law>& pool = of(at);
+      for (Index i = 0; i < pool.count(); ++i) {
+        bool is_stale = false;
+        each_end(pool.item(i), [&](const Anchor& end) __attribute__((always_inline)) { is_stale = is_stale || !world.is_current(end); });
+        if (is_stale) pool.slots.release(pool.slots.active()[i--]);
+      }
     }
   }
-  static void follow(void* pool, const WorldView<T>& world)
-    requires(refines<Law>(refine::follow))
-  {
-    for (const Index place : of(pool).slots.active()) of(pool).law.follow(of(pool).items[place], world);
+  static void follow([[maybe_unused]] void* pool, [[maybe_unused]] const WorldView<T>& world) {
+    if constexpr (refines<Law>(refine::follow))
+      for (const Index place : of(pool).slots.active()) of(pool).law.follow(of(pool).items[place], world);
   }
   static void linearize(const void* at, const WorldView<T>& world, const RowArrays<T>& rows) {
     const Pool<Law>& pool = of(at);
@@ -96,15 +95,13 @@ struct LawRows {
       rows.close();
     }
   }
-  static double speed(const void* pool, Index i)
-    requires(refines<Law>(refine::speed))
-  {
-    return of(pool).law.speed(of(pool).item(i));
+  static double speed([[maybe_unused]] const void* pool, [[maybe_unused]] Index i) {
+    if constexpr (refines<Law>(refine::speed)) return of(pool).law.speed(of(pool).item(i));
+    else return 0;
   }
-  static double restitution(const void* pool, Index i)
-    requires(refines<Law>(refine::restitution))
-  {
-    return of(pool).law.restitution(of(pool).item(i));
+  static double restitution([[maybe_unused]] const void* pool, [[maybe_unused]] Index i) {
+    if constexpr (refines<Law>(refine::restitution)) return of(pool).law.restitution(of(pool).item(i));
+    else return 0;
   }
 
   static void warm_start(const void* at, const RowArrays<T>& rows, ContactCache& cache, double ratio, double h) {
@@ -151,15 +148,19 @@ struct LawRows {
     else (void)cache, pool.starts_cold[pool.slots.active()[i]] = 1;
   }
 
-  static constexpr LawSteps<T> table = [] {
+  static constexpr LawSteps<T> make_table() {
     LawSteps<T> out{kinds.data(), inner::has_slip(kinds), inner::has_mean_springs<Law>, nullptr, nullptr, linearize, nullptr, nullptr, warm_start, keep_impulses, forget};
     if constexpr (!ContactLaw<Law>) out.drop_stale = drop_stale;
     if constexpr (refines<Law>(refine::follow)) out.follow = follow;
     if constexpr (refines<Law>(refine::speed)) out.speed = speed;
     if constexpr (refines<Law>(refine::restitution)) out.restitution = restitution;
     return out;
-  }();
+  }
+  static const LawSteps<T> table;
 };
+
+template <class Law, class T>
+constinit const LawSteps<T> LawRows<Law, T>::table = make_table();
 
 }  // namespace inner
 

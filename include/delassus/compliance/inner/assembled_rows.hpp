@@ -46,22 +46,7 @@ class AssembledRows {
 
   /// The rows of pool a, `height` an item, whose items in `crowded` have no blocks, and of W_ii only their own compliance.
   template <int height>
-  static void build_pool(AssembledRows& W, int a, const CrowdedRow* crowded) {
-    const RowView<T>& mine = W.views[std::size_t(a)];
-    if (!W.matrix.begin_rows(W.views.data(), a)) return;
-    const HowCoupled* const coupled = W.coupled.data();
-    bool any_coupled = false;
-    for (int s = 0; s < mine.sets; ++s) any_coupled = any_coupled || coupled[s] != HowCoupled::not_at_all;
-    for (Index i = 0; i < mine.items; ++i) {
-      W.matrix.begin_row(mine, a, i);
-      if (!crowded || !crowded[i].is_crowded) {
-        if (any_coupled) W.template add_coupled<height>(a, i);
-        for (int s = 0; s < mine.sets; ++s)
-          if (coupled[s] == HowCoupled::not_at_all) W.template add_row<height>(a, s, i);
-      }
-      W.matrix.end_row(mine, a, i);
-    }
-  }
+  static void build_pool(AssembledRows& W, int a, const CrowdedRow* crowded);
 
   BlockMatrix<T> matrix;
   Array<RowView<T>> views;  ///< of the rows that are being built
@@ -126,5 +111,24 @@ class AssembledRows {
   CoupledColumns<T> columns_;
   NodalRows<T> nodal_;
 };
+
+template <class T>
+template <int height>
+void AssembledRows<T>::build_pool(AssembledRows& W, int a, const CrowdedRow* crowded) {
+  const RowView<T>& mine = W.views[std::size_t(a)];
+  if (!W.matrix.begin_rows(W.views.data(), a)) return;
+  const HowCoupled* const coupled = W.coupled.data();
+  bool any_coupled = false;
+  for (int s = 0; s < mine.sets; ++s) any_coupled = any_coupled || coupled[s] != HowCoupled::not_at_all;
+  for (Index i = 0; i < mine.items; ++i) {
+    W.matrix.begin_row(mine, a, i);
+    if (!crowded || !crowded[i].is_crowded) {
+      if (any_coupled) W.template add_coupled<height>(a, i);
+      for (int s = 0; s < mine.sets; ++s)
+        if (coupled[s] == HowCoupled::not_at_all) W.template add_row<height>(a, s, i);
+    }
+    W.matrix.end_row(mine, a, i);
+  }
+}
 
 }  // namespace delassus::inner

@@ -179,7 +179,7 @@ struct LawLoops {
     if constexpr (is_round_cone<Law>()) out.friction = friction;
     return out;
   }
-  static constexpr LawTable<T> table = make_table();
+  static const LawTable<T> table;
 
  private:
   [[gnu::always_inline]] static const T* block_of(const PoolView<T>& pool, Index i) { return pool.diagonal + std::ptrdiff_t(R * R) * i; }
@@ -227,38 +227,49 @@ struct LawLoops {
   }
 };
 
+// Tables stand outside of their classes, and large functions too: what is inside of one is inline, and a compiler makes its body
+// in every file, also in one that leaves it to `delassus::compiled`.
+template <class Law, class T>
+constinit const LawTable<T> LawLoops<Law, T>::table = make_table();
+
 /// What Newton's method asks of a law: apart from the loops, since naming a table compiles all of it.
 template <class Law, class T>
 struct LawTangents {
   using Items = LawItems<Law, T>;
   static constexpr int R = Law::rows;
 
-  static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
-    if constexpr (refines<Law>(refine::tangent)) {
-      const Items of(pool);
-      Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
-      for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
-      Mat<R, R> S;
-      const auto& asked = who_refines<refine::tangent>(of.law);
-      if constexpr (requires { asked.tangent(given<Law>(of.item(i)), c); }) S = asked.tangent(given<Law>(of.item(i)), c);
-      else S = asked.tangent(given<Law>(of.item(i)), c, of.memory[i]);
-      for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
-      store(c.lambda, lambda);
-    }
-  }
+  static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope);
   static void convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
-                             double* slope) {
+                             double* slope);
+};
+
+template <class Law, class T>
+void LawTangents<Law, T>::tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
+  if constexpr (refines<Law>(refine::tangent)) {
     const Items of(pool);
     Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
     for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
-    if constexpr (refines<Law>(refine::convex_tangent)) {
-      const Mat<R, R> S = who_refines<refine::convex_tangent>(of.law).convex_tangent(given<Law>(of.item(i)), c, slip);
-      for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
-      store(c.lambda, lambda);
-    } else {
-      tangent(pool, i, w, d, lambda, slope);
-    }
+    Mat<R, R> S;
+    const auto& asked = who_refines<refine::tangent>(of.law);
+    if constexpr (requires { asked.tangent(given<Law>(of.item(i)), c); }) S = asked.tangent(given<Law>(of.item(i)), c);
+    else S = asked.tangent(given<Law>(of.item(i)), c, of.memory[i]);
+    for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+    store(c.lambda, lambda);
   }
-};
+}
+template <class Law, class T>
+void LawTangents<Law, T>::convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
+                           double* slope) {
+  const Items of(pool);
+  Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
+  for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
+  if constexpr (refines<Law>(refine::convex_tangent)) {
+    const Mat<R, R> S = who_refines<refine::convex_tangent>(of.law).convex_tangent(given<Law>(of.item(i)), c, slip);
+    for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
+    store(c.lambda, lambda);
+  } else {
+    tangent(pool, i, w, d, lambda, slope);
+  }
+}
 
 }  // namespace delassus::inner
