@@ -29,10 +29,13 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 // constraints, a pair or a body at the most.
 
 #define DELASSUS_COMPILED_LAW(KIND, ...)               \
-  KIND struct Pool<__VA_ARGS__>;                       \
   KIND struct inner::LawRows<__VA_ARGS__, double>;     \
   KIND struct inner::LawLoops<__VA_ARGS__, double>;    \
   KIND struct inner::LawTangents<__VA_ARGS__, double>;
+
+#define DELASSUS_COMPILED_KEPT_LAW(KIND, ...) \
+  DELASSUS_COMPILED_LAW(KIND, __VA_ARGS__)    \
+  KIND struct Pool<__VA_ARGS__>;
 
 #define DELASSUS_COMPILED_LAWS(KIND)                                   \
   DELASSUS_COMPILED_LAW(KIND, Contact<Coulomb>)                        \
@@ -42,25 +45,25 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   DELASSUS_COMPILED_LAW(KIND, Contact<Restitution<Coulomb>>)           \
   DELASSUS_COMPILED_LAW(KIND, Contact<Penalty<Coulomb>>)               \
   DELASSUS_COMPILED_LAW(KIND, Contact<SequentialRestitution<Coulomb>>) \
-  DELASSUS_COMPILED_LAW(KIND, BallJoint)                               \
-  DELASSUS_COMPILED_LAW(KIND, Cylindrical)                             \
-  DELASSUS_COMPILED_LAW(KIND, DistanceJoint)                           \
-  DELASSUS_COMPILED_LAW(KIND, Hinge)                                   \
-  DELASSUS_COMPILED_LAW(KIND, Planar)                                  \
-  DELASSUS_COMPILED_LAW(KIND, PointOnLine)                             \
-  DELASSUS_COMPILED_LAW(KIND, Screw)                                   \
-  DELASSUS_COMPILED_LAW(KIND, Slider)                                  \
-  DELASSUS_COMPILED_LAW(KIND, Universal)                               \
-  DELASSUS_COMPILED_LAW(KIND, Weld)                                    \
-  DELASSUS_COMPILED_LAW(KIND, VirtualCoupling)                         \
-  DELASSUS_COMPILED_LAW(KIND, Gear)                                    \
-  DELASSUS_COMPILED_LAW(KIND, Rack)                                    \
-  DELASSUS_COMPILED_LAW(KIND, Limit<Turn>)                             \
-  DELASSUS_COMPILED_LAW(KIND, Limit<Slide>)                            \
-  DELASSUS_COMPILED_LAW(KIND, Motor<Turn>)                             \
-  DELASSUS_COMPILED_LAW(KIND, Motor<Slide>)                            \
-  DELASSUS_COMPILED_LAW(KIND, Drive<Turn>)                             \
-  DELASSUS_COMPILED_LAW(KIND, Drive<Slide>)
+  DELASSUS_COMPILED_KEPT_LAW(KIND, BallJoint)                          \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Cylindrical)                        \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, DistanceJoint)                      \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Hinge)                              \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Planar)                             \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, PointOnLine)                        \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Screw)                              \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Slider)                             \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Universal)                          \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Weld)                               \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, VirtualCoupling)                    \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Gear)                               \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Rack)                               \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Limit<Turn>)                        \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Limit<Slide>)                       \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Motor<Turn>)                        \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Motor<Slide>)                       \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Drive<Turn>)                        \
+  DELASSUS_COMPILED_KEPT_LAW(KIND, Drive<Slide>)
 
 // Of laws with R rows, and body sets of one width.
 #define DELASSUS_COMPILED_HEIGHT(KIND, R)                                                                       \
@@ -145,18 +148,18 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class BasicContactMemory<double>;                                                                                          \
   KIND class BasicBoxTree<double>;                                                                                                \
   KIND class inner::BasicDynamicTree<double>;                                                                                     \
-  KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                    \
+  KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                   \
   KIND class CollisionEngine<GjkEpa, BoxTree>;                                                                                    \
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
 
 // What a file that makes scenes does with vectors: each would cost it some twenty functions of Eigen's.
 #define DELASSUS_COMPILED_VECTORS(KIND)                                                                     \
-  KIND delassus::Vec3& delassus::Vec3::operator=(const delassus::Vec3&);                                    \
-  KIND delassus::Vec<6>& delassus::Vec<6>::operator=(const delassus::Vec<6>&);                              \
-  KIND delassus::Vec<4>& delassus::Vec<4>::operator=(const delassus::Vec<4>&);                              \
-  KIND delassus::Mat3& delassus::Mat3::operator=(const delassus::Mat3&);                                    \
-  KIND delassus::Vec3::Matrix(const double&, const double&, const double&);                                 \
+  KIND delassus::Vec3& Eigen::Matrix<double, 3, 1>::operator=(const delassus::Vec3&);                       \
+  KIND delassus::Vec<6>& Eigen::Matrix<double, 6, 1>::operator=(const delassus::Vec<6>&);                   \
+  KIND delassus::Vec<4>& Eigen::Matrix<double, 4, 1>::operator=(const delassus::Vec<4>&);                   \
+  KIND delassus::Mat3& Eigen::Matrix<double, 3, 3>::operator=(const delassus::Mat3&);                       \
+  KIND Eigen::Matrix<double, 3, 1>::Matrix(const double&, const double&, const double&);                    \
   KIND delassus::Vec3 Eigen::QuaternionBase<delassus::Quat>::_transformVector(const delassus::Vec3&) const; \
   KIND delassus::Quat Eigen::QuaternionBase<delassus::Quat>::normalized() const;                            \
   KIND delassus::Mat3 Eigen::QuaternionBase<delassus::Quat>::toRotationMatrix() const;                      \
