@@ -77,11 +77,11 @@ endif()
 # --- what is absent costs nothing; what a step costs against one written by hand --------------------------------------
 if(DELASSUS_TEST_ALL AND DELASSUS_GXX)
   set(zero_cost ${CMAKE_CURRENT_SOURCE_DIR}/zero_cost)
-  foreach(name compiled_to step_cost sleep_cost)
+  foreach(name compiled_to frames step_cost sleep_cost)
     delassus_tree_test(zero_cost/${name} ${Python3_EXECUTABLE} ${zero_cost}/${name}.py ${PROJECT_SOURCE_DIR}
       --compiler ${DELASSUS_GXX} --system ${include_dirs})
   endforeach()
-  set_tests_properties(zero_cost/step_cost zero_cost/sleep_cost PROPERTIES SKIP_RETURN_CODE 77)
+  set_tests_properties(zero_cost/frames zero_cost/step_cost zero_cost/sleep_cost PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 
 # --- wrong programs and the sentence each must print ----------------------------------------------------------------

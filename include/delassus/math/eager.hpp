@@ -311,6 +311,11 @@ inline Eigen::Matrix<T, 3, 1> normalized(const Eigen::Matrix<T, 3, 1>& a) {
 }
 
 // The same names for what is no plain matrix of such a size: blocks, larger and dynamic ones.
+template <class T, int R, int C>
+  requires(!inner::SmallSizes<R, C>)
+inline Eigen::Matrix<T, C, R> transposed(const Eigen::Matrix<T, R, C>& A) {
+  return A.transpose();
+}
 template <class A, class B>
 inline typename A::Scalar dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.dot(b);

@@ -35,20 +35,6 @@ struct SweepSpace {
   }
 };
 
-/// Sweeps that tell how their change lies to the one before.
-template <class T>
-struct ExactSweep {
-  Island<T>& island;
-  double relaxation;
-  bool tells_change;
-  double operator()(const Array<T>& x, double& curvature) const { return island.sweep(relaxation, x, curvature, tells_change); }
-};
-template <class T>
-struct OneProjection {
-  Island<T>& island;
-  double operator()(const Array<T>& x, double& curvature) const { return island.project_once(x, curvature); }
-};
-
 }  // namespace inner
 
 /// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
@@ -109,9 +95,16 @@ struct BasicAcceleratedGaussSeidel {
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell: of
   /// a rough start they tell nothing, and of six orders of OneObject-i100000-499's contacts mixing at once
   /// ended none, after forty sweeps all.
-  static bool settle(auto& monitor, const auto& sweep) {
+  static bool settle(auto& monitor, auto& problem, const SweepRule& rule) {
     for (int k = 0; k < 40; ++k)
-      if (!monitor.goes_on(sweep())) return false;
+      if (!monitor.goes_on(problem.sweep(rule))) return false;
+    return true;
+  }
+  /// Whether there is time for the next stage.
+  static bool open(auto& monitor, const char* name, int patience, bool from_best) {
+    if (monitor.is_over()) return false;
+    if (from_best) monitor.back_to_best();
+    monitor.open(name, patience);
     return true;
   }
 };
@@ -121,43 +114,29 @@ template <class T, class Space>
 SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Island<T>& problem, Space& work) const {
   inner::ConvergenceMonitor<Criterion, BasicAcceleratedGaussSeidel, Island<T>, Array<T>> monitor(*this, problem, work.best);
   if (!monitor.begin()) return monitor.finish();
-  const auto plain = [&] { return problem.sweep(relaxation, !Criterion::needs_measure); };
-  const inner::ExactSweep<T> exact{problem, relaxation, !Criterion::needs_measure};
-  const inner::OneProjection<T> one_projection{problem};
+  const SweepRule exact{.relaxation = relaxation, .tells_change = !Criterion::needs_measure}, projection{.projects = true};
   auto newton = Newton::template stage<Criterion>(*this, problem, monitor, work.newton);
   const int shortest = first_patience(problem.row_count());
   for (int patience = shortest;; patience *= 2) {
-    const auto open = [&](const char* name, int factor) {
-      if (monitor.is_over()) return false;
-      if (name[0] != 'm' || patience > shortest) monitor.back_to_best();
-      monitor.open(name, factor * patience);
-      return true;
-    };
-    const auto momentum = [&](const char* name, int factor, const auto& sweep) {
-      if (!open(name, factor)) return false;
-      for (;;) {
-        const bool circles =
-            inner::momentum(problem, monitor, work.x, sweep, [&] { return newton.opens(); });
-        if (monitor.is_over() || !newton.opens()) return circles;
-        newton.run();
-        if (monitor.is_over()) return false;
-        monitor.name(name);
-      }
-    };
+    const bool is_again = patience > shortest;
     bool is_in_circles = false;
     for (int leaps = 0;; ++leaps) {
-      is_in_circles = momentum("momentum", 1, exact);
+      is_in_circles = open(monitor, "momentum", patience, is_again) &&
+                      inner::momentum(problem, monitor, work.x, exact, newton, "momentum");
       if (monitor.is_over()) return monitor.finish();
       const inner::SlowDirection way = inner::find_slow_direction(problem, work.x);
       if (leaps == 3 || !inner::extrapolate_to_cone_boundary(problem, monitor, work.x, way, patience)) break;
     }
     if (inner::contradicts(problem, monitor, work.x))
       return inner::compromise(problem, monitor.finish(), work.best, work.x);
-    if (open("anderson", 1) && settle(monitor, plain))
-      inner::anderson(problem, monitor, work.history, plain);
-    if (!is_in_circles) momentum("momentum", 3, exact);
-    momentum("projection", 4, one_projection);
-    momentum("patient", 10, exact);
+    if (open(monitor, "anderson", patience, true) && settle(monitor, problem, exact))
+      inner::anderson(problem, monitor, work.history, exact);
+    if (!is_in_circles && open(monitor, "momentum", 3 * patience, is_again))
+      inner::momentum(problem, monitor, work.x, exact, newton, "momentum");
+    if (open(monitor, "projection", 4 * patience, true))
+      inner::momentum(problem, monitor, work.x, projection, newton, "projection");
+    if (open(monitor, "patient", 10 * patience, true))
+      inner::momentum(problem, monitor, work.x, exact, newton, "patient");
     if (monitor.is_over()) return monitor.finish();
   }
 }

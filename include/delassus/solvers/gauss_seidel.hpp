@@ -49,7 +49,7 @@ struct BasicGaussSeidel {
       if (report.sweeps >= min_iterations && is_done) break;
       const int batch = Criterion::needs_measure && !problem.observes_sweeps() ? inner::patience(report.sweeps) : 1;
       for (int k = 0; k < batch && !is_over && !(k > 0 && problem.is_measure_due()); ++k) {
-        problem.sweep(relaxation, !Criterion::needs_measure);
+        problem.sweep({.relaxation = relaxation, .tells_change = !Criterion::needs_measure});
         ++report.sweeps;
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       }

@@ -26,6 +26,13 @@ struct SolveObserver {
   void (*force)(void* who, int sweeps, const PoolView<T>&, Index i, double h) = nullptr;
 };
 
+/// How the constraints of an island are visited.
+struct SweepRule {
+  double relaxation = 1;
+  bool tells_change = false;  ///< sets the last change: its roots are an eighth of a sweep
+  bool projects = false;      ///< one projection a visit in the place of the exact answer
+};
+
 /// Spans of the pools that have items in an island, in the order of a sweep. A solver sees nothing else of a problem.
 /// Impulses that are set aside are an `Array` with the numbers of all items in that order.
 template <class T_>
@@ -56,30 +63,24 @@ class Island {
   }
 
   /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the
-  /// others stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows. Sets the last change if asked: its roots
-  /// are an eighth of a sweep.
-  double sweep(double relaxation = 1, bool tells_change = false) {
-    Sweep<T> sums{.relaxation = T(relaxation), .tells_change = tells_change};
-    return sweep(sums, nullptr);
-  }
+  /// others stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows.
+  ///
+  /// With `projects` it makes one step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint in
+  /// order: less than an exact answer, and a contraction where exact answers go round in circles.
+  double sweep(const SweepRule& rule = {}) { return sweep(rule, nullptr, nullptr); }
   /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
-  double sweep(double relaxation, const Array<T>& x, double& curvature, bool tells_change = false) {
-    Sweep<T> sums{.relaxation = T(relaxation), .tells_change = tells_change};
-    const double energy = sweep(sums, x.data());
-    curvature = -double(sums.along);
-    return energy;
-  }
-
-  /// One step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint in order: less than an
-  /// exact answer, and a contraction where exact answers go round in circles. Returns and sets what
-  /// `sweep` does.
-  double project_once(const Array<T>& x, double& curvature) {
-    Sweep<T> sums;
+  double sweep(const SweepRule& rule, const T* x, double* curvature) {
+    Sweep<T> sums{.relaxation = T(rule.relaxation), .tells_change = rule.tells_change};
     for (Pass pass(*this); pass.next();) {
-      sums.x = x.data() + pass.row();
-      pass.span.pool->table->project_once(pass.span, sums);
+      if (x) sums.x = x + pass.row();
+      const LawTable<T>& law = *pass.span.pool->table;
+      (rule.projects ? law.project_once : law.sweep)(pass.span, sums);
     }
-    curvature = -double(sums.along);
+    if (rule.tells_change) {
+      last_change_ = h_ * double(sums.displacement);
+      worst_change_ = h_ * double(sums.most);
+    }
+    if (curvature) *curvature = -double(sums.along);
     return double(sums.energy);
   }
 
@@ -266,18 +267,6 @@ class Island {
     int place_ = 0;
     Index done_ = 0, row_ = 0;
   };
-
-  double sweep(Sweep<T>& sums, const T* x) {
-    for (Pass pass(*this); pass.next();) {
-      if (x) sums.x = x + pass.row();
-      pass.span.pool->table->sweep(pass.span, sums);
-    }
-    if (sums.tells_change) {
-      last_change_ = h_ * double(sums.displacement);
-      worst_change_ = h_ * double(sums.most);
-    }
-    return double(sums.energy);
-  }
 
   /// Whether work ends at a deadline.
   bool limits() const { return timer_ && !is_part_; }

@@ -4,6 +4,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/pack.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/show_rows.hpp>
 #include <delassus/solvers/inner/functions_of_w.hpp>

@@ -42,19 +42,12 @@ template <class Stage>
     });
 }
 
-/// f(observer): the first listener that wants every sweep, or one that wants nothing.
-template <class F>
-void with_observer(auto& step, F&& f) {
-  if constexpr (std::remove_reference_t<decltype(step)>::observes_sweeps) {
-    bool is_done = false;
-    step.policies.each([&](auto& policy) {
-      if constexpr (observes_sweeps<std::remove_reference_t<decltype(policy)>>)
-        if (!std::exchange(is_done, true)) f(policy);
-    });
-  } else {
-    NoObserver nobody;
-    f(nobody);
-  }
-}
+/// The first listener that wants every sweep: of the policies' types, and where it is.
+template <class... P>
+struct sweep_observer {
+  using type = NoObserver;
+};
+template <class P, class... Rest>
+struct sweep_observer<P, Rest...> : std::conditional_t<observes_sweeps<P>, std::type_identity<P>, sweep_observer<Rest...>> {};
 
 }  // namespace delassus::inner

@@ -90,10 +90,15 @@ struct PlainStages : StagesWithoutConstraints {
   }
 
   static void solve(auto& step) {
-    using Stages = typename std::remove_reference_t<decltype(step)>::Stages;
-    inner::with_observer(step, [&](auto& observer) { Stages::solve_islands(step, observer); });
+    using Step = std::remove_reference_t<decltype(step)>;
+    if constexpr (Step::observes_sweeps) {
+      Step::Stages::solve_islands(step, step.template get<typename Step::Policies::SweepObserver>());
+    } else {
+      NoObserver nobody;
+      Step::Stages::solve_islands(step, nobody);
+    }
     summarise(step.reports, step.summary);
-    Stages::keep_impulses(step);
+    Step::Stages::keep_impulses(step);
   }
   /// Every island, one after the other.
   static void solve_islands(auto& step, auto& observer) {

@@ -46,25 +46,19 @@ void move(auto& step) {
     if constexpr (MovesAtOnce<typename Data::Policies::Integrator>) {
       step.integrator().move(step);
     } else {
-      linearize(step);
-      free_motion(step);
-      find_islands(step);
-      make_bias(step);
-      build(step);
-      solve(step);
-      correct(step);
+      using Stages = StagesOf<decltype(step)>;
+      Stages::linearize(step), inner::notify<Linearize>(step);
+      Stages::free_motion(step), inner::notify<FreeMotion>(step);
+      Stages::find_islands(step), inner::notify<Islands>(step);
+      Stages::make_bias(step), inner::notify<Bias>(step);
+      Stages::build(step), inner::notify<Build>(step);
+      Stages::solve(step), inner::notify<Solve>(step);
+      Stages::correct(step), inner::notify<Correct>(step);
     }
     advance(step);
   }
 }
 
 }  // namespace stage
-
-/// A step of h seconds, in the order of the scheme; that of `PlainOrder` is `detect` and `move`.
-void take_step(auto& step, double h) {
-  stage::begin(step, h);
-  step.scheme().run(step);
-  inner::notify<stage::Step>(step);
-}
 
 }  // namespace delassus

@@ -1,6 +1,7 @@
 /// How W is built as a matrix, row by row, from plain views of H and G.
 #pragma once
 
+#include <delassus/compliance/compliance.hpp>
 #include <delassus/compliance/inner/block_matrix.hpp>
 #include <delassus/compliance/inner/incidence.hpp>
 #include <delassus/compliance/inner/nodal_rows.hpp>

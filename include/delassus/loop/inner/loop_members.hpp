@@ -43,7 +43,9 @@ StepReport AnimationLoop<Args...>::step(double seconds) {
   if constexpr (is_sound)
     if constexpr (inner::scheme_runs<typename Data::Policies::Scheme, Data>()) {
       check_policies();  // their numbers may have been edited since
-      take_step(data(), seconds);
+      stage::begin(data(), seconds);
+      Data::scheme().run(data());
+      inner::notify<stage::Step>(data());
     }
   return report();
 }

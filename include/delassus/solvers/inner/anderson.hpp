@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,7 @@ void solve_gram(const double (&gram)[n][n], double (&g)[n], int count) {
 /// grew to twice its least the history is dropped and the last good z taken. A mixture ten times larger than the first z is
 /// not taken: where the laws contradict each other λ has no limit, and mixing would run there at once.
 /// Source: [WalkerNi2011].
-void anderson(auto& problem, auto& monitor, History& h, auto&& sweep) {
+void anderson(auto& problem, auto& monitor, History& h, const SweepRule& rule) {
   constexpr int depth = History::depth;
   h.each([rows = std::size_t(problem.row_count())](Array<double>& v) { v.resize(rows); });
   double gram[depth][depth] = {};
@@ -61,7 +62,7 @@ void anderson(auto& problem, auto& monitor, History& h, auto&& sweep) {
   double least = 0, limit = -1;
   for (;;) {
     problem.gather(h.x);
-    if (!monitor.goes_on(sweep())) return;
+    if (!monitor.goes_on(problem.sweep(rule))) return;
     problem.gather(h.z);
     if (limit < 0) limit = 100 * sum_of_products(h.z, h.z);
     for (std::size_t i = 0; i < h.x.size(); ++i) h.f[i] = h.z[i] - h.x[i];

@@ -9,12 +9,6 @@
 
 namespace delassus::inner {
 
-template <class T>
-struct SoftSweep {
-  Island<T>& soft;
-  double operator()(const Array<T>& x, double& curvature) const { return soft.sweep(1, x, curvature); }
-};
-
 /// λ of the rows as `Softened` lets them yield, from zero, and the errors of the rows as they are. The report
 /// is that of what found the contradiction.
 template <class T>
@@ -26,7 +20,8 @@ SolveReport compromise(Island<T>& problem, SolveReport report, Array<T>& best, A
   ConvergenceMonitor<Residual, SolveLimits, Island<T>, Array<T>> monitor(limits, soft, best);
   if (monitor.begin()) {
     monitor.open("compromise", limits.max_iterations);
-    momentum(soft, monitor, last, SoftSweep<T>{soft});
+    NoNewton no_newton;
+    momentum(soft, monitor, last, SweepRule{}, no_newton, "compromise");
   }
   report.sweeps += monitor.finish().sweeps;
   softened.restore();

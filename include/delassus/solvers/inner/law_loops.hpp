@@ -45,8 +45,10 @@ struct LawItems {
       law.relax(as_square<R>(own), b, next);
       return next;
     } else {
-      (void)lambda;
-      return inner::solve_local(law, item(i), as_square<R>(own), b, m);
+      (void)lambda, (void)m;
+      const auto& solved = innermost(law);
+      if constexpr (RemembersBetweenSweeps<innermost_t<Law>>) return solved.solve_local(given<Law>(item(i)), as_square<R>(own), b, m);
+      else return solved.solve_local(given<Law>(item(i)), as_square<R>(own), b);
     }
   }
   [[gnu::always_inline]] void clamp(Index i, Vec<R, double>& lambda) const { inner::clamp(law, item(i), lambda, memory[i]); }

@@ -1,6 +1,9 @@
 /// Nesterov's momentum over any sweep, restarted when it turns against the residual.
 #pragma once
 
+#include <delassus/core/array.hpp>
+#include <delassus/solvers/island.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,8 +48,10 @@ class RestartRule {
   bool is_strict_ = false, was_short_ = false, is_futile_ = false;
 };
 
-struct NeverPauses {
-  bool operator()() const { return false; }
+/// Sweeps alone.
+struct NoNewton {
+  static constexpr bool opens() { return false; }
+  static void run() {}
 };
 
 /// With z = sweep(y), y = P_K(x + (θ₋ − 1)/θ (x − x₋)):
@@ -54,34 +59,37 @@ struct NeverPauses {
 ///   x⁺ = z,  θ⁺ = (1 + √(1 + 4 θ²))/2,
 ///
 /// and where `RestartRule` asks for it y = z once and θ⁺ = θ/2: a restart from θ = 1 would forget how slow
-/// the problem is, and take up to twice the sweeps on rigid rows. Ends, and returns true, where the rule is
-/// futile and the error stands. `x` is room for the impulses before; sweep(x, curvature) sets that product
-/// and returns how much it moved. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
+/// the problem is, and take up to twice the sweeps on rigid rows. Ends, and returns true, where the restarts are
+/// futile and the error stands. Where `newton` opens it acts, and momentum begins anew. `x` is room for the impulses
+/// before; the monitor calls the stage `name`. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
 /// gradient restart.
-template <class Problem, class ConvergenceMonitor, class Impulses, class Sweep,
-          class Pause = NeverPauses>
-bool momentum(Problem& problem, ConvergenceMonitor& monitor, Impulses& x, Sweep&& sweep, Pause&& pause = {}) {
-  RestartRule rule;
-  double theta = 1;
-  problem.save(x);
-  while (!pause()) {
-    double curvature = 0;
-    const double moved = sweep(x, curvature);  // λ is z now
-    if (!monitor.goes_on(moved)) return false;
-    if (rule.asks(curvature, moved)) {
-      problem.save(x);
-      theta = std::max(1.0, 0.5 * theta);
-      if (rule.is_futile() && monitor.is_stagnating()) return true;
-    } else {
-      const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
-      if (theta > 1)
-        problem.extrapolate(x, (theta - 1) / next);
-      else
+template <class T, class ConvergenceMonitor, class Newton>
+bool momentum(Island<T>& problem, ConvergenceMonitor& monitor, Array<T>& x, const SweepRule& rule, Newton& newton, const char* name) {
+  for (;;) {
+    RestartRule restarts;
+    double theta = 1;
+    bool is_futile = false;
+    problem.save(x);
+    while (!is_futile && !newton.opens()) {
+      double curvature = 0;
+      const double moved = problem.sweep(rule, x.data(), &curvature);  // λ is z now
+      if (!monitor.goes_on(moved)) break;
+      if (restarts.asks(curvature, moved)) {
         problem.save(x);
-      theta = next;
+        theta = std::max(1.0, 0.5 * theta);
+        is_futile = restarts.is_futile() && monitor.is_stagnating();
+      } else {
+        const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta * theta));
+        if (theta > 1) problem.extrapolate(x, (theta - 1) / next);
+        else problem.save(x);
+        theta = next;
+      }
     }
+    if (monitor.is_over() || !newton.opens()) return is_futile;
+    newton.run();
+    if (monitor.is_over()) return false;
+    monitor.name(name);
   }
-  return false;
 }
 
 }  // namespace delassus::inner

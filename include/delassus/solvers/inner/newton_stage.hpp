@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
+#include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/proximal_point.hpp>
 #include <delassus/solvers/island.hpp>
 
@@ -150,12 +151,8 @@ struct SweepsAlone {
   struct Space {
     void reserve(std::size_t) {}
   };
-  struct Stage {
-    static constexpr bool opens() { return false; }
-    static void run() {}
-  };
   template <class Criterion, class Space>
-  static Stage stage(const auto&, auto&, auto&, Space&) {
+  static inner::NoNewton stage(const auto&, auto&, auto&, Space&) {
     return {};
   }
 };
@@ -171,7 +168,7 @@ struct ThenNewton {
     if constexpr (Criterion::needs_measure && requires { space.body; })
       return inner::NewtonStage<Criterion, T, ConvergenceMonitor, Space>(chain, problem, monitor, space);
     else
-      return SweepsAlone::Stage{};
+      return inner::NoNewton{};
   }
 };
 
