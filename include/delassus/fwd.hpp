@@ -1,17 +1,19 @@
-/// Names only: for headers of a host that mention a loop or a body set without needing it.
+/// Names only: for a header of a host that names a loop, keeps it behind a pointer or hands it on, and reads nothing of Eigen.
 #pragma once
 
 namespace delassus {
 
+// Bodies and the loop.
 template <class T>
 class BasicRigidBodies;
 using RigidBodies = BasicRigidBodies<double>;
 using RigidBodiesF = BasicRigidBodies<float>;
-
 template <class T>
 class BasicParticles;
 using Particles = BasicParticles<double>;
 using ParticlesF = BasicParticles<float>;
+template <class Set, class Tag>
+struct Tagged;
 
 template <class... Sets>
 class World;
@@ -19,15 +21,35 @@ template <class... Laws>
 class Constraints;
 template <class... Policies>
 class AnimationLoop;
+struct StepReport;
 
+template <class Set>
+struct Handle;
+template <class Law>
+struct ConstraintHandle;
+
+// Laws.
 template <class Law>
 struct Contact;
+template <class Law, class Pairs>
+struct ContactFor;
 template <class Law>
 struct Restitution;
+template <class Law>
+struct SequentialRestitution;
 struct Coulomb;
 struct Pyramid;
 struct RollingCoulomb;
 struct Frictionless;
+
+struct Turn;
+struct Slide;
+template <class Coordinate>
+struct Limit;
+template <class Coordinate>
+struct Motor;
+template <class Coordinate>
+struct Drive;
 struct BallJoint;
 struct Cylindrical;
 struct DistanceJoint;
@@ -37,15 +59,37 @@ struct PointOnLine;
 struct Screw;
 struct Slider;
 struct Universal;
+struct VirtualCoupling;
 struct Weld;
 
+// Policies.
 struct SymplecticEuler;
 struct ImplicitEuler;
 struct ImplicitMidpoint;
 struct LiePoisson;
+
+struct Residual;
+struct SweepsAlone;
+struct ThenNewton;
+template <class Criterion>
+struct BasicGaussSeidel;
+using GaussSeidel = BasicGaussSeidel<Residual>;
+template <class Criterion, class Newton>
+struct BasicAcceleratedGaussSeidel;
+using AcceleratedSweeps = BasicAcceleratedGaussSeidel<Residual, SweepsAlone>;
+using AcceleratedGaussSeidel = BasicAcceleratedGaussSeidel<Residual, ThenNewton>;
+template <class Criterion>
+struct BasicDirectGaussSeidel;
+using DirectGaussSeidel = BasicDirectGaussSeidel<Residual>;
+
 struct MatrixFreeCompliance;
+struct CheaperCompliance;
+struct Baumgarte;
+struct PositionProjection;
+struct SoftContact;
+struct PlainOrder;
+struct AllActive;
 struct HandPicked;
 struct Sleeping;
-struct StepReport;
 
 }  // namespace delassus
