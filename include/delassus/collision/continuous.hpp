@@ -249,7 +249,7 @@ struct Continuous {
   static constexpr std::uint32_t whole_name = 0x3ffffff0u, core_name = 0x3ffffff1u, end_name = 0x3ffffff4u;
 
   Array<Index> fast_;
-  std::vector<bool> is_fast_;
+  Array<char> is_fast_;
   Patch patch_;
 };
 

@@ -73,14 +73,22 @@ struct ArrayMemory {
   }
 };
 
+// By the compiler's own word: std::is_trivially_destructible costs it a dozen templates for each type.
+#if defined(__has_builtin) && __has_builtin(__is_trivially_destructible)
+template <class T>
+inline constexpr bool has_no_destructor = __is_trivially_destructible(T);
+#else
+template <class T>
+inline constexpr bool has_no_destructor = __has_trivial_destructor(T);
+#endif
+
 /// Whether copying its bytes copies a T: it has no destructor, or one that does nothing, and then says
 /// `using CopiedByBytes = T`.
 template <class T>
-inline constexpr bool is_copied_by_bytes = std::is_trivially_destructible_v<T>;
+inline constexpr bool is_copied_by_bytes = has_no_destructor<T>;
 template <class T>
 requires requires { typename T::CopiedByBytes; }
-inline constexpr bool is_copied_by_bytes<T> =
-    std::is_trivially_destructible_v<T> || std::is_same_v<T, typename T::CopiedByBytes>;
+inline constexpr bool is_copied_by_bytes<T> = has_no_destructor<T> || std::is_same_v<T, typename T::CopiedByBytes>;
 
 }  // namespace inner
 
@@ -115,8 +123,12 @@ class Array {
     memory_.take(other.memory_, alignment);
     return *this;
   }
+  // A list of another type is a template's argument: for a std::span compilers would look, at each assignment of an array, through
+  // all that may become one.
   /// The elements of another list, which are none of this array's.
-  Array& operator=(std::span<const T> list) {
+  template <class List>
+    requires requires(const List& list) { list.begin(), list.end(); }
+  Array& operator=(const List& list) {
     assign(list.begin(), list.end());
     return *this;
   }
@@ -227,8 +239,14 @@ class Array {
   }
   [[gnu::always_inline]] void swap(Array& other) noexcept { memory_.swap(other.memory_); }
   [[gnu::always_inline]] friend void swap(Array& a, Array& b) noexcept { a.memory_.swap(b.memory_); }
-  [[gnu::always_inline]] friend bool operator==(const Array& a, const Array& b) { return a == std::span<const T>(b); }
-  friend bool operator==(const Array& a, std::span<const T> b) {
+  [[gnu::always_inline]] friend bool operator==(const Array& a, const Array& b) { return a.equals(b); }
+  template <class List>
+    requires requires(const List& list) { list.begin(), list.size(); }
+  friend bool operator==(const Array& a, const List& b) {
+    return a.equals(b);
+  }
+  bool equals(const auto& b) const {
+    const Array& a = *this;
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
       if (!(a[i] == b[i])) return false;

@@ -20,7 +20,7 @@ class BlockArray {
   using value_type = M;
 
   [[gnu::always_inline]] BlockArray() {}
-  BlockArray(std::initializer_list<M> list) { *this = std::span<const M>(list.begin(), list.size()); }
+  BlockArray(std::initializer_list<M> list) { *this = list; }
   [[gnu::always_inline]] BlockArray(const BlockArray& other) : numbers(other.numbers) {}
   [[gnu::always_inline]] BlockArray(BlockArray&& other) noexcept : numbers(static_cast<Array<T>&&>(other.numbers)) {}
   [[gnu::always_inline]] BlockArray& operator=(const BlockArray& other) {
@@ -32,7 +32,9 @@ class BlockArray {
     return *this;
   }
   /// The matrices of another list.
-  BlockArray& operator=(std::span<const M> list) {
+  template <class List>
+    requires requires(const List& list) { list.begin(), list.end(); }
+  BlockArray& operator=(const List& list) {
     numbers.clear();
     for (const M& x : list) push_back(x);
     return *this;
@@ -70,7 +72,9 @@ class BlockArray {
   [[gnu::always_inline]] void swap(BlockArray& other) noexcept { numbers.swap(other.numbers); }
   [[gnu::always_inline]] friend void swap(BlockArray& a, BlockArray& b) noexcept { a.swap(b); }
   [[gnu::always_inline]] friend bool operator==(const BlockArray& a, const BlockArray& b) { return a.numbers == b.numbers; }
-  friend bool operator==(const BlockArray& a, std::span<const M> b) {
+  template <class List>
+    requires requires(const List& list) { list.begin(), list.size(); }
+  friend bool operator==(const BlockArray& a, const List& b) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < b.size(); ++i)
       if (!(a[i] == b[i])) return false;

@@ -21,7 +21,7 @@ constexpr std::array<RowKind, Law::rows> row_kinds() {
   } else {
     constexpr bool is_bilateral = requires { requires Law::bilateral; };
     std::array<RowKind, Law::rows> kinds{};
-    kinds.fill(is_bilateral ? RowKind::equality : RowKind::lower);
+    for (RowKind& kind : kinds) kind = is_bilateral ? RowKind::equality : RowKind::lower;
     return kinds;
   }
 }

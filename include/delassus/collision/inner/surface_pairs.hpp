@@ -188,7 +188,7 @@ class SurfacePairs {
   HullOfPatch hull_;
   Array<PairMemory> memory_, next_;
   std::size_t last_ = 0;
-  std::vector<bool> is_claimed_;
+  Array<char> is_claimed_;
 };
 
 }  // namespace delassus::inner
