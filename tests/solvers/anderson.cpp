@@ -19,7 +19,7 @@ struct Linear {
   void scatter(std::span<const double> from) { x = Eigen::Map<const Vec<4>>(from.data()); }
   double error() const { return (A * x + b - x).norm(); }
   /// Returns how far it moved.
-  double sweep() {
+  double sweep(const SweepRule&) {
     const Vec<4> z = A * x + b, change = z - x;
     x = z;
     return change.squaredNorm();
@@ -49,7 +49,7 @@ TEST_CASE("mixing ends a slow linear iteration of four numbers in a few sweeps")
   p.x = Vec<4>(5, -30, 1, 10);  // the solution is less than ten times as large
   Count count{p, 100};
   inner::History history;
-  inner::anderson(p, count, history, [&] { return p.sweep(); });
+  inner::anderson(p, count, history, SweepRule{});
   REQUIRE(p.error() <= 1e-9);
   REQUIRE(count.sweeps <= 20);
 }
@@ -61,7 +61,7 @@ TEST_CASE("mixing does not run away where there is no solution") {
   p.A(0, 0) = 0.5;
   Count count{p, 50};
   inner::History history;
-  inner::anderson(p, count, history, [&] { return p.sweep(); });
+  inner::anderson(p, count, history, SweepRule{});
   REQUIRE(p.x.norm() <= 50 * 10 * p.b.norm());
 }
 
