@@ -50,11 +50,11 @@ RestReport find_rest(Set& set, const RestOptions& options = {}) {
         if (set.moves(b)) set.displace(b, Velocity(T(s) * step[b]));
     };
     const double s = inner::slope_search(inner::share_within_a_radian(set, step),
-                                         inner::product(set, force, step), [&](double share) {
+                                         inner::work_along(set, force, step), [&](double share) {
                                            go(share);
                                            set.factor({.mass = 1});
                                            pull(trial);
-                                           return inner::product(set, trial, step);
+                                           return inner::work_along(set, trial, step);
                                          });
     report.move = s * inner::largest(set, step);
     if (!(report.move >= 0)) {  // no factor, or numbers that are none

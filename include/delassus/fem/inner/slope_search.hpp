@@ -25,7 +25,7 @@ double slope_search(double first, double start, Slope&& slope_at) {
 
 /// Σ f·x over the blocks that move.
 template <class Set, class Vectors>
-double product(const Set& set, const Vectors& f, const Vectors& x) {
+double work_along(const Set& set, const Vectors& f, const Vectors& x) {
   double sum = 0;
   for (const Index b : set.active())
     if (set.moves(b)) sum += double(f[b].dot(x[b]));

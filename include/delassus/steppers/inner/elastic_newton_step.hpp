@@ -48,10 +48,10 @@ struct ElasticNewton {
       const double size = std::max({largest(set, w), largest(set, v), h * double(set.gravity.norm())});
       // Slopes are rounding there: no search.
       const bool is_near = change <= std::max(1e-7 * size, 1e-10 * crossing);
-      const double s = is_near ? 1 : slope_search(1, product(set, residual, step), [&](double share) {
+      const double s = is_near ? 1 : slope_search(1, work_along(set, residual, step), [&](double share) {
         go(set, share);
         look(set, trial, ahead, {.mass = 1});
-        return product(set, residual, step);
+        return work_along(set, residual, step);
       });
       go(set, s);
       w = trial;
