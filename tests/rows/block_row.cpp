@@ -37,7 +37,7 @@ TEST_CASE("a row of 3 x 3 blocks is the sum of its products, and its first entry
     Vec3 r = start;
     inner::add_row<3>(r.data(), 0, count, W.empty() ? nullptr : W[0].data(), column.data(), x[0].data());
     for (int row = 0; row < 3; ++row) REQUIRE(std::abs(r[row] - expected[row]) <= 80 * 2.3e-16 * size[row]);
-    const double first = start[0] + inner::first_of_row(0, count, W.empty() ? nullptr : W[0].data(), column.data(), x[0].data(), 3);
+    const double first = start[0] + inner::first_of_row(0, count, W.empty() ? nullptr : W[0].data(), column.data(), x[0].data());
     REQUIRE(std::abs(first - expected[0]) <= 80 * 2.3e-16 * size[0]);
   }
 }

@@ -103,17 +103,18 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   /// The arrays that a solver reads of row p.
   template <int p>
   void show(const Rows& rows, RowView<T>& view, SetBlocksView<T>*, BlockRowsView<T>* out) const {
-    view.form = FormOfW::square_blocks;
     view.diagonal = own_.matrix.diagonal(p).data();
     const T* impulses[pools];
     for_each_index<pools>([&](auto b) __attribute__((always_inline)) { impulses[b] = inner::numbers_of(rows.template pool<b>().lambda); });
     constexpr int heights[] = {R...};
-    for (int b = 0; b < pools; ++b) {
+    const auto add = [&](int b) {
       const auto& W = own_.matrix.blocks(p, b);
-      if (W.numbers.empty()) continue;
-      if (heights[b] != R_of<p>) view.form = FormOfW::blocks;
       out[view.block_rows++] = {W.start.data(), W.column.data(), W.numbers.data(), impulses[b], heights[b]};
-    }
+    };
+    for (int b = 0; b < pools; ++b)
+      if (!own_.matrix.blocks(p, b).numbers.empty()) add(b);
+    if (view.block_rows == 0) add(p);
+    view.form = view.block_rows == 1 && out->columns == R_of<p> ? FormOfW::square_blocks : FormOfW::blocks;
   }
 
   static constexpr bool commit_is_free = true;

@@ -13,5 +13,6 @@ inline TwoLanes two_lanes_at(const double* x) {
   std::memcpy(&out, x, sizeof out);
   return out;
 }
+inline TwoLanes two_lanes_at(const float* x) { return TwoLanes{double(x[0]), double(x[1])}; }
 
 }  // namespace delassus::inner

@@ -11,8 +11,8 @@
 namespace delassus::inner {
 
 /// r += A x of one block R × columns by columns; the product is summed first, from left to right, in double.
-template <int R, class T>
-[[gnu::always_inline]] inline void add_block(double* r, const T* A, const T* x, int columns) {
+template <int R, class T, class X>
+[[gnu::always_inline]] inline void add_block(double* r, const T* A, const X* x, int columns) {
   double product[R];
   DELASSUS_UNROLL
   for (int i = 0; i < R; ++i) product[i] = double(A[i]) * double(x[0]);
@@ -114,27 +114,31 @@ template <int R, class T>
   for (Index e = first; e < last; ++e, W += R * columns) add_block<R>(r, W, x + std::ptrdiff_t(columns) * column[e], columns);
 }
 
-/// Σ_e (W_e x_{column(e)})₀ of blocks 3 × columns: the first of those rows alone, at a third of the products. Entries of
-/// three columns take turns with two sums, since an addition takes as long as the loads of two.
+/// Σ_e (W_e x_{column(e)})₀ of blocks 3 × 3: the first of those rows alone, at a third of the products. Entries take turns with
+/// two sums, since an addition takes as long as the loads of two.
 template <class T>
-inline double first_of_row(Index first, Index last, const T* W, const Index* column, const T* x, int columns) {
+[[gnu::always_inline]] inline double first_of_row(Index first, Index last, const T* W, const Index* column, const T* x) {
+  double even[3] = {}, odd[3] = {};
+  const T *w = W + 9 * std::ptrdiff_t(first), *end = W + 9 * std::ptrdiff_t(last);
+  column += first;
+  for (; w + 9 < end; w += 18, column += 2)
+    for (int k = 0; k < 3; ++k) {
+      even[k] += double(w[3 * k]) * double(x[3 * std::ptrdiff_t(column[0]) + k]);
+      odd[k] += double(w[9 + 3 * k]) * double(x[3 * std::ptrdiff_t(column[1]) + k]);
+    }
+  if (w != end)
+    for (int k = 0; k < 3; ++k) even[k] += double(w[3 * k]) * double(x[3 * std::ptrdiff_t(*column) + k]);
   double all = 0;
-  if (columns == 3) {
-    double even[3] = {}, odd[3] = {};
-    Index e = first;
-    for (; e + 1 < last; e += 2)
-      for (int k = 0; k < 3; ++k) {
-        even[k] += double(W[9 * std::ptrdiff_t(e) + 3 * k]) * double(x[3 * std::ptrdiff_t(column[e]) + k]);
-        odd[k] += double(W[9 * std::ptrdiff_t(e + 1) + 3 * k]) * double(x[3 * std::ptrdiff_t(column[e + 1]) + k]);
-      }
-    for (int k = 0; k < 3 && e < last; ++k)
-      even[k] += double(W[9 * std::ptrdiff_t(e) + 3 * k]) * double(x[3 * std::ptrdiff_t(column[e]) + k]);
-    for (int k = 0; k < 3; ++k) all += even[k] + odd[k];
-  } else {
-    for (Index e = first; e < last; ++e)
-      for (int k = 0; k < columns; ++k)
-        all += double(W[3 * (std::ptrdiff_t(columns) * e + k)]) * double(x[std::ptrdiff_t(columns) * column[e] + k]);
-  }
+  for (int k = 0; k < 3; ++k) all += even[k] + odd[k];
+  return all;
+}
+/// The same of blocks 3 × columns.
+template <class T>
+double first_of_wide_row(Index first, Index last, const T* W, const Index* column, const T* x, int columns) {
+  double all = 0;
+  for (Index e = first; e < last; ++e)
+    for (int k = 0; k < columns; ++k)
+      all += double(W[3 * (std::ptrdiff_t(columns) * e + k)]) * double(x[std::ptrdiff_t(columns) * column[e] + k]);
   return all;
 }
 

@@ -3,6 +3,7 @@
 
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/math/two_lanes.hpp>
 #include <delassus/rows/block_row.hpp>
 #include <delassus/rows/row_view.hpp>
 
@@ -43,15 +44,15 @@ template <int R, class T>
   for (int k = 0; k < R; ++k) at[k] = T(x.data()[k]);
 }
 
-/// r = d_i + Σ_{j ≠ i} W_ij λ_j over square blocks. Large terms cancel here: the sum runs in double whatever is stored.
+/// r = d_i + Σ_{j ≠ i} W_ij λ_j. Large terms cancel here: the sum runs in double whatever is stored.
 template <int R, class T>
 [[gnu::always_inline]] inline void sum_of_squares(const RowView<T>& view, Index i, double* r) {
   DELASSUS_UNROLL
   for (int k = 0; k < R; ++k) r[k] = double(view.d[std::ptrdiff_t(R) * i + k]);
-  for (const BlockRowsView<T>*W = view.blocks, *end = W + view.block_rows; W != end; ++W)
-    add_row<R>(r, W->start[i], W->start[i + 1], W->block, W->column, W->lambda);
+  const BlockRowsView<T>& W = *view.blocks;
+  add_row<R>(r, W.start[i], W.start[i + 1], W.block, W.column, W.lambda);
 }
-/// The same over all blocks.
+/// The same over all blocks, of any width.
 template <int R, class T>
 [[gnu::noinline]] void sum_of_blocks(const RowView<T>& view, Index i, double* r) {
   for (int k = 0; k < R; ++k) r[k] = double(view.d[std::ptrdiff_t(R) * i + k]);
@@ -61,47 +62,63 @@ template <int R, class T>
   }
 }
 
+/// r += Σ_e H_e y_{block(e)} over the entries of item i in a body set.
+template <int R, class T>
+[[gnu::always_inline]] inline void add_velocity_of_bodies(const SetBlocksView<T>& set, Index i, double* r, int width) {
+  for (Index e = set.offset[i], end = set.offset[i + 1]; e < end; ++e)
+    add_block<R>(r, set.H + std::ptrdiff_t(R) * width * e, set.y + std::ptrdiff_t(width) * set.block[e], width);
+}
+template <int R, class T>
+[[gnu::noinline]] void add_velocity_of_bodies_otherwise(const SetBlocksView<T>& set, Index i, double* r) {
+  add_velocity_of_bodies<R>(set, i, r, set.width);
+}
+
 /// u = (d + W λ)_i from A⁻¹ Hᵀ λ of the bodies, or by W's own function.
 template <int R, class T>
-void residual_without_blocks(const RowView<T>& view, Index i, double* r) {
+[[gnu::always_inline]] inline Vec<R, double> velocity_without_blocks(const RowView<T>& view, Index i) {
   if (view.form == FormOfW::functions) {
     T u[R];
     view.functions.residual(view.functions, view.pool, i, u);
-    for (int k = 0; k < R; ++k) r[k] = double(u[k]);
-  } else {
-    for (int k = 0; k < R; ++k) r[k] = double(view.d[std::ptrdiff_t(R) * i + k]);
-    for (const SetBlocksView<T>*set = view.set, *end = set + view.sets; set != end; ++set)
-      for (Index e = set->offset[i]; e < set->offset[i + 1]; ++e) {
-        const T* H = set->H + std::ptrdiff_t(R * set->width) * e;
-        const double* y = set->y + std::ptrdiff_t(set->width) * set->block[e];
-        double product[R];
-        for (int k = 0; k < R; ++k) product[k] = double(H[k]) * y[0];
-        for (int j = 1; j < set->width; ++j)
-          for (int k = 0; k < R; ++k) product[k] += double(H[k + R * j]) * y[j];
-        for (int k = 0; k < R; ++k) r[k] += product[k];
-      }
-    for (int k = 0; k < R; ++k)
-      r[k] += double(view.on_diagonal[std::ptrdiff_t(R) * i + k] * view.lambda[std::ptrdiff_t(R) * i + k]);
+    return load<R>(u);
   }
+  Vec<R, double> u = load<R>(view.d + std::ptrdiff_t(R) * i);
+  for (const SetBlocksView<T>*set = view.set, *end = set + view.sets; set != end; ++set) {
+    if (set->width == 6) {
+      add_velocity_of_bodies<R>(*set, i, u.data(), 6);
+    } else {
+      double sum[R];
+      store(u, sum);
+      add_velocity_of_bodies_otherwise<R>(*set, i, sum);
+      u = load<R>(sum);
+    }
+  }
+  DELASSUS_UNROLL
+  for (int k = 0; k < R; ++k)
+    u.data()[k] += double(view.on_diagonal[std::ptrdiff_t(R) * i + k] * view.lambda[std::ptrdiff_t(R) * i + k]);
+  return u;
 }
 
 /// d_i + Σ_{j ≠ i} W_ij λ_j: what the rows would do without this constraint; of a W that is not square blocks.
 template <int R, class T>
-[[gnu::noinline]] Vec<R, double> free_velocity_otherwise(const RowView<T>& view, Index i) {
-  Vec<R, double> u;
+[[gnu::noinline]] void free_velocity_otherwise(const RowView<T>& view, Index i, double* r) {
   if (view.is_matrix() || (view.form == FormOfW::mixed && !view.crowded[i].is_crowded)) {
-    sum_of_blocks<R>(view, i, u.data());
+    sum_of_blocks<R>(view, i, r);
   } else {
-    residual_without_blocks<R>(view, i, u.data());
-    u -= load_square<R>(view.own_diagonal + std::ptrdiff_t(R * R) * i) * load<R>(view.lambda + std::ptrdiff_t(R) * i);
+    const Vec<R, double> own = load_square<R>(view.own_diagonal + std::ptrdiff_t(R * R) * i) * load<R>(view.lambda + std::ptrdiff_t(R) * i);
+    store(Vec<R, double>(velocity_without_blocks<R>(view, i) - own), r);
   }
-  return u;
 }
+// What a call writes into has a place in memory, and what the caller makes of it has none: else it would pass through memory
+// where no call is made, too.
 template <int R, class T>
 [[gnu::always_inline]] inline Vec<R, double> free_velocity(const RowView<T>& view, Index i) {
-  if (view.form != FormOfW::square_blocks) return free_velocity_otherwise<R>(view, i);
+  if (view.form == FormOfW::square_blocks) {
+    double r[R];
+    sum_of_squares<R>(view, i, r);
+    return load<R>(r);
+  }
   double r[R];
-  sum_of_squares<R>(view, i, r);
+  free_velocity_otherwise<R>(view, i, r);
   return load<R>(r);
 }
 
@@ -114,7 +131,7 @@ template <int R, class T>
     sum_of_blocks<R>(view, i, u.data());
     add_square_block<R>(u.data(), own, lambda);
   } else {
-    residual_without_blocks<R>(view, i, u.data());
+    u = velocity_without_blocks<R>(view, i);
     if (view.diagonal != view.own_diagonal)  // lifted
       u += (load_square<R>(own) - load_square<R>(view.own_diagonal + std::ptrdiff_t(R * R) * i)) * load<R>(lambda);
   }
@@ -131,11 +148,48 @@ template <int R, class T>
 
 /// The first row of the free velocity, of three. Pre: W is a matrix.
 template <class T>
-[[gnu::always_inline]] inline double free_normal_velocity(const RowView<T>& view, Index i) {
+[[gnu::noinline]] double free_normal_velocity_otherwise(const RowView<T>& view, Index i) {
   double sum = double(view.d[3 * std::ptrdiff_t(i)]);
   for (const BlockRowsView<T>*W = view.blocks, *end = W + view.block_rows; W != end; ++W)
-    sum += first_of_row(W->start[i], W->start[i + 1], W->block, W->column, W->lambda, W->columns);
+    sum += W->columns == 3 ? first_of_row(W->start[i], W->start[i + 1], W->block, W->column, W->lambda)
+                           : first_of_wide_row(W->start[i], W->start[i + 1], W->block, W->column, W->lambda, W->columns);
   return sum;
+}
+template <class T>
+[[gnu::always_inline]] inline double free_normal_velocity(const RowView<T>& view, Index i) {
+  if (view.form != FormOfW::square_blocks) return free_normal_velocity_otherwise(view, i);
+  const BlockRowsView<T>& W = *view.blocks;
+  return double(view.d[3 * std::ptrdiff_t(i)]) + first_of_row(W.start[i], W.start[i + 1], W.block, W.column, W.lambda);
+}
+
+/// y_{block(e)} += G_e δ over the entries of item i in a body set of even width. All of a block is read before anything is
+/// written, so that no number has to be read twice.
+template <int R, int width, class T>
+[[gnu::always_inline]] inline void add_change_of_bodies(const SetBlocksView<T>& set, Index i, const double* change) {
+  for (Index e = set.offset[i], end = set.offset[i + 1]; e < end; ++e) {
+    const T* G = set.G + std::ptrdiff_t(R * width) * e;
+    double* y = set.y + std::ptrdiff_t(width) * set.block[e];
+    TwoLanes sum[width / 2];
+    for (int j = 0; j < width / 2; ++j) sum[j] = two_lanes_at(G + 2 * j) * change[0];
+    DELASSUS_UNROLL
+    for (int k = 1; k < R; ++k)
+      for (int j = 0; j < width / 2; ++j) sum[j] += two_lanes_at(G + 2 * j + width * k) * change[k];
+    for (int j = 0; j < width / 2; ++j) y[2 * j] += sum[j][0], y[2 * j + 1] += sum[j][1];
+  }
+}
+/// The same of bodies of any width.
+template <int R, class T>
+[[gnu::noinline]] void add_change_of_bodies_otherwise(const SetBlocksView<T>& set, Index i, const double* change) {
+  const int width = set.width;
+  for (Index e = set.offset[i], end = set.offset[i + 1]; e < end; ++e) {
+    const T* G = set.G + std::ptrdiff_t(R) * width * e;
+    double* y = set.y + std::ptrdiff_t(width) * set.block[e];
+    for (int j = 0; j < width; ++j) {
+      double sum = double(G[j]) * change[0];
+      for (int k = 1; k < R; ++k) sum += double(G[j + width * k]) * change[k];
+      y[j] += sum;
+    }
+  }
 }
 
 /// What W hears of a change of λ_i where it is no matrix.
@@ -146,22 +200,18 @@ template <int R, class T>
     for (int k = 0; k < R; ++k) numbers[k] = T(change[k]);
     view.functions.changed(view.functions, view.pool, i, numbers);
   } else if (view.form == FormOfW::bodies || view.crowded[i].meets_crowded) {
-    for (const SetBlocksView<T>*set = view.set, *end = set + view.sets; set != end; ++set)
-      for (Index e = set->offset[i]; e < set->offset[i + 1]; ++e) {
-        const int w = set->width;
-        const T* G = set->G + std::ptrdiff_t(R * w) * e;
-        double* y = set->y + std::ptrdiff_t(w) * set->block[e];
-        for (int j = 0; j < w; ++j) {
-          double sum = double(G[j]) * change[0];
-          for (int k = 1; k < R; ++k) sum += double(G[j + w * k]) * change[k];
-          y[j] += sum;
-        }
-      }
+    for (const SetBlocksView<T>*set = view.set, *end = set + view.sets; set != end; ++set) {
+      if (set->width == 6) add_change_of_bodies<R, 6>(*set, i, change);
+      else add_change_of_bodies_otherwise<R>(*set, i, change);
+    }
   }
 }
 template <int R, class T>
 [[gnu::always_inline]] inline void impulse_changed(const RowView<T>& view, Index i, const Vec<R, double>& change) {
-  if (!view.is_matrix()) tell_change<R>(view, i, change.data());
+  if (view.is_matrix()) return;
+  double numbers[R];
+  store(change, numbers);
+  tell_change<R>(view, i, numbers);
 }
 
 }  // namespace delassus::inner

@@ -32,8 +32,8 @@ struct CrowdedRow {
   bool is_crowded, meets_crowded;
 };
 
-/// How W is kept: as blocks that are all as wide as high, as blocks, as A⁻¹ Hᵀ λ of the bodies, row by row one or the other,
-/// or by functions of its own. What is no matrix must hear of changes of λ.
+/// How W is kept: as one `BlockRowsView` whose blocks are as wide as high, as any of them, as A⁻¹ Hᵀ λ of the bodies, row by row
+/// one or the other, or by functions of its own. What is no matrix must hear of changes of λ.
 enum class FormOfW : char { square_blocks, blocks, bodies, mixed, functions };
 
 /// W by functions of its own: residual sets u = (d + W λ)_i, `changed` hears that λ_i was changed by δ.

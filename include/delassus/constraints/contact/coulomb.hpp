@@ -80,7 +80,8 @@ struct Coulomb {
     const T mu = T(p.friction);
     const Vec<3, T> stick = -(memory.inverse * b);
     const T limit = mu * stick[0];
-    if (stick[0] >= T(0) && stick[1] * stick[1] + stick[2] * stick[2] <= limit * limit) return stick;
+    if (stick[0] >= T(0) && stick[1] * stick[1] + stick[2] * stick[2] <= limit * limit)
+      return {stick[0], stick[1], stick[2]};  // in registers: a copy would pass through memory
     return slip(b, mu, memory);
   }
 

@@ -95,37 +95,36 @@ struct LawLoops {
   static void sweep(const Span<T>& span, Sweep<T>& sums) {
     const PoolView<T>& pool = *span.pool;
     const Items of(pool);
-    Sweep<T> here = sums;
-    const bool relaxes = here.relaxation != T(1);
+    const bool relaxes = sums.relaxation != T(1), sums_more = sums.x || sums.tells_change;
+    double energy = sums.energy;
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items[k];
+      if constexpr (is_round_cone<Law>())
+        if (stays_open(pool, i)) continue;
       const Vec<R, double> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
-      if constexpr (is_round_cone<Law>())  // without impulse, and it goes on opening, of which its normal row tells
-        if (is_zero(lambda) && pool.is_matrix() && free_normal_velocity(pool, i) >= 0) continue;
       const T* own = block_of(pool, i);
       Vec<R, double> next = of.solve_local(i, own, free_velocity<R>(pool, i), of.memory[i], lambda);
       if (relaxes) {
-        next = lambda + double(here.relaxation) * (next - lambda);
+        next = lambda + double(sums.relaxation) * (next - lambda);
         of.clamp(i, next);
       }
-      accept(pool, i, k, lambda, next, own, here);
+      energy += accept(pool, i, k, lambda, next, own, sums_more, sums);
     }
-    sums = here;
+    sums.energy = energy;
   }
 
   static void project_once(const Span<T>& span, Sweep<T>& sums) {
     const PoolView<T>& pool = *span.pool;
     const Items of(pool);
-    Sweep<T> here = sums;
+    const bool sums_more = sums.x || sums.tells_change;
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items[k];
       const Vec<R, double> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
       const T* own = block_of(pool, i);
       const double s = norm(load_square<R>(own));
       const Vec<R, double> next = lambda - of.natural_map(i, own, lambda, inner::velocity<R>(pool, i), s) / s;
-      accept(pool, i, k, lambda, next, own, here);
+      sums.energy += accept(pool, i, k, lambda, next, own, sums_more, sums);
     }
-    sums = here;
   }
 
   static void measure(const Span<T>& span, MeasureSums& sums) {
@@ -191,20 +190,31 @@ struct LawLoops {
     return sum * (1.0 / R);
   }
 
-  /// λ_i ← next, the k-th of its span.
-  [[gnu::always_inline]] static void accept(const PoolView<T>& pool, Index i, Index k, const Vec<R, double>& lambda, const Vec<R, double>& next,
-                                            const T* own, Sweep<T>& sums) {
+  /// Without impulse, and it goes on opening, of which its normal row tells.
+  [[gnu::always_inline]] static bool stays_open(const PoolView<T>& pool, Index i) {
+    const T* lambda = pool.lambda + std::ptrdiff_t(R) * i;
+    if (lambda[0] != 0) return false;
+    for (int k = 1; k < R; ++k)
+      if (lambda[k] != 0) return false;
+    return pool.is_matrix() && free_normal_velocity(pool, i) >= 0;
+  }
+
+  /// λ_i ← next, the k-th of its span. Returns w |Δλ|².
+  [[gnu::always_inline]] static double accept(const PoolView<T>& pool, Index i, Index k, const Vec<R, double>& lambda, const Vec<R, double>& next,
+                                              const T* own, bool sums_more, Sweep<T>& sums) {
     const Vec<R, double> change = next - lambda;
     store(next, pool.lambda + std::ptrdiff_t(R) * i);
     impulse_changed<R>(pool, i, change);
     const double weight = weight_of(own), square = squared_norm(change);
-    sums.energy += weight * square;
-    if (sums.x) sums.along += weight * dot(change, Vec<R, double>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
-    if (sums.tells_change) {
-      const double share = weight * std::sqrt(square);
-      sums.displacement += share;
-      sums.most = std::max(sums.most, share);
+    if (sums_more) {
+      if (sums.x) sums.along += weight * dot(change, Vec<R, double>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
+      if (sums.tells_change) {
+        const double share = weight * std::sqrt(square);
+        sums.displacement += share;
+        sums.most = std::max(sums.most, share);
+      }
     }
+    return weight * square;
   }
 
   /// |F_i(w)|² and |F_i(1)|² of `Measure`, at once where the law knows them so, and what else it sums.
