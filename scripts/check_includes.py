@@ -24,6 +24,7 @@ AROUND = {"compiled.hpp", "compile_here.hpp"}
 EIGEN = {"Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"}
 EIGEN_LINEAR = {"Eigen/LU", "Eigen/OrderingMethods", "Eigen/SparseCore"}
 HEAVY = {"iostream", "ranges", "regex", "execution"}
+WRAPPED = {"cmath": "core/cmath.hpp"}  # no guard of their own: read again at each inclusion
 COMPILERS = {"immintrin.h", "arm_neon.h"}  # the compiler's own names of the processor's instructions, in math/
 STANDARD = re.compile(r"^[a-z_0-9]+(\.h)?$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -64,6 +65,8 @@ def why_not_foreign(header, target):
         return f"Eigen comes as {', '.join(sorted(EIGEN))} (and {', '.join(sorted(EIGEN_LINEAR))} in linear/)"
     if target in HEAVY:
         return "too heavy for a header"
+    if target in WRAPPED:
+        return None if header == WRAPPED[target] else f"include <delassus/{WRAPPED[target]}>, which is read once"
     if STANDARD.match(target) and not target.endswith(".h"):
         return None
     if target in COMPILERS and room == "math":
@@ -126,6 +129,8 @@ SELF_TEST = [
     ("collision/a.hpp", "#include <fcl/fcl.h>", "third party"),
     ("collision/a.hpp", "#include <ccd/ccd.h>", "third party"),
     ("core/a.hpp", "#include <iostream>", "heavy"),
+    ("core/cmath.hpp", "#include <cmath>", None),
+    ("rows/a.hpp", "#include <cmath>", "read once"),
     ("core/a.hpp", '#include "ok.hpp"', "include with"),
     ("core/a.hpp", "#include <delassus/core/gone.hpp>", "no such header"),
     ("cellar/a.hpp", "", "no room"),

@@ -3,11 +3,11 @@
 
 #include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/signed_pair.hpp>
+#include <delassus/core/cmath.hpp>
 
 #include <ccd/ccd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -1,12 +1,12 @@
 /// CHOLMOD's supernodal Cholesky factorization behind the concept of ours.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/linear/factorization.hpp>
 
 #include <algorithm>
 #include <cholmod.h>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>

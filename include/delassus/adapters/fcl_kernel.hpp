@@ -3,6 +3,7 @@
 
 #include <delassus/collision/gjk.hpp>
 #include <delassus/collision/signed_pair.hpp>
+#include <delassus/core/cmath.hpp>
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
@@ -17,7 +18,6 @@
 #include <fcl/narrowphase/distance_result.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <vector>

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/adapters/hdf5_file.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/problems/friction_problem.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>

@@ -1,10 +1,10 @@
 /// A file of HDF5 with the arrays of numbers in it, refused by name where it is not as expected.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>

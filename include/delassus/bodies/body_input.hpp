@@ -1,6 +1,7 @@
 /// What a user says of a new rigid body, and the checks that refuse what cannot be one.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/inertia.hpp>
 #include <delassus/geometry/shape.hpp>
@@ -8,7 +9,6 @@
 #include <delassus/math/rotation.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>

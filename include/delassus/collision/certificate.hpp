@@ -3,9 +3,9 @@
 
 #include <delassus/collision/inner/difference.hpp>
 #include <delassus/collision/signed_pair.hpp>
+#include <delassus/core/cmath.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 
 namespace delassus {

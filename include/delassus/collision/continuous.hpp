@@ -6,11 +6,11 @@
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/slice.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <delassus/collision/triangle_patch.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/geometry/triangle.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus {
 

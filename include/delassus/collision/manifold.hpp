@@ -3,10 +3,10 @@
 
 #include <delassus/collision/inner/clip.hpp>
 #include <delassus/collision/signed_pair.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -4,9 +4,9 @@
 
 #include <delassus/collision/queries.hpp>
 #include <delassus/collision/with_meshes.hpp>
+#include <delassus/core/cmath.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace delassus {

@@ -4,11 +4,11 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <limits>
 #include <vector>

@@ -3,13 +3,13 @@
 
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>

@@ -4,11 +4,11 @@
 
 #include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/manifold.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/triangle.hpp>
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 

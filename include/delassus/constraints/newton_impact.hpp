@@ -3,12 +3,12 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/owning_array.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/world_view.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <type_traits>
 #include <utility>

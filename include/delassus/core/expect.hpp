@@ -1,7 +1,8 @@
 /// Bad input is refused where it enters, in one sentence that says what, where and how to mend.
 #pragma once
 
-#include <cmath>
+#include <delassus/core/cmath.hpp>
+
 #include <cstdio>
 #include <stdexcept>
 #include <string>

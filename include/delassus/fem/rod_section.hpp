@@ -1,9 +1,9 @@
 /// Cross-sections of rods.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace delassus {

@@ -1,13 +1,13 @@
 /// What a user says of a new deformable body, and the checks that refuse what cannot be one.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/elasticity/material.hpp>
 #include <delassus/fem/inner/place_of_nodes.hpp>
 #include <delassus/geometry/tetrahedral_mesh.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/math/rotation.hpp>
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 

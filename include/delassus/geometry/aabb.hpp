@@ -1,9 +1,9 @@
 /// A box whose edges are along the axes of the world.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <limits>
 
 namespace delassus {

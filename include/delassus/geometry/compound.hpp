@@ -1,11 +1,11 @@
 /// Several convex shapes that are one body, with its mass and inertia.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/inertia.hpp>
 #include <delassus/geometry/support.hpp>
 
-#include <cmath>
 #include <span>
 #include <string>
 #include <vector>

@@ -1,12 +1,12 @@
 /// A surface given by its heights over a rectangular grid.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/geometry/triangle.hpp>
 
 #include <array>
-#include <cmath>
 #include <span>
 #include <string>
 #include <vector>

@@ -1,6 +1,7 @@
 /// Hexahedral meshes: trilinear coordinates, checks, volumes, the outer surface.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/inner/cell_sides.hpp>
@@ -10,7 +11,6 @@
 #include <delassus/math/linear.hpp>
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>

@@ -1,6 +1,7 @@
 /// Sheets of triangles: a surface with a thickness, its checks, and rectangles of it.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/sort.hpp>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>

@@ -1,6 +1,7 @@
 /// How far a shape reaches in a direction: support points, tight boxes, sizes.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/geometry/aabb.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
@@ -8,7 +9,6 @@
 #include <delassus/math/two_lanes.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <limits>
 #include <span>

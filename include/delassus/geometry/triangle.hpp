@@ -1,11 +1,11 @@
 /// One triangle of a surface, with what it must know of its neighbours when something touches its rim.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <array>
-#include <cmath>
 
 namespace delassus {
 

@@ -1,10 +1,10 @@
 /// The last stage before the motors: a low-pass filter and a limit.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <type_traits>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>

@@ -1,9 +1,10 @@
 /// Sums and products of small matrices of fixed size, evaluated where they stand.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
+
 #include <Eigen/Core>
 
-#include <cmath>
 #include <concepts>
 #include <type_traits>
 

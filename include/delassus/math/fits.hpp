@@ -2,10 +2,10 @@
 /// not.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <limits>
 #include <string>
 

@@ -1,12 +1,11 @@
 /// The names under which the library uses Eigen's fixed-size types.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/eager.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
-#include <cmath>
 
 namespace delassus {
 

@@ -1,12 +1,12 @@
 /// The LU factorization of one small matrix, with row pivots.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/math/long_vectors.hpp>
 
-#include <cmath>
 #include <utility>
 
 namespace delassus {

@@ -1,10 +1,10 @@
 /// The inverse of a small positive definite matrix.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/unrolled.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -1,10 +1,10 @@
 /// Singular values of a 3 × 3 matrix between two rotations, and eigenvalues of a symmetric one.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus {
 

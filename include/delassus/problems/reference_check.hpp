@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/positive.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
@@ -12,7 +13,6 @@
 #include <delassus/solvers/problem.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>

@@ -1,6 +1,7 @@
 /// Joints by one sparse factorization, contacts and limits by sweeps on what the joints leave them.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -15,7 +16,6 @@
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
-#include <cmath>
 #include <utility>
 
 namespace delassus {

@@ -1,13 +1,12 @@
 /// Gauss-Seidel sweeps over all constraints of an island, one local law at a time.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
-
-#include <cmath>
 
 namespace delassus {
 

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/solvers/inner/solve_timer.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>

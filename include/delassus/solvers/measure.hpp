@@ -1,8 +1,9 @@
 /// How far an impulse is from meeting all laws of an island.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
+
 #include <algorithm>
-#include <cmath>
 
 namespace delassus {
 

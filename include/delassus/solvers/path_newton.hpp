@@ -1,6 +1,7 @@
 /// Newton's method along the path of smoothed contact laws, around its folds.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/status.hpp>
@@ -10,7 +11,6 @@
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 

@@ -1,6 +1,7 @@
 /// Newton's method in the velocities of the bodies, inside a proximal point iteration on the impulses.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
@@ -11,7 +12,6 @@
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus {
 

@@ -1,11 +1,11 @@
 /// What a solver says of one island.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus {
 

@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/clock.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
@@ -12,7 +13,6 @@
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 

@@ -3,12 +3,12 @@
 
 #include <delassus/compliance/add_impulses.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 

@@ -1,12 +1,12 @@
 /// Linearize: every law writes H and φ of its items.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/world_view.hpp>
 #include <delassus/step/law_rows.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace delassus {

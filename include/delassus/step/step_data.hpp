@@ -5,6 +5,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/core/handle.hpp>
@@ -22,7 +23,6 @@
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/step_report.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <type_traits>

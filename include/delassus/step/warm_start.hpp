@@ -1,6 +1,7 @@
 /// Warm start: every constraint begins with the impulse it had, scaled with the step.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/law_table.hpp>
@@ -9,7 +10,6 @@
 #include <delassus/step/law_rows.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 

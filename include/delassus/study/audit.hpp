@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/bounds.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/alive.hpp>
 #include <delassus/rows/row_system.hpp>
@@ -12,7 +13,6 @@
 #include <delassus/study/code_of.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <type_traits>

@@ -3,12 +3,12 @@
 
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/compliance/uncoupled.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/type_text.hpp>
 #include <delassus/io/inner/text.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <string>

@@ -1,12 +1,12 @@
 /// Draws what a study found: error against time, one mark a run.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/study/inner/log_axis.hpp>
 #include <delassus/study/inner/svg.hpp>
 #include <delassus/study/study.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>

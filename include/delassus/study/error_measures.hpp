@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/bodies/invariants.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>

@@ -1,12 +1,12 @@
 /// What a study is asked, what it found, and the choice of the cheapest run that is accurate enough.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/study/code_of.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/clock.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/io/progress.hpp>
 #include <delassus/study/combinations.hpp>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <ctime>

@@ -1,10 +1,10 @@
 /// Where two faces overlap, seen along the contact normal.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/geometry/face.hpp>
 
-#include <cmath>
 #include <cstdint>
 
 namespace delassus::inner {

@@ -4,10 +4,10 @@
 
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

@@ -1,9 +1,9 @@
 /// Which way two bodies part whose centres are one point.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <cstdint>
 
 namespace delassus::inner {

@@ -3,11 +3,11 @@
 
 #include <delassus/collision/manifold.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 

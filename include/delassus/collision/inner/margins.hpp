@@ -4,11 +4,11 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/summary.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace delassus {

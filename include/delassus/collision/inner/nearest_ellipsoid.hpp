@@ -1,10 +1,10 @@
 /// The point of an ellipsoid nearest to a given point, inside or outside: one root of a monotone function.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/collision/feature_touch.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 #include <delassus/math/pose.hpp>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <span>
 

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <delassus/collision/pair_memory.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
-
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <delassus/collision/inner/difference.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus::inner {
 

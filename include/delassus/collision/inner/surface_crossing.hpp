@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/collision/inner/posed_surface.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/sort.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>

@@ -11,12 +11,12 @@
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/inner/flat_tree.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <vector>
 

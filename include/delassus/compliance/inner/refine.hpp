@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/compliance/add_impulses.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/rows/rate.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus {
 

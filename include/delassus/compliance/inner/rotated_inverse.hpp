@@ -2,12 +2,12 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>

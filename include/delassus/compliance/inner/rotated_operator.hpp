@@ -4,8 +4,8 @@
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/compliance/inner/rotated_inverse.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <tuple>

@@ -1,9 +1,8 @@
 /// Coulomb's cone: projections and the map whose zero is a solution.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
-
-#include <cmath>
 
 namespace delassus {
 namespace inner {

@@ -3,10 +3,9 @@
 
 #include <delassus/constraints/contact/wrapped_law.hpp>
 #include <delassus/constraints/law.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/rows/contact_record.hpp>
-
-#include <cmath>
 
 namespace delassus {
 

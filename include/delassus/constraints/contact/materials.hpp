@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace delassus {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/constraints/law.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/soft.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 
 namespace delassus {

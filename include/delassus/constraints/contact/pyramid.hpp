@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/contact/cone.hpp>
 #include <delassus/constraints/refinements.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/local.hpp>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace delassus {

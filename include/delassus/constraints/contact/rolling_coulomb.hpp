@@ -3,11 +3,11 @@
 
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/refinements.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -4,12 +4,12 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/newton_impact.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/rate.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 #include <vector>
 

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/constraints/refinements.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 
 namespace delassus {

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/constraints/law.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/math/linear.hpp>
 
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <delassus/constraints/joints/joint_rows.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/wrapping.hpp>
 
-#include <cmath>
 #include <concepts>
 #include <numbers>
 

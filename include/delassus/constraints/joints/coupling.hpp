@@ -3,8 +3,8 @@
 
 #include <delassus/constraints/joints/bilateral.hpp>
 #include <delassus/constraints/joints/coordinate.hpp>
+#include <delassus/core/cmath.hpp>
 
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -4,12 +4,12 @@
 #include <delassus/constraints/joints/coordinate.hpp>
 #include <delassus/constraints/law.hpp>
 #include <delassus/constraints/newton_impact.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace delassus {

@@ -1,10 +1,9 @@
 /// A rubber-like material that can be turned inside out and comes back.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/elasticity/isotropic.hpp>
 #include <delassus/fem/elasticity/material.hpp>
-
-#include <cmath>
 
 namespace delassus {
 

@@ -1,9 +1,9 @@
 /// An isotropic material with fibres in one direction, as muscle and tendon have them.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/elasticity/material.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace delassus {

@@ -1,11 +1,11 @@
 /// One straight piece of a rod: what it resists, and how its ends feel it.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/rotation.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace delassus::inner {
 

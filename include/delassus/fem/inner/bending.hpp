@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/inner/tie.hpp>
 #include <delassus/geometry/inner/surface_topology.hpp>
 #include <delassus/geometry/sheet_mesh.hpp>
@@ -9,7 +10,6 @@
 #include <delassus/math/linear.hpp>
 
 #include <array>
-#include <cmath>
 #include <utility>
 
 namespace delassus::inner {

@@ -2,12 +2,12 @@
 /// stiffness.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/elasticity/material.hpp>
 #include <delassus/geometry/hexahedral_mesh.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 
 #include <array>
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -1,6 +1,7 @@
 /// The element of eight nodes that bends without locking: a mean deformation, and modes about it.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/elasticity/material.hpp>
 #include <delassus/fem/inner/find_place.hpp>
 #include <delassus/fem/inner/gradient_element.hpp>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace delassus::inner {
 

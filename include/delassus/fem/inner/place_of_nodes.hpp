@@ -1,11 +1,11 @@
 /// Where a body of nodes is put as it is added, and what of its density and contacts cannot be.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/fits.hpp>
 #include <delassus/math/rotation.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace delassus::inner {

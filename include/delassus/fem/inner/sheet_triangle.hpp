@@ -2,13 +2,13 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/fem/elasticity/material.hpp>
 #include <delassus/fem/inner/bending.hpp>
 #include <delassus/fem/inner/gradient_element.hpp>
 #include <delassus/geometry/sheet_mesh.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus::inner {
 

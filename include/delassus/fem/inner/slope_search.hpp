@@ -1,10 +1,10 @@
 /// How far to go along a step of Newton's method, by the slope alone.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/twist.hpp>
 
-#include <cmath>
 #include <limits>
 
 namespace delassus::inner {

@@ -1,10 +1,9 @@
 /// Coplanar triangles of a hull become one polygon, and the points that no edge needs are dropped.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
-
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
 #include <delassus/core/sort.hpp>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <utility>
 

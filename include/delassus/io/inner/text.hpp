@@ -1,10 +1,10 @@
 /// Numbers, words and bytes as JSON, HTML and CSV want them, the same in every locale.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string>

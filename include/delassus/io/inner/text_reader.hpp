@@ -1,11 +1,11 @@
 /// Numbers and words of a text file, one after the other, with the line they stand on.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>

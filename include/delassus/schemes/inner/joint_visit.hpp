@@ -1,13 +1,13 @@
 /// One joint between bodies that answer alone: its rows, its W, and what an impulse does.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/positive.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/schemes/inner/item_rows.hpp>
 #include <delassus/step/bias.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 #include <utility>
 

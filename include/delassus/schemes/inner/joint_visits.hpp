@@ -4,6 +4,7 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/unrolled.hpp>
 #include <delassus/schemes/inner/item_rows.hpp>
 #include <delassus/schemes/inner/joint_visit.hpp>
@@ -19,7 +20,6 @@
 #include <delassus/step/warm_start.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

@@ -1,6 +1,7 @@
 /// One joint that holds a point, between bodies that answer alone.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/unrolled.hpp>
 #include <delassus/math/positive.hpp>
@@ -8,7 +9,6 @@
 #include <delassus/schemes/inner/joint_visit.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 #include <utility>
 

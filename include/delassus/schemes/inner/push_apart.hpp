@@ -1,10 +1,9 @@
 /// Penalty contacts as forces of the free motion.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/step/detect.hpp>
-
-#include <cmath>
 
 namespace delassus {
 namespace inner {

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/solvers/island.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace delassus::inner {

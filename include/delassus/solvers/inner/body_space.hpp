@@ -1,11 +1,11 @@
 /// One island as a system of equations for the velocities of its bodies.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/inner/newton_system.hpp>
 #include <delassus/solvers/measure.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <limits>
 

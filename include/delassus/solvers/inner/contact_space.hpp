@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/contact/cone.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/linear/dense_elimination.hpp>
 #include <delassus/math/linear.hpp>
@@ -10,7 +11,6 @@
 #include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/island.hpp>
 
-#include <cmath>
 #include <cstddef>
 
 namespace delassus::inner {

@@ -1,12 +1,12 @@
 /// A proof that the rows of an island contradict each other.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/solvers/island.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus::inner {

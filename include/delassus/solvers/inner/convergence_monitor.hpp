@@ -2,10 +2,10 @@
 /// stalled.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus::inner {

@@ -2,13 +2,13 @@
 /// sweeps.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/solvers/inner/convex_space.hpp>
 #include <delassus/solvers/measure.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus::inner {

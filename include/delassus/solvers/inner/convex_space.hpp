@@ -1,6 +1,7 @@
 /// One island as a convex function of the velocities of its bodies.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
 #include <delassus/solvers/inner/halve_step.hpp>
@@ -8,7 +9,6 @@
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus::inner {

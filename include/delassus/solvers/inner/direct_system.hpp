@@ -2,12 +2,12 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/linear/sparse_lu.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/rows/row_view.hpp>
 #include <delassus/solvers/inner/island_matrices.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <utility>
 

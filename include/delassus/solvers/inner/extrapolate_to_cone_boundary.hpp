@@ -2,9 +2,8 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/solvers/island.hpp>
-
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/constraints/law.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/free_velocity.hpp>
@@ -11,7 +12,6 @@
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace delassus::inner {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/linear/block_lu.hpp>
 #include <delassus/math/small_products.hpp>
@@ -9,7 +10,6 @@
 #include <delassus/solvers/island.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_kind.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -1,6 +1,7 @@
 /// The laws of one island as smoothed rows, with the Newton step and the tangent of their path in body space.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/inner/path_item.hpp>
 #include <delassus/solvers/inner/path_systems.hpp>
@@ -8,7 +9,6 @@
 #include <delassus/solvers/island.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus::inner {
 

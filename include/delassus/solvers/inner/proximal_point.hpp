@@ -2,12 +2,12 @@
 /// bodies.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/solvers/inner/halve_step.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace delassus::inner {
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/fem/inner/slope_search.hpp>
 #include <delassus/steppers/inner/step_by_sets.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/compliance/compliance.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/rows/rate.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
@@ -10,7 +11,6 @@
 #include <delassus/step/linearize.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <type_traits>
 

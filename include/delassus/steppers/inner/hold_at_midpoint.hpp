@@ -3,12 +3,12 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/steppers/inner/yielding_midpoint.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 

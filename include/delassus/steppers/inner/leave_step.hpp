@@ -1,12 +1,12 @@
 /// What a whole step with joints does with a result that is none: for `Rattle` and `RungeKutta4`.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/rows/rate.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace delassus::inner {

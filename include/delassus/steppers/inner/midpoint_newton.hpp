@@ -4,6 +4,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
@@ -12,7 +13,6 @@
 #include <delassus/steppers/inner/equalities.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 #include <type_traits>

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/rows/rate.hpp>
@@ -10,7 +11,6 @@
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/leave_step.hpp>
 
-#include <cmath>
 #include <limits>
 #include <span>
 #include <tuple>

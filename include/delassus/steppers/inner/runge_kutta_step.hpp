@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/rows/rate.hpp>
@@ -11,7 +12,6 @@
 #include <delassus/steppers/inner/leave_step.hpp>
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <tuple>
 

@@ -2,13 +2,13 @@
 /// finite impulse closes them, and share the least impulses.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/least_impulses.hpp>
 #include <delassus/steppers/inner/midpoint_newton.hpp>
 
-#include <cmath>
 #include <tuple>
 #include <type_traits>
 

@@ -1,10 +1,10 @@
 /// A logarithmic axis, and numbers with the prefixes of the SI.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/io/inner/text.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <string_view>
