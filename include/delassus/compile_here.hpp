@@ -10,6 +10,11 @@ template <int alignment>
 const int inner::CompiledWithAlignment<alignment>::bytes = alignment;
 template struct inner::CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 
+#define DELASSUS_COMPILED_IS_SOUND(KIND, ...) \
+  static_assert(inner::law_is_sound<__VA_ARGS__, WorldView<double>>() && inner::law_linearizes<__VA_ARGS__, double>());
+DELASSUS_COMPILED_CONTACTS(DELASSUS_COMPILED_IS_SOUND, )
+DELASSUS_COMPILED_JOINTS(DELASSUS_COMPILED_IS_SOUND, )
+
 DELASSUS_COMPILED_PARTS(template)
 DELASSUS_COMPILED_DIRECT(template, 3)
 DELASSUS_COMPILED_DIRECT(template, 5)

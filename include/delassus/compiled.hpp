@@ -28,42 +28,50 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 // One list, of which each entry is declared here and compiled by `compile_here.hpp`: what a loop calls once a step, a span of
 // constraints, a pair or a body at the most.
 
-#define DELASSUS_COMPILED_LAW(KIND, ...)               \
-  KIND struct inner::LawRows<__VA_ARGS__, double>;     \
-  KIND struct inner::LawLoops<__VA_ARGS__, double>;    \
+#define DELASSUS_COMPILED_CONTACTS(WHAT, KIND)        \
+  WHAT(KIND, Contact<Coulomb>)                        \
+  WHAT(KIND, Contact<Frictionless>)                   \
+  WHAT(KIND, Contact<Pyramid>)                        \
+  WHAT(KIND, Contact<RollingCoulomb>)                 \
+  WHAT(KIND, Contact<Restitution<Coulomb>>)           \
+  WHAT(KIND, Contact<Penalty<Coulomb>>)               \
+  WHAT(KIND, Contact<SequentialRestitution<Coulomb>>)
+
+#define DELASSUS_COMPILED_JOINTS(WHAT, KIND) \
+  WHAT(KIND, BallJoint)                      \
+  WHAT(KIND, Cylindrical)                    \
+  WHAT(KIND, DistanceJoint)                  \
+  WHAT(KIND, Hinge)                          \
+  WHAT(KIND, Planar)                         \
+  WHAT(KIND, PointOnLine)                    \
+  WHAT(KIND, Screw)                          \
+  WHAT(KIND, Slider)                         \
+  WHAT(KIND, Universal)                      \
+  WHAT(KIND, Weld)                           \
+  WHAT(KIND, VirtualCoupling)                \
+  WHAT(KIND, Gear)                           \
+  WHAT(KIND, Rack)                           \
+  WHAT(KIND, Limit<Turn>)                    \
+  WHAT(KIND, Limit<Slide>)                   \
+  WHAT(KIND, Motor<Turn>)                    \
+  WHAT(KIND, Motor<Slide>)                   \
+  WHAT(KIND, Drive<Turn>)                    \
+  WHAT(KIND, Drive<Slide>)
+
+#define DELASSUS_COMPILED_LAW(KIND, ...)           \
+  KIND struct inner::LawRows<__VA_ARGS__, double>;  \
+  KIND struct inner::LawLoops<__VA_ARGS__, double>; \
   KIND struct inner::LawTangents<__VA_ARGS__, double>;
 
-#define DELASSUS_COMPILED_KEPT_LAW(KIND, ...) \
-  DELASSUS_COMPILED_LAW(KIND, __VA_ARGS__)    \
-  KIND struct Pool<__VA_ARGS__>;
+#define DELASSUS_COMPILED_POOL(KIND, ...) KIND struct Pool<__VA_ARGS__>;
 
-#define DELASSUS_COMPILED_LAWS(KIND)                                   \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Coulomb>)                        \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Frictionless>)                   \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Pyramid>)                        \
-  DELASSUS_COMPILED_LAW(KIND, Contact<RollingCoulomb>)                 \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Restitution<Coulomb>>)           \
-  DELASSUS_COMPILED_LAW(KIND, Contact<Penalty<Coulomb>>)               \
-  DELASSUS_COMPILED_LAW(KIND, Contact<SequentialRestitution<Coulomb>>) \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, BallJoint)                          \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Cylindrical)                        \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, DistanceJoint)                      \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Hinge)                              \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Planar)                             \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, PointOnLine)                        \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Screw)                              \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Slider)                             \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Universal)                          \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Weld)                               \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, VirtualCoupling)                    \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Gear)                               \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Rack)                               \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Limit<Turn>)                        \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Limit<Slide>)                       \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Motor<Turn>)                        \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Motor<Slide>)                       \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Drive<Turn>)                        \
-  DELASSUS_COMPILED_KEPT_LAW(KIND, Drive<Slide>)
+// What `compile_here.hpp` has checked is not checked in each file again.
+#define DELASSUS_COMPILED_CHECK(KIND, ...) KIND bool inner::was_checked<__VA_ARGS__, double> = true;
+
+#define DELASSUS_COMPILED_LAWS(KIND)                      \
+  DELASSUS_COMPILED_CONTACTS(DELASSUS_COMPILED_LAW, KIND) \
+  DELASSUS_COMPILED_JOINTS(DELASSUS_COMPILED_LAW, KIND)   \
+  DELASSUS_COMPILED_JOINTS(DELASSUS_COMPILED_POOL, KIND)
 
 // Of laws with R rows, and body sets of one width.
 #define DELASSUS_COMPILED_HEIGHT(KIND, R)                                                                       \
@@ -114,12 +122,16 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class OwningArray<inner::IslandGraph<BlockLu<6, double>>>;                                                                 \
   KIND class Island<double>;                                                                                                      \
   KIND struct inner::SweepSpace<double, inner::NewtonSpace<double, 6>>;                                                           \
-  KIND struct inner::NewtonSpace<double, 6>;
+  KIND struct inner::NewtonSpace<double, 6>;                                                                                     \
+  KIND struct inner::DefinedOnce<inner::SweepSpace<double, inner::NewtonSpace<double, 6>>>;                                      \
+  KIND struct inner::DefinedOnce<inner::SweepSpace<double, inner::NewtonSpace<double, 3>>>;                                      \
+  KIND struct inner::DefinedOnce<inner::SweepSpace<double, SweepsAlone::Space<double, 6>>>;
 
 // Declared at the end of solvers/direct_gauss_seidel.hpp, whose reading costs something, for who includes it behind this header.
 #define DELASSUS_COMPILED_DIRECT(KIND, R)                                                                                       \
   KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, R, 6>&) const; \
   KIND class inner::SchurComplement<double, inner::DirectSystem<R, 6>>;                                                         \
+  KIND struct inner::DefinedOnce<inner::DirectSpace<Residual, double, R, 6>>;                                                    \
   KIND class OwningArray<inner::IslandGraph<SparseLu<R, double>>>;
 
 #define DELASSUS_COMPILED_BODIES(KIND, ...)                                                                                       \
@@ -149,6 +161,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class BasicBoxTree<double>;                                                                                                \
   KIND class inner::BasicDynamicTree<double>;                                                                                     \
   KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                   \
+  KIND struct inner::DefinedOnce<CollisionEngine<GjkEpa, BoxTree>>;                                                               \
   KIND class CollisionEngine<GjkEpa, BoxTree>;                                                                                    \
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
@@ -177,6 +190,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   DELASSUS_COMPILED_COLLISION(KIND)
 
 DELASSUS_COMPILED_PARTS(extern template)
+DELASSUS_COMPILED_CONTACTS(DELASSUS_COMPILED_CHECK, template <> inline constexpr)
+DELASSUS_COMPILED_JOINTS(DELASSUS_COMPILED_CHECK, template <> inline constexpr)
 
 }  // namespace delassus
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/math/rotation.hpp>
 
 #include <type_traits>
 
@@ -14,8 +15,8 @@ Anchor anchor_at(const S& set, typename S::Handle body, const Vec3& point,
                  const Quat& frame = Quat::Identity()) {
   Anchor a = anchor(set, body);
   if constexpr (FramedSet<S>) {
-    const Quat turn = set.orientation(body);
-    return anchor(set, body, turn.conjugate() * (point - set.position(body)), turn.conjugate() * frame);
+    const Quat back = conjugate<double>(set.orientation(body));
+    return anchor(set, body, rotated<double>(back, Vec3(point - set.position(body))), product(back, frame));
   }
   return a;
 }
@@ -31,7 +32,7 @@ Quat frame_along(const std::type_identity_t<Vec<3, Scalar>>& axis) {
   const Vec<3, Scalar> e = axis / norm(axis);
   const Scalar flat = e[0] * e[0] + e[1] * e[1];
   if (e[2] < 0 && flat < 1e-32) return Eigen::Quaternion<Scalar>(0, 1, 0, 0);
-  return Eigen::Quaternion<Scalar>(e[2] < 0 ? flat / (1 - e[2]) : 1 + e[2], -e[1], e[0], 0).normalized();
+  return unit(Eigen::Quaternion<Scalar>(e[2] < 0 ? flat / (1 - e[2]) : 1 + e[2], -e[1], e[0], 0));
 }
 
 }  // namespace delassus

@@ -14,10 +14,10 @@ template <class T>
 double kinetic_energy(const BasicRigidBodies<T>& set) {
   double sum = 0;
   inner::each_moving(set, [&](Index b) {
-    const Vec<6> v = set.velocity()[b].template cast<double>();
+    const Vec<6> v = converted<double>(set.velocity()[b]);
     const Vec3 rate = transposed_times(set.pose(b).rotation, angular_part(v));
     sum += 0.5 * double(set.mass(b)) * squared_norm(linear_part(v)) +
-           0.5 * dot(rate, Mat3(set.inertia(b).template cast<double>()) * rate);
+           0.5 * dot(rate, Mat3(converted<double>(set.inertia(b))) * rate);
   });
   return sum;
 }
@@ -28,10 +28,10 @@ Vec3 angular_momentum(const BasicRigidBodies<T>& set) {
   Vec3 sum = zero<Vec3>();
   inner::each_moving(set, [&](Index b) {
     const Pose pose = set.pose(b);
-    const Vec<6> v = set.velocity()[b].template cast<double>();
+    const Vec<6> v = converted<double>(set.velocity()[b]);
     const Vec3 rate = transposed_times(pose.rotation, angular_part(v));
     sum += cross(pose.position, inner::momentum_of(set, b)) +
-           pose.rotation * (Mat3(set.inertia(b).template cast<double>()) * rate);
+           pose.rotation * (Mat3(converted<double>(set.inertia(b))) * rate);
   });
   return sum;
 }

@@ -63,13 +63,13 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   /// A spring of stiffness k (N/m), damping c (N·s/m) and rest length (m; their distance now when not given).
   void add_spring(Handle a, Handle b, double stiffness, double damping = 0, std::optional<double> rest = {}) {
     const Index i = checked(a), j = checked(b);
-    const double now = (x_[i] - x_[j]).template cast<double>().norm();
+    const double now = converted<double>(x_[i] - x_[j]).norm();
     springs_.add({i, j, zero<Vec3>(), stiffness, damping, rest.value_or(now)}, who(i));
   }
   /// The same to a point of the world (m).
   void add_spring(Handle a, const Vec3& point, double stiffness, double damping = 0, std::optional<double> rest = {}) {
     const Index i = checked(a);
-    const double now = norm(x_[i].template cast<double>() - point);
+    const double now = norm(converted<double>(x_[i]) - point);
     springs_.add({i, -1, point, stiffness, damping, rest.value_or(now)}, who(i));
   }
 
@@ -77,12 +77,12 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
     const Index b = checked(particle);
     check_velocity(velocity, b);
     DELASSUS_EXPECT(mass_[b] > T(0), who(b) + ": a fixed particle has no velocity");
-    v_[b] = velocity.template cast<T>();
+    v_[b] = converted<T>(velocity);
   }
   void place(Handle particle, const Vec3& position) {
     const Index b = checked(particle);
     check_position(position, b);
-    x_[b] = position.template cast<T>();
+    x_[b] = converted<T>(position);
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   void factor(SystemScale scale) { springs_.factor(scale, x_, mass_, inverse_mass_, slots_.active()); }
 
   void add_forces(std::span<Velocity> p) const {
-    const Velocity g = gravity.template cast<T>();
+    const Velocity g = converted<T>(gravity);
     for (const Index b : slots_.active())
       if (moves(b)) p[b] += load_[b] + mass_[b] * g;
     springs_.add_forces(p, x_, v_);
@@ -130,8 +130,8 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
 
   int anchor_blocks(const Anchor& a) const { return moves(a.block) ? 1 : 0; }
   Index anchor_block(const Anchor& a, int) const { return a.block; }
-  Velocity along(const Anchor&, int, const Vec3&, const Vec3& direction) const { return direction.template cast<T>(); }
-  Vec3 point(const Anchor& a) const { return x_[a.block].template cast<double>(); }
+  Velocity along(const Anchor&, int, const Vec3&, const Vec3& direction) const { return converted<T>(direction); }
+  Vec3 point(const Anchor& a) const { return converted<double>(x_[a.block]); }
 
   /// x₊ = x + h v_next. A particle whose x₊ is not finite stays where it is.
   void advance(double h) { advance_with(h, T(0)); }
@@ -169,7 +169,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
             .load = load_.data(),
             .mass = mass_.data(),
             .inverse_mass = inverse_mass_.data(),
-            .gravity = gravity.template cast<T>(),
+            .gravity = converted<T>(gravity),
             .inverse_scale = T(1 / scale.mass),
             .record = &quarantine_};
   }
@@ -230,8 +230,8 @@ typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& partic
   }
   inner::expect_not_negative(name + ": radius", particle.radius);
   const Index b = PointStorage::take(particle, particle.is_fixed ? Velocity(zero<Velocity>())
-                                                            : Velocity(particle.velocity.template cast<T>()));
-  x_[b] = particle.position.template cast<T>();
+                                                            : Velocity(converted<T>(particle.velocity)));
+  x_[b] = converted<T>(particle.position);
   mass_[b] = particle.is_fixed ? T(0) : T(*particle.mass);
   inverse_mass_[b] = particle.is_fixed ? T(0) : T(1 / *particle.mass);
   radius_[b] = particle.radius;

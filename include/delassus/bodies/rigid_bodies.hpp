@@ -68,21 +68,21 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   void apply_force(Handle body, const Vec3& force, const Vec3& point) {
     const Index b = checked(body);
     const Vec3 arm = point - position_of(b);
-    load_[b] += twist<T>(force.template cast<T>(), cross(arm, force).template cast<T>());
+    load_[b] += twist<T>(converted<T>(force), converted<T>(cross(arm, force)));
   }
   void apply_force(Handle body, const Vec3& force) {
-    load_[checked(body)] += twist<T>(force.template cast<T>(), zero<Vec<3, T>>());
+    load_[checked(body)] += twist<T>(converted<T>(force), zero<Vec<3, T>>());
   }
   /// Adds a torque (N·m) that acts during the next step only.
   void apply_torque(Handle body, const Vec3& torque) {
-    load_[checked(body)] += twist<T>(zero<Vec<3, T>>(), torque.template cast<T>());
+    load_[checked(body)] += twist<T>(zero<Vec<3, T>>(), converted<T>(torque));
   }
 
   void set_velocity(Handle body, const Vec3& velocity, const Vec3& angular_velocity = zero<Vec3>()) {
     const Index b = checked(body);
     check_velocity(velocity, angular_velocity, b);
     DELASSUS_EXPECT(motion_[b] != Motion::fixed, who(b) + ": a fixed body has no velocity; add it as a kinematic one");
-    v_[b] = twist<T>(velocity.template cast<T>(), angular_velocity.template cast<T>());
+    v_[b] = twist<T>(converted<T>(velocity), converted<T>(angular_velocity));
   }
 
   /// Where a kinematic body shall be at the end of the next step; its velocity is (q(t+h) ⊖ q(t)) / h.
@@ -102,10 +102,10 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
 
   // --- reading -------------------------------------------------------------------------------------------------
   Vec3 position(Handle body) const { return position_of(checked(body)); }
-  Quat orientation(Handle body) const { return state_.q[checked(body)].template cast<double>(); }
+  Quat orientation(Handle body) const { return converted<double>(state_.q[checked(body)]); }
   using BodyStorage::velocity;
-  Vec3 velocity(Handle body) const { return linear_part(v_[checked(body)]).template cast<double>(); }
-  Vec3 angular_velocity(Handle body) const { return angular_part(v_[checked(body)]).template cast<double>(); }
+  Vec3 velocity(Handle body) const { return converted<double>(linear_part(v_[checked(body)])); }
+  Vec3 angular_velocity(Handle body) const { return converted<double>(angular_part(v_[checked(body)])); }
   double mass(Handle body) const { return state_.mass[checked(body)]; }
   const Mat<3, 3, T>& inertia(Index b) const { return state_.inertia[b]; }
   T mass(Index b) const { return state_.mass[b]; }
@@ -127,7 +127,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   }
   void add_force(Index b, Velocity& p) const {
     p += load_[b];
-    const Vec<3, T> weight = state_.mass[b] * Vec<3, T>(gravity.template cast<T>());
+    const Vec<3, T> weight = state_.mass[b] * Vec<3, T>(converted<T>(gravity));
     for (int k = 0; k < 3; ++k) p[k] += weight[k];
   }
 
@@ -156,17 +156,17 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   /// Row of H: direction · (v + ω × r) = (direction, r × direction) · (v, ω), r from the centre of mass to `point`.
   Velocity along(const Anchor& a, int, const Vec3& point, const Vec3& direction) const {
     const Vec3 arm = point - position_of(a.block);
-    return twist<T>(direction.template cast<T>(), cross(arm, direction).template cast<T>());
+    return twist<T>(converted<T>(direction), converted<T>(cross(arm, direction)));
   }
   Velocity about(const Anchor&, int, const Vec3& axis) const {
-    return twist<T>(zero<Vec<3, T>>(), axis.template cast<T>());
+    return twist<T>(zero<Vec<3, T>>(), converted<T>(axis));
   }
   Vec3 point(const Anchor& a) const {
     return state_.x[a.block] +
-           Vec<3, T>(state_.R[a.block] * a.local.template cast<T>()).template cast<double>();
+           converted<double>(Vec<3, T>(state_.R[a.block] * converted<T>(a.local)));
   }
-  Quat frame(const Anchor& a) const { return state_.q[a.block].template cast<double>() * a.frame; }
-  Mat3 axes(const Anchor& a) const { return state_.R[a.block].template cast<double>() * a.frame.toRotationMatrix(); }
+  Quat frame(const Anchor& a) const { return converted<double>(state_.q[a.block]) * a.frame; }
+  Mat3 axes(const Anchor& a) const { return converted<double>(state_.R[a.block]) * a.frame.toRotationMatrix(); }
 
   /// Kick and drift: x₊ = x + h v_next, and free rotation from ω_next. A body whose state after it is not finite stays
   /// as it is.
@@ -233,7 +233,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   /// What collision detection needs of each body.
   bool has_collider(Index b) const { return this->is_alive(b) && shapes_.kind(b) != ShapeKind::none; }
   Shape shape(Index b) const { return shapes_.of(b); }
-  Pose pose(Index b) const { return {position_of(b), state_.R[b].template cast<double>()}; }
+  Pose pose(Index b) const { return {position_of(b), converted<double>(state_.R[b])}; }
 
   /// What outlives a step, shapes included; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
@@ -298,7 +298,7 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
   MassProperties mass;
   if (is_dynamic) mass = inner::check_mass<T>(body, name);
 
-  Velocity velocity = twist<T>(body.velocity.template cast<T>(), body.angular_velocity.template cast<T>());
+  Velocity velocity = twist<T>(converted<T>(body.velocity), converted<T>(body.angular_velocity));
   if (body.motion == Motion::fixed) set_zero(velocity);
   const Index b = BodyStorage::take(body, velocity);
   const std::size_t n = std::size_t(slots_.size());
@@ -306,8 +306,8 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
   motion_.resize(n);
   targets_.resize(n);
   state_.mass[b] = T(mass.mass);
-  state_.inertia[b] = Mat<3, 3, T>(mass.inertia.template cast<T>());
-  if (is_dynamic) state_.inverse_inertia[b] = Mat<3, 3, T>(inner::inverse_of_inertia(mass.inertia).template cast<T>());
+  state_.inertia[b] = Mat<3, 3, T>(converted<T>(mass.inertia));
+  if (is_dynamic) state_.inverse_inertia[b] = Mat<3, 3, T>(converted<T>(inner::inverse_of_inertia(mass.inertia)));
   state_.place(b, body.position, orientation);
   motion_[b] = body.motion;
   targets_.drop(b);

@@ -141,16 +141,16 @@ class Springs {
 
  private:
   Vec3 span(const Spring& s, std::span<const Velocity> x) const {
-    const Vec3 end = s.b < 0 ? s.point : Vec3(x[s.b].template cast<double>());
-    return x[s.a].template cast<double>() - end;
+    const Vec3 end = s.b < 0 ? s.point : Vec3(converted<double>(x[s.b]));
+    return converted<double>(x[s.a]) - end;
   }
   static Vec3 rate(const Spring& s, std::span<const Velocity> v) {
-    const Vec3 end = s.b < 0 ? Vec3(zero<Vec3>()) : Vec3(v[s.b].template cast<double>());
-    return v[s.a].template cast<double>() - end;
+    const Vec3 end = s.b < 0 ? Vec3(zero<Vec3>()) : Vec3(converted<double>(v[s.b]));
+    return converted<double>(v[s.a]) - end;
   }
   static void push(std::span<Velocity> p, const Spring& s, const Vec3& force) {
-    p[s.a] += force.template cast<T>();
-    if (s.b >= 0) p[s.b] -= force.template cast<T>();
+    p[s.a] += converted<T>(force);
+    if (s.b >= 0) p[s.b] -= converted<T>(force);
   }
   Mat3 stiffness(const Spring& s, std::span<const Velocity> x) const {
     const Vec3 d = span(s, x);
@@ -164,7 +164,7 @@ class Springs {
     const Vec3 d = span(s, x);
     const double length = norm(d);
     const Vec3 e = length > 0 ? Vec3(d / length) : Vec3(zero<Vec3>());
-    return (scale.stiffness * stiffness(s, x) + scale.damping * s.damping * e * e.transpose()).template cast<T>();
+    return converted<T>(scale.stiffness * stiffness(s, x) + scale.damping * s.damping * e * e.transpose());
   }
 
   void factor_coupled(SystemScale scale, std::span<const Velocity> x, const Array<T>& inverse_mass, Index n) {

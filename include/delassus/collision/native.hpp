@@ -3,6 +3,7 @@
 
 #include <delassus/collision/box_tree.hpp>
 #include <delassus/collision/engine.hpp>
+#include <delassus/core/defined_once.hpp>
 #include <delassus/core/roles.hpp>
 
 namespace delassus {
@@ -19,7 +20,7 @@ struct NativeDetection {
   double margin = -1;  ///< contacts up to this gap, m; negative: by size and speed (CollisionSettings)
   double contact_distance = 0;  ///< thickness between the bodies, m
   int max_points = 4;           ///< of one pair
-  CollisionEngine<Kernel, Broad> engine{};
+  inner::DefinedOnce<CollisionEngine<Kernel, Broad>> engine{};
 
   void check() const { CollisionSettings{margin, contact_distance, max_points}.check(name_of_backend<Kernel>); }
   template <class Filter = NoFilter>

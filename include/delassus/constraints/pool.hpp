@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/law.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/block_array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
 #include <delassus/core/slots.hpp>
@@ -38,7 +39,7 @@ struct Pool {
 
   Law law{};
   ArrayOrVector<Item> items;
-  Array<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
+  BlockArray<Vec<rows>> impulse;  ///< N·s of the last step, by item: the warm start
   Array<char> starts_cold;   ///< that impulse is no start for the next step
   Slots slots;
   std::uint32_t owner = inner::next_owner();
@@ -52,11 +53,11 @@ struct Pool {
     const Index place = slots.take();
     if (place == Index(items.size())) {
       items.push_back(item);
-      impulse.push_back(zero<Vec<rows>>());
+      impulse.resize(items.size());
       starts_cold.push_back(0);
     }
     items[place] = item;
-    set_all(impulse[place], 0.0);
+    impulse.set_zero(std::size_t(place));
     starts_cold[place] = 0;
     return {place, slots.generation(place), owner};
   }

@@ -46,12 +46,12 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, inner::PointStor
     const Index b = checked(node);
     DELASSUS_EXPECT(inner::fits<T>(velocity), name(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));
     DELASSUS_EXPECT(!is_fixed_[b], name(b) + ": a fixed node has no velocity; release it first");
-    v_[b] = velocity.template cast<T>();
+    v_[b] = converted<T>(velocity);
   }
   void place(Handle node, const Vec3& position) {
     const Index b = checked(node);
     DELASSUS_EXPECT(inner::fits<T>(position), name(b) + ": position " + inner::beyond<T>(position, "m"));
-    x_[b] = position.template cast<T>();
+    x_[b] = converted<T>(position);
   }
 
   // --- reading -------------------------------------------------------------------------------------------
@@ -86,7 +86,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, inner::PointStor
     shifted_x_ = x_;
     each_body([&](const auto& body) {
       for (std::size_t k = 0; k < body.blocks().size(); ++k)
-        x_[body.blocks()[k]] = body.mesh().points[k].template cast<T>();
+        x_[body.blocks()[k]] = converted<T>(body.mesh().points[k]);
     });
     assemble(scale);
     x_ = shifted_x_;
@@ -98,7 +98,7 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, inner::PointStor
 
   /// The elastic ones are those of the last `factor`.
   void add_forces(std::span<Velocity> p) const {
-    const Velocity g = gravity.template cast<T>();
+    const Velocity g = converted<T>(gravity);
     each_body([&](const auto& body) {
       const auto blocks = body.blocks();
       for (std::size_t k = 0; k < blocks.size(); ++k)
@@ -126,13 +126,13 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, inner::PointStor
     return a.element >= 0 ? body_at(a).block_of(a.element, corner(a, k)) : a.block;
   }
   Velocity along(const Anchor& a, int k, const Vec3&, const Vec3& direction) const {
-    return (weight(a, corner(a, k)) * direction).template cast<T>();
+    return converted<T>(weight(a, corner(a, k)) * direction);
   }
   Vec3 point(const Anchor& a) const {
-    if (a.element < 0) return x_[a.block].template cast<double>();
+    if (a.element < 0) return converted<double>(x_[a.block]);
     Vec3 x = Vec3::Zero();
     for (int k = 0; k < E::nodes; ++k)
-      x += weight(a, k) * Vec3(x_[body_at(a).block_of(a.element, k)].template cast<double>());
+      x += weight(a, k) * Vec3(converted<double>(x_[body_at(a).block_of(a.element, k)]));
     return x;
   }
 
@@ -200,8 +200,8 @@ auto BasicFem<E, M, T>::add(const Body& body) -> BodyHandle {
   Array<Index> blocks;
   for (const Vec3& p : mesh.points) {
     const Index b =
-        this->take_node(body, k, Index(blocks.size()), Velocity(body.velocity.template cast<T>()));
-    x_[b] = p.template cast<T>();
+        this->take_node(body, k, Index(blocks.size()), Velocity(converted<T>(body.velocity)));
+    x_[b] = converted<T>(p);
     mass_[b] = T(0);
     radius_[b] = 0;
     blocks.push_back(b);

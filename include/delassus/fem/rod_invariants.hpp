@@ -12,8 +12,8 @@ namespace inner {
 template <class T, class F>
 void each_momentum(const BasicRods<T>& set, F&& f) {
   each_moving(set, [&](Index b) {
-    f(b, Vec<6>(set.velocity()[b].template cast<double>()),
-      Vec<6>(set.momentum(b, set.velocity()[b]).template cast<double>()));
+    f(b, Vec<6>(converted<double>(set.velocity()[b])),
+      Vec<6>(converted<double>(set.momentum(b, set.velocity()[b]))));
   });
 }
 

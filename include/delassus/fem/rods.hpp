@@ -49,10 +49,10 @@ class BasicRods
 
   /// Adds a force (N) or a moment (N·m) that acts on a node during the next step only.
   void apply_force(Handle node, const Vec3& force) {
-    load_[checked(node)] += twist<T>(force.template cast<T>(), Vec<3, T>::Zero());
+    load_[checked(node)] += twist<T>(converted<T>(force), Vec<3, T>::Zero());
   }
   void apply_torque(Handle node, const Vec3& torque) {
-    load_[checked(node)] += twist<T>(Vec<3, T>::Zero(), torque.template cast<T>());
+    load_[checked(node)] += twist<T>(Vec<3, T>::Zero(), converted<T>(torque));
   }
   void set_velocity(Handle node, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
     const Index b = checked(node);
@@ -61,7 +61,7 @@ class BasicRods
     DELASSUS_EXPECT(inner::fits<T>(angular_velocity),
                     name(b) + ": angular velocity " + inner::beyond<T>(angular_velocity, "rad/s"));
     DELASSUS_EXPECT(!is_fixed_[b], name(b) + ": a fixed node has no velocity; release it first");
-    v_[b] = twist<T>(velocity.template cast<T>(), angular_velocity.template cast<T>());
+    v_[b] = twist<T>(converted<T>(velocity), converted<T>(angular_velocity));
   }
   /// Puts a node somewhere else at once, its velocity unchanged.
   void place(Handle node, const Vec3& position, const Quat& orientation) {
@@ -76,11 +76,11 @@ class BasicRods
   // --- reading -------------------------------------------------------------------------------------------
 
   Vec3 position(Handle node) const { return position_of(checked(node)); }
-  Quat orientation(Handle node) const { return state_.q[checked(node)].template cast<double>(); }
+  Quat orientation(Handle node) const { return converted<double>(state_.q[checked(node)]); }
   using Nodes::velocity;
-  Vec3 velocity(Handle node) const { return linear_part(v_[checked(node)]).template cast<double>(); }
+  Vec3 velocity(Handle node) const { return converted<double>(linear_part(v_[checked(node)])); }
   Vec3 angular_velocity(Handle node) const {
-    return angular_part(v_[checked(node)]).template cast<double>();
+    return converted<double>(angular_part(v_[checked(node)]));
   }
   /// Half of the mass of the segments at a node, kg; fixed nodes have theirs too.
   T mass(Index b) const { return state_.mass[b]; }
@@ -110,7 +110,7 @@ class BasicRods
 
   /// The elastic ones are those of the last `factor`.
   void add_forces(std::span<Velocity> p) const {
-    const Vec<3, T> g = gravity.template cast<T>();
+    const Vec<3, T> g = converted<T>(gravity);
     each_body([&](const auto& rod) {
       const auto blocks = rod.blocks();
       for (std::size_t k = 0; k < blocks.size(); ++k) {
@@ -138,17 +138,17 @@ class BasicRods
   Velocity along(const Anchor& a, int k, const Vec3& point, const Vec3& direction) const {
     const double share = share_of(a, point), mine = k == 0 ? 1 - share : share;
     const Vec3 arm = point - on_segment(a.block, share);
-    return twist<T>((mine * direction).template cast<T>(), (mine * arm.cross(direction)).template cast<T>());
+    return twist<T>(converted<T>(mine * direction), converted<T>(mine * arm.cross(direction)));
   }
   Velocity about(const Anchor& a, int k, const Vec3& axis) const {
     const double share = a.element < 0 ? 0 : a.local[0];
-    return twist<T>(Vec<3, T>::Zero(), ((k == 0 ? 1 - share : share) * axis).template cast<T>());
+    return twist<T>(Vec<3, T>::Zero(), converted<T>((k == 0 ? 1 - share : share) * axis));
   }
   Vec3 point(const Anchor& a) const {
     if (a.element >= 0) return on_segment(a.block, a.local[0]);
-    return position_of(a.block) + state_.R[a.block].template cast<double>() * a.local;
+    return position_of(a.block) + converted<double>(state_.R[a.block]) * a.local;
   }
-  Quat frame(const Anchor& a) const { return state_.q[a.block].template cast<double>() * a.frame; }
+  Quat frame(const Anchor& a) const { return converted<double>(state_.q[a.block]) * a.frame; }
 
   void begin_step(double) {}
   void advance(double h) { advance_with(h, T(0)); }
@@ -220,7 +220,7 @@ using RodsF = BasicRods<float>;
 
 template <class T>
 Pose BasicRods<T>::pose(Index b) const {
-  const Mat3 R = state_.R[b].template cast<double>();
+  const Mat3 R = converted<double>(state_.R[b]);
   if (next_[b] < 0) return {position_of(b), R};
   const Vec3 d = chord(b), z = d / d.norm();
   const Vec3 y_of_node(R(0, 1), R(1, 1), R(2, 1)), z_of_node(R(0, 2), R(1, 2), R(2, 2));
@@ -266,14 +266,14 @@ auto BasicRods<T>::add(const Rod& rod) -> BodyHandle {
   const Index k = this->take_body();
   Array<Index> blocks;
   for (Index i = 0; i < n; ++i) {
-    const Index b = this->take_node(rod, k, i, twist<T>(rod.velocity.template cast<T>(), Vec<3, T>::Zero()));
+    const Index b = this->take_node(rod, k, i, twist<T>(converted<T>(rod.velocity), Vec<3, T>::Zero()));
     const std::size_t size = std::size_t(slots_.size());
     state_.resize(size);
     radius_.resize(size), next_.resize(size);
     state_.mass[b] = T(mass[i]);
-    state_.inertia[b] = inertia[i].template cast<T>();
+    state_.inertia[b] = converted<T>(inertia[i]);
     const double scale = inertia[i].trace();
-    state_.inverse_inertia[b] = (1 / scale * inverse(Mat3(1 / scale * inertia[i]))).template cast<T>();
+    state_.inverse_inertia[b] = converted<T>(1 / scale * inverse(Mat3(1 / scale * inertia[i])));
     state_.place(b, points[i], frames[std::min(i, n - 2)]);
     radius_[b] = rod.contact_radius;
     next_[b] = -1;

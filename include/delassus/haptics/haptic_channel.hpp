@@ -133,8 +133,8 @@ class BasicHapticChannel<Solver, C>::Channel : inner::Room {
     slot.tool.move_device(problem.rows, device);
     out.solve = solve(slot);
     const Vec<6> impulse = slot.tool.impulse_on_device(problem.rows);
-    out.force = impulse.template head<3>() / problem.h;
-    out.torque = impulse.template tail<3>() / problem.h;
+    out.force = linear_part(impulse) / problem.h;
+    out.torque = angular_part(impulse) / problem.h;
     return limit(out);
   }
 

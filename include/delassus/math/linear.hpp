@@ -38,6 +38,19 @@ template <class T>
   assign(to.coeffs(), from.coeffs());
 }
 
+/// The same numbers as another scalar, without an expression's types where there is nothing to convert.
+template <class To, class T, int R, int C>
+[[gnu::always_inline]] inline Mat<R, C, To> converted(const Eigen::Matrix<T, R, C>& x) {
+  Mat<R, C, To> y;
+  DELASSUS_UNROLL
+  for (int k = 0; k < R * C; ++k) y.data()[k] = To(x.data()[k]);
+  return y;
+}
+template <class To, class T>
+[[gnu::always_inline]] inline Eigen::Quaternion<To> converted(const Eigen::Quaternion<T>& q) {
+  return {To(q.w()), To(q.x()), To(q.y()), To(q.z())};
+}
+
 /// The k-th axis.
 template <class T = double>
 Vec<3, T> unit_axis(int k) {

@@ -44,6 +44,16 @@ inline Vec<3, T> rotated(const Eigen::Quaternion<T>& q, const Vec<3, T>& v) {
   return v + q.w() * twice + cross(axis, twice);
 }
 
+// As Eigen's operators on whole quaternions and vectors, without what the compiler reads for those on expressions.
+template <class T>
+inline Eigen::Quaternion<T> operator*(const Eigen::Quaternion<T>& a, const Eigen::Quaternion<T>& b) {
+  return product(a, b);
+}
+template <class T>
+inline Vec<3, T> operator*(const Eigen::Quaternion<T>& q, const Eigen::Matrix<T, 3, 1>& v) {
+  return rotated(q, v);
+}
+
 /// 1 − |q|², of a unit quaternion nearly without rounding.
 template <class T>
 inline T lack_of_unit(const Eigen::Quaternion<T>& q) {

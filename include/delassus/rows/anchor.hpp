@@ -15,7 +15,7 @@ namespace delassus {
 struct Anchor {
   Index set = -1;
   Index block = -1;
-  Vec3 local = Vec3::Zero();
+  Vec3 local = zero<Vec3>();
   Quat frame = Quat::Identity();
   bool has_frame = true;
   std::uint32_t generation = 0;

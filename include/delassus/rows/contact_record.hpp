@@ -11,7 +11,7 @@ namespace delassus {
 /// when the bodies overlap. `pair` and `feature` name the contact from step to step.
 struct ContactRecord {
   Anchor a, b;
-  Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();
+  Vec3 point_a = zero<Vec3>(), point_b = zero<Vec3>();
   Vec3 normal = unit_axis(2);
   double gap = 0;
   std::uint64_t pair = 0;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/core/pack.hpp>
-#include <delassus/rows/block_array.hpp>
+#include <delassus/core/block_array.hpp>
 #include <delassus/rows/row_system.hpp>
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include <delassus/core/index.hpp>
 #include <delassus/core/pack.hpp>
 #include <delassus/math/linear.hpp>
-#include <delassus/rows/block_array.hpp>
+#include <delassus/core/block_array.hpp>
 
 #include <cstddef>
 

@@ -50,8 +50,8 @@ class BasicContactCache {
     c.shape = set.shape(b);
     c.pose = set.pose(b);
     const auto& v = set.velocity()[b];
-    c.velocity = linear_part(v).template cast<double>();
-    if constexpr (Set::width == 6) c.angular_velocity = angular_part(v).template cast<double>();
+    c.velocity = converted<double>(linear_part(v));
+    if constexpr (Set::width == 6) c.angular_velocity = converted<double>(angular_part(v));
     else set_zero(c.angular_velocity);
     c.is_movable = is_movable;
     c.group = set.group(b);

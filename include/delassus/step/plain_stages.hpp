@@ -114,7 +114,7 @@ struct PlainStages : StagesWithoutConstraints {
   }
   /// One of them, an `Island`.
   static void solve_island(auto& step, auto& island) {
-    step.reports[island.island()] = step.solver().solve(island, step.solver_workspace);
+    step.reports[island.island()] = step.solver().solve(island, step.solver_workspace.itself());
   }
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {

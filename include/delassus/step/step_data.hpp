@@ -6,6 +6,7 @@
 #include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
+#include <delassus/core/defined_once.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/core/handle.hpp>
@@ -43,7 +44,7 @@ struct RowData {
   Islands<typename P::World::Scalar> islands;
   Operator W;
   LawSet<typename P::Laws, typename P::World::Scalar, inner::needs_of<typename P::Solver>> law_set;
-  typename P::Solver::template Workspace<Rows> solver_workspace;
+  inner::DefinedOnce<typename P::Solver::template Workspace<Rows>> solver_workspace;
   Array<SolveReport> reports;  ///< of the islands, in their order
   Array<char> is_nonfinite;         ///< islands with a velocity that is not finite
   FixedArray<SetVersion, std::size_t(P::World::set_count)> versions;

@@ -27,7 +27,7 @@ class Supports {
           const auto& v = set.velocity()[b];
           if (is_zero(v)) continue;
           Aabb box = now_.back().box;
-          const Vec3 way = h * v.template head<3>().template cast<double>();
+          const Vec3 way = h * converted<double>(linear_part(v));
           near(box.is_empty() ? box : box.extend(Aabb(box.min() + way, box.max() + way)));
         }
     });

@@ -26,7 +26,7 @@ void each_moving(const Set& set, F&& f) {
 
 template <class Set>
 Vec3 momentum_of(const Set& set, Index b) {
-  return double(set.mass(b)) * Vec3(linear_part(set.velocity()[b]).template cast<double>());
+  return double(set.mass(b)) * Vec3(converted<double>(linear_part(set.velocity()[b])));
 }
 
 }  // namespace inner

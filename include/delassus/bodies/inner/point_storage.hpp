@@ -20,11 +20,11 @@ class PointStorage : public BodyStorage<Set, T, 3> {
   using typename BodyStorage::Handle, typename BodyStorage::Velocity;
 
   /// Adds a force (N) that acts during the next step only.
-  void apply_force(Handle point, const Vec3& force) { load_[checked(point)] += force.template cast<T>(); }
+  void apply_force(Handle point, const Vec3& force) { load_[checked(point)] += converted<T>(force); }
 
-  Vec3 position(Handle point) const { return x_[checked(point)].template cast<double>(); }
+  Vec3 position(Handle point) const { return converted<double>(x_[checked(point)]); }
   using BodyStorage::velocity;
-  Vec3 velocity(Handle point) const { return v_[checked(point)].template cast<double>(); }
+  Vec3 velocity(Handle point) const { return converted<double>(v_[checked(point)]); }
   /// kg; of a node the share of the elements around it, a fixed one has its own too.
   T mass(Index b) const { return mass_[b]; }
 
@@ -48,7 +48,7 @@ class PointStorage : public BodyStorage<Set, T, 3> {
 
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0; }
   Shape shape(Index b) const { return Sphere{radius_[b]}; }
-  Pose pose(Index b) const { return {x_[b].template cast<double>(), identity<Mat3>()}; }
+  Pose pose(Index b) const { return {converted<double>(x_[b]), identity<Mat3>()}; }
 
  protected:
   /// A place for a point, with room for its state.

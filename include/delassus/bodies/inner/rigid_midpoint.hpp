@@ -64,13 +64,13 @@ class RigidMidpoint {
       body.t = h * body.mean_rate;
       body.turn = cayley_matrix(body.t);
     }
-    s.x[b] = body.x + Vector(h * body.mean).template cast<double>();
+    s.x[b] = body.x + converted<double>(Vector(h * body.mean));
     s.R[b] = body.R * body.turn;
   }
   /// q ← the mean of both ends; the mean of two rotations is none, and is not made one.
   void to_middle(RigidState<T>& s, Index b, T h) const {
     const Body& body = bodies_[b];
-    s.x[b] = body.x + Vector((h / 2) * body.mean).template cast<double>();
+    s.x[b] = body.x + converted<double>(Vector((h / 2) * body.mean));
     s.R[b] = T(0.5) * (body.R + s.R[b]);
   }
   void back(RigidState<T>& s, Index b) const {
@@ -131,7 +131,7 @@ class RigidMidpoint {
   /// off by rounding would turn a slender body far.
   Twist go(RigidState<T>& s, Index b, T h) const {
     const Body& body = bodies_[b];
-    s.x[b] = body.x + Vector(h * body.mean).template cast<double>();
+    s.x[b] = body.x + converted<double>(Vector(h * body.mean));
     s.q[b] = unit_again(s.q[b] * cayley<T>(h * body.mean_rate));
     s.turn(b);
     return twist<T>(Vector(T(2) * body.mean - body.velocity),

@@ -44,7 +44,7 @@ class RigidPath {
     const Vector spatial = s.R[b] * (s.inertia[b] * transposed_times(s.R[b], angular_part(w)));
     const Eigen::Quaternion<T> turned =
         turn_freely<T>(s.inverse_inertia[b], s.q[b], spatial, h, &body.response);
-    put(s, b, body.x + Vector(h * linear_part(w)).template cast<double>(), turned.coeffs());
+    put(s, b, body.x + converted<double>(Vector(h * linear_part(w))), turned.coeffs());
     return twist<T>(linear_part(w), s.R[b] * s.own_rate(b, transposed_times(s.R[b], spatial)));
   }
   /// What impulses at the start do to where `drift` ends: each column of X.
@@ -119,7 +119,7 @@ class RigidPath {
   Twist place(RigidState<T>& s, Index b, const Slope& slope, T t) {
     const Body& body = bodies_[b];
     const Four q = body.q + t * slope.q;
-    put(s, b, body.x + Vector(t * slope.x).template cast<double>(), q / norm(q));
+    put(s, b, body.x + converted<double>(Vector(t * slope.x)), q / norm(q));
     const Vector rate = body.rate + t * slope.rate;
     return twist<T>(linear_part(body.v) + t * slope.v, s.R[b] * rate);
   }

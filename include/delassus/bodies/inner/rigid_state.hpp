@@ -76,7 +76,7 @@ struct RigidState {
     assign(q[b], orientation);
     turn(b);
   }
-  void place(Index b, const Vec3& position, const Quat& orientation) { put(b, position, orientation.template cast<T>()); }
+  void place(Index b, const Vec3& position, const Quat& orientation) { put(b, position, converted<T>(orientation)); }
 
   /// Sets all poses aside, and takes those of these blocks back.
   void keep_poses() {
@@ -90,7 +90,7 @@ struct RigidState {
 
   /// x + step, and the axes turned by the vector `turn_by`, rad. False when that is not finite: then nothing moves.
   bool displace(Index b, const Vector& step, const Vector& turn_by) {
-    const Vec3 moved = x[b] + step.template cast<double>();
+    const Vec3 moved = x[b] + converted<double>(step);
     const Eigen::Quaternion<T> turned = unit_again(product(exponential<T>(turn_by), q[b]));
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
     put(b, moved, turned);
@@ -111,7 +111,7 @@ struct RigidState {
 
   /// Kick and drift: the same after the impulses, the free rotation by turns.
   bool drift(Index b, Velocity& v, const Velocity& next, T h, RotationSplitting) {
-    const Vec3 moved = x[b] + Vector(h * linear_part(next)).template cast<double>();
+    const Vec3 moved = x[b] + converted<double>(Vector(h * linear_part(next)));
     const Vector spatial = R[b] * (inertia[b] * transposed_times(R[b], angular_part(next)));
     const Eigen::Quaternion<T> turned = turn_freely<T>(inverse_inertia[b], q[b], spatial, h);
     if (!is_finite(moved) || !is_finite(turned.coeffs())) return false;
@@ -132,10 +132,10 @@ bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old
   const Vector spatial = R[b] * impulse;
   if (old_share > T(0)) {
     const Vector start = transposed_times(R[b], angular_part(v));
-    x[b] += Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)).template cast<double>();
+    x[b] += converted<double>(Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)));
     q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h)));
   } else {
-    x[b] += Vector(h * linear_part(next)).template cast<double>();
+    x[b] += converted<double>(Vector(h * linear_part(next)));
     q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], kicked, impulse, impulse, h)));
   }
   turn(b);

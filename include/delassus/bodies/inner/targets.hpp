@@ -28,10 +28,10 @@ class Targets {
     for (const Index b : active) {
       if (!targets_[b].is_set) continue;
       are_any_ = true;
-      const Quat now = state.q[b].template cast<double>();
+      const Quat now = converted<double>(state.q[b]);
       const Vec3 way = targets_[b].position - state.x[b],
                  turn = logarithm<double>(product(targets_[b].orientation, conjugate(now)));
-      f(b, twist<T>((way / h).template cast<T>(), (turn / h).template cast<T>()));
+      f(b, twist<T>(converted<T>(way / h), converted<T>(turn / h)));
     }
   }
 

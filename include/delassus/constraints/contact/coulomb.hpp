@@ -37,10 +37,10 @@ struct Coulomb {
   template <class T>
   struct Memory {
     Mat<3, 3, T> inverse;
-    Mat<2, 2, T> schur;     ///< S
-    Vec<2, T> to_normal;    ///< W_nt / W_nn
-    Vec<2, T> from_normal;  ///< W_tn / W_nn
-    T over_normal;          ///< 1 / W_nn
+    T schur[4];        ///< S, by columns
+    T to_normal[2];    ///< W_nt / W_nn
+    T from_normal[2];  ///< W_tn / W_nn
+    T over_normal;     ///< 1 / W_nn
     T alpha = 0;
   };
 
@@ -65,7 +65,7 @@ struct Coulomb {
     }
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
-        memory.schur(i, j) = lifted(i + 1, j + 1) - lifted(i + 1, 0) * memory.to_normal[j];
+        memory.schur[i + 2 * j] = lifted(i + 1, j + 1) - lifted(i + 1, 0) * memory.to_normal[j];
     memory.alpha = 0;
   }
 
@@ -159,11 +159,10 @@ struct Coulomb {
   static Vec<3, T> slip(const Vec<3, T>& b, T mu, Memory<T>& memory) {
     const T bn = b[0] * memory.over_normal;
     if (mu == T(0)) return {-bn, T(0), T(0)};
-    const auto& S = memory.schur;
-    const auto& k = memory.to_normal;
+    const T *S = memory.schur, *k = memory.to_normal;
     const T c1 = b[1] - memory.from_normal[0] * b[0], c2 = b[2] - memory.from_normal[1] * b[0];
-    const T a1 = S(1, 1) * c1 - S(0, 1) * c2, a2 = S(0, 0) * c2 - S(1, 0) * c1;
-    const T trace = S(0, 0) + S(1, 1), determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+    const T a1 = S[3] * c1 - S[2] * c2, a2 = S[0] * c2 - S[1] * c1;
+    const T trace = S[0] + S[3], determinant = S[0] * S[3] - S[2] * S[1];
     const T across = mu * (k[0] * c1 + k[1] * c2);
     const T p2 = -mu * bn, p1 = p2 * trace + across, p0 = p2 * determinant + mu * (k[0] * a1 + k[1] * a2);
     const T q2 = c1 * c1 + c2 * c2, q1 = T(2) * (a1 * c1 + a2 * c2), q0 = a1 * a1 + a2 * a2;

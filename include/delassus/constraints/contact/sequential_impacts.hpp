@@ -93,7 +93,7 @@ class ImpactRows {
 template <class World, class Laws, class Rows>
 void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec3>& impulses,
                      std::size_t contacts, double h) {
-  impulses.assign(contacts, Vec3::Zero());
+  impulses.assign(contacts, zero<Vec3>());
   double fastest = 0;  // what closes below its rounding does not: a stack at rest has no impacts
   world.each([&](auto& set, auto) {
     set.factor({.mass = 1});

@@ -20,8 +20,8 @@ struct Bilateral {
 
   template <class T>
   struct Memory {
-    Mat<rows, rows, T> inverse;
-    Vec<rows, T> last;  ///< λ of the last visit, N·s
+    T inverse[rows * rows];  ///< of W, by columns
+    T last[rows];            ///< λ of the last visit, N·s
   };
 
   template <class T>
@@ -29,12 +29,18 @@ struct Bilateral {
     const T lift = T(64) * std::numeric_limits<T>::epsilon() * trace(W);
     Mat<rows, rows, T> lifted = W;
     add_diagonal(lifted, lift);
-    memory.inverse = inverse_of_positive(lifted);
-    set_all(memory.last, T(0));
+    const Mat<rows, rows, T> inverse = inverse_of_positive(lifted);
+    for (int k = 0; k < rows * rows; ++k) memory.inverse[k] = inverse.data()[k];
+    for (T& x : memory.last) x = 0;
   }
   template <class Item, class T>
   Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b, Memory<T>& memory) const {
-    return memory.last -= memory.inverse * (b + W * memory.last);
+    Vec<rows, T> u, correction;
+    inner::set_product<rows, rows, 1>(W.data(), memory.last, u.data());
+    u = b + u;
+    inner::set_product<rows, rows, 1>(memory.inverse, u.data(), correction.data());
+    for (int k = 0; k < rows; ++k) u[k] = memory.last[k] -= correction[k];
+    return u;
   }
   template <class Item, class T>
   Mat<rows, rows, T> tangent(const Item&, Local<rows, T>& c) const {

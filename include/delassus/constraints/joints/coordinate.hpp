@@ -23,11 +23,12 @@ struct Turn {
   static constexpr double limit_margin = 1;  ///< rad: 60 rad/s at 60 steps a second
 
   static double value(const JointFrames& f) {
-    return std::atan2(f.a(1).dot(f.b(0)) - f.a(0).dot(f.b(1)), f.a(0).dot(f.b(0)) + f.a(1).dot(f.b(1)));
+    const Vec3 ax = f.a(0), ay = f.a(1), bx = f.b(0), by = f.b(1);
+    return std::atan2(inner::dot_from_end(ay, bx) - inner::dot_from_end(ax, by), inner::dot_from_end(ax, bx) + inner::dot_from_end(ay, by));
   }
   /// u_k += factor · θ̇.
   static void write(auto& joint, int k, double factor) {
-    const double both = 1 + joint.a(2).dot(joint.b(2));
+    const double both = 1 + inner::dot_from_end(joint.a(2), joint.b(2));
     joint.about(k,
                 both > 1e-12 ? Vec3(factor / both * (joint.a(2) + joint.b(2))) : Vec3(factor * joint.a(2)));
   }
@@ -40,7 +41,7 @@ struct Slide {
   static constexpr const char* force_unit = "N";
   static constexpr double limit_margin = 0.05;  ///< m
 
-  static double value(const JointFrames& f) { return f.a(2).dot(f.xb - f.xa); }
+  static double value(const JointFrames& f) { return inner::dot_from_end(f.a(2), f.xb - f.xa); }
   static void write(auto& joint, int k, double factor) { joint.along(k, factor * joint.a(2)); }
   static void check(const auto& item, const char* what) { inner::expect_frame(item.a, what, "first"); }
 };

@@ -9,6 +9,15 @@
 #include <utility>
 
 namespace delassus {
+namespace inner {
+
+/// a · b, summed from the last product on.
+template <class T>
+inline T dot_from_end(const Eigen::Matrix<T, 3, 1>& a, const Eigen::Matrix<T, 3, 1>& b) {
+  return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]);
+}
+
+}  // namespace inner
 
 /// Where the two ends of a joint are in the world: points (m) and axes, the columns a_k and b_k.
 struct JointFrames {
@@ -21,8 +30,8 @@ struct JointFrames {
         A(world.axes(a)),
         B(world.axes(b)) {}
 
-  Vec3 a(int k) const { return A.col(k); }
-  Vec3 b(int k) const { return B.col(k); }
+  Vec3 a(int k) const { return column(A, k); }
+  Vec3 b(int k) const { return column(B, k); }
 };
 
 /// Writes the rows of a joint between the ends a and b. Both act at x_b, so that the impulses of a row are
@@ -46,12 +55,12 @@ class JointRows : public JointFrames {
   /// Row k: φ = a_i · (x_a − x_b), m.
   void coincide(int k, int i) {
     along(k, -a(i));
-    row_.phi(k, a(i).dot(xa - xb));
+    row_.phi(k, inner::dot_from_end(a(i), xa - xb));
   }
   /// Row k: φ = s a_i · b_j, s = ±1; the sine of the angle that is missing to a right one.
   void perpendicular(int k, int i, int j, double s = 1) {
-    about(k, -s * a(i).cross(b(j)));
-    row_.phi(k, s * a(i).dot(b(j)));
+    about(k, -s * cross(a(i), b(j)));
+    row_.phi(k, s * inner::dot_from_end(a(i), b(j)));
   }
   /// Rows k, k + 1: a_z and b_z parallel. φ = (a_y · b_z, −a_x · b_z), where closed about a_x and a_y.
   void parallel(int k) {
@@ -63,8 +72,8 @@ class JointRows : public JointFrames {
   void alike(int k) {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, l = (i + 2) % 3;
-      about(k + i, 0.5 * (a(l).cross(b(j)) - a(j).cross(b(l))));
-      row_.phi(k + i, 0.5 * (a(j).dot(b(l)) - a(l).dot(b(j))));
+      about(k + i, 0.5 * (cross(a(l), b(j)) - cross(a(j), b(l))));
+      row_.phi(k + i, 0.5 * (inner::dot_from_end(a(j), b(l)) - inner::dot_from_end(a(l), b(j))));
     }
   }
 

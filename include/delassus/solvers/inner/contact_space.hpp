@@ -46,7 +46,7 @@ class ContactSpace {
     for (const Span<T>& span : island)
       for (const Index i : span) {
         const PoolView<T>& pool = *span.pool;
-        Item item{row, pool.rows, pool.table->friction != nullptr, false, 0, pool.weight(i), Mat3::Zero(), Mat3::Zero()};
+        Item item{row, pool.rows, pool.table->friction != nullptr, false, 0, pool.weight(i), zero<Mat3>(), zero<Mat3>()};
         if (item.is_cone) item.friction = pool.table->friction(pool, i);
         if (pool.table->kinds[0] == RowKind::equality) item.friction = -1;
         is_known = is_known && knows(pool) && item.w > 0;

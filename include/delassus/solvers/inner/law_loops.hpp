@@ -221,7 +221,7 @@ struct LawLoops {
   template <class Own>
   [[gnu::always_inline]] static void add(const Items& of, Index i, const Own* own, double weight, const Vec<R, double>& u, const Vec<R, double>& lambda,
                                          const Vec<R, double>& d, MeasureSums& sums) {
-    Vec<2, double> squares;
+    Vec<2, DoubleIn<T>> squares;
     if constexpr (refines<Law>(refine::natural_squares)) {
       squares = who_refines<refine::natural_squares>(of.law).natural_squares(given<Law>(of.item(i)), lambda, u, weight);
     } else {

@@ -116,7 +116,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
     if (!step.is_nonfinite[k]) {
       IslandProblem island(book, rows, step.W, step.islands, k, step.h, nobody);
       const SolveReport r =
-          step.solver().solve(island, step.solver_workspace);
+          step.solver().solve(island, step.solver_workspace.itself());
       if (r.measure.residual > far) worst = worse(worst, r.status);
     }
   step.world().each([&](auto& set, auto s) {

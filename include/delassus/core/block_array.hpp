@@ -9,12 +9,21 @@
 
 namespace delassus {
 
+/// What the type of a matrix says of its size: asked here, the matrix itself need not be read by the compiler.
+template <class M>
+struct SizeOfMatrix;
+template <template <class, int, int, int...> class Matrix, class T, int R, int C, int... more>
+struct SizeOfMatrix<Matrix<T, R, C, more...>> {
+  using Scalar = T;
+  static constexpr std::size_t count = std::size_t(R) * std::size_t(C);
+};
+
 /// What Array<M> is, for a matrix M of fixed size: its numbers lie by columns in an `Array` of scalars, which plain code reads
 /// without knowing M, and which all sizes of M share in a program.
 template <class M>
 class BlockArray {
-  using T = typename M::Scalar;
-  static constexpr std::size_t size_of = std::size_t(M::RowsAtCompileTime) * std::size_t(M::ColsAtCompileTime);
+  using T = typename SizeOfMatrix<M>::Scalar;
+  static constexpr std::size_t size_of = SizeOfMatrix<M>::count;
 
  public:
   using value_type = M;
@@ -63,6 +72,9 @@ class BlockArray {
   [[gnu::always_inline]] void resize_for_overwrite(std::size_t count) { numbers.resize_for_overwrite(count * size_of); }
   /// All are zero.
   [[gnu::always_inline]] void assign_zeros(std::size_t count) { numbers.assign_zeros(count * size_of); }
+  void set_zero(std::size_t i) {
+    for (std::size_t k = 0; k < size_of; ++k) numbers[i * size_of + k] = T(0);
+  }
   [[gnu::always_inline]] void push_back(const M& x) { numbers.append(x.data(), size_of); }
   /// One more, of whatever lies there.
   [[gnu::always_inline]] M& emplace_back() {
