@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/compiled.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 
 namespace delassus {

@@ -5,6 +5,7 @@
 /// step, a pair or a body at the most: nothing that an inner loop inlines.
 #pragma once
 
+#define DELASSUS_COMPILED
 #include <delassus/delassus.hpp>
 
 #include <span>
@@ -158,11 +159,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 #define DELASSUS_COMPILED_COLLISION(KIND)                                                                                         \
   KIND class BasicContactCache<double>;                                                                                           \
   KIND class BasicContactMemory<double>;                                                                                          \
-  KIND class BasicBoxTree<double>;                                                                                                \
-  KIND class inner::BasicDynamicTree<double>;                                                                                     \
   KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                   \
-  KIND struct inner::DefinedOnce<CollisionEngine<GjkEpa, BoxTree>>;                                                               \
-  KIND class CollisionEngine<GjkEpa, BoxTree>;                                                                                    \
+  KIND class inner::OnDemand<CollisionEngine<GjkEpa, BoxTree>>;                                                                     \
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
 
@@ -179,8 +177,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND double Eigen::MatrixBase<delassus::Vec3>::norm() const;                                              \
   KIND double Eigen::MatrixBase<delassus::Vec3>::squaredNorm() const;                                       \
   KIND const delassus::Vec3 Eigen::MatrixBase<delassus::Vec3>::normalized() const;                          \
-  KIND class std::vector<delassus::ContactPoint>;                                                           \
-  KIND class std::vector<delassus::CandidatePair>;
+  KIND class std::vector<delassus::ContactPoint>;
 
 #define DELASSUS_COMPILED_PARTS(KIND) \
   DELASSUS_COMPILED_LAWS(KIND)        \

@@ -56,7 +56,7 @@ using Broken = NativeDetection<BrokenKernel, BoxTree>;
 /// Boxes and hulls that fall in a heap and come to rest.
 std::vector<Vec3> pile(Fault fault, Index& rejects) {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, Broken{}};
-  loop.get<Broken>().engine.kernel().fault = fault;
+  loop.get<Broken>().engine->kernel().fault = fault;
   auto& set = rigid_bodies(loop);
   const ConvexHull cube = cube_of_points(0.7);
   set.add_fixed(Box{20, 20, 1}, {0, 0, -0.5});

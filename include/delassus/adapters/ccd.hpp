@@ -3,6 +3,7 @@
 
 #include <delassus/adapters/ccd_kernel.hpp>
 #include <delassus/collision/native.hpp>
+#include <delassus/collision/native_engine.hpp>
 
 namespace delassus {
 

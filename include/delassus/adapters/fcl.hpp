@@ -4,6 +4,7 @@
 #include <delassus/adapters/fcl_kernel.hpp>
 #include <delassus/adapters/fcl_tree.hpp>
 #include <delassus/collision/native.hpp>
+#include <delassus/collision/native_engine.hpp>
 
 namespace delassus {
 

@@ -5,6 +5,7 @@
 #include <delassus/collision/inner/swing.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/roles.hpp>

@@ -26,8 +26,11 @@ namespace delassus {
 
 /// Asks `Kernel` for distances and `Broad` for pairs; everything else of a contact is decided here, the same
 /// for all.
-template <NarrowKernel Kernel, BroadPhase Broad>
+template <class Kernel, class Broad>
 class CollisionEngine {
+  static_assert(NarrowKernel<Kernel>, "delassus: a narrow kernel needs pair(a, b, b_in_a, margin, cache), which returns a SignedPair");
+  static_assert(BroadPhase<Broad>, "delassus: a broad phase needs find(boxes, pairs); see collision/broad_phase.hpp");
+
  public:
   /// Contacts within the margin of the pairs that the filter lets, sorted by pair and then by feature; `out`
   /// is cleared first. h is the step, s.
@@ -181,7 +184,7 @@ class CollisionEngine {
   FixedArray<PatchPoint, PairMemory::capacity> repeated_;
 };
 
-template <NarrowKernel Kernel, BroadPhase Broad>
+template <class Kernel, class Broad>
 void CollisionEngine<Kernel, Broad>::recall_pairs() {
   const auto is_of = [](const RestingPair& m, const Job& job) { return m.pair == job.pair; };
   if (std::equal(memory_.begin(), memory_.end(), jobs_.begin(), jobs_.end(), is_of)) return;
@@ -198,7 +201,7 @@ void CollisionEngine<Kernel, Broad>::recall_pairs() {
   next_memory_.reserve(memory_.capacity());  // now, and not when the pairs change next in a warm step
 }
 
-template <NarrowKernel Kernel, BroadPhase Broad>
+template <class Kernel, class Broad>
 void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> colliders, const Job& job, double h,
                                              const CollisionSettings& settings, RestingPair& pair,
                                              std::vector<ContactPoint>& out) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>

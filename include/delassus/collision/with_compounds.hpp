@@ -4,6 +4,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/sort.hpp>

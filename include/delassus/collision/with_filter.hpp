@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>

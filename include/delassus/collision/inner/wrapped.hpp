@@ -2,7 +2,7 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
-#include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/settings.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/core/wrapping.hpp>
 
@@ -25,8 +25,8 @@ template <class Backend>
 void remember(Backend& backend, auto& archive) {
   if constexpr (requires { backend.memory(archive); })
     backend.memory(archive);
-  else if constexpr (requires { backend.engine.memory(archive); })
-    backend.engine.memory(archive);
+  else if constexpr (requires { backend.engine->memory(archive); })
+    backend.engine->memory(archive);
   else if constexpr (requires { backend.backend; })
     remember(backend.backend, archive);
 }
