@@ -21,7 +21,7 @@ using namespace delassus;
 namespace {
 
 using Book = LawSet<std::remove_cvref_t<decltype(FrictionProblem::laws)>, double>;
-using Solver = BasicAcceleratedGaussSeidel<SiconosError>;
+using Solver = AcceleratedSweeps;
 
 double blocks_of(const FrictionProblem& p) {
   return double(p.W.blocks<0, 0>().column.size()) + double(p.rows.pool<0>().items());
@@ -66,7 +66,7 @@ void plain_product(benchmark::State& state, const std::string& path) {
 /// A whole solve, the own blocks' factors included.
 void solve_to(benchmark::State& state, const std::string& path, double tolerance) {
   FrictionProblem p = read_problem(path);
-  const Solver solver{.tolerance = tolerance, .max_iterations = 20000, .min_iterations = 0};
+  const Solver solver{.tolerance = tolerance, .max_iterations = 20000, .min_iterations = 0, .criterion = Criterion::siconos_error};
   SolveReport r;
   for (auto _ : state) {
     for (auto& x : p.rows.pool<0>().lambda) x.setZero();

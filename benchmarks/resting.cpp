@@ -55,7 +55,7 @@ void rest(benchmark::State& state, void (*add)(RigidBodies&), const Solver& solv
 }
 
 /// SOFA's tolerance is a displacement in metres for each row.
-const BasicGaussSeidel<LastChange> by_change{.tolerance = 1e-6, .max_iterations = 200, .scale_tolerance = true};
+const GaussSeidel by_change{.tolerance = 1e-6, .max_iterations = 200, .scale_tolerance = true, .criterion = Criterion::last_change};
 const AcceleratedGaussSeidel by_residual{.tolerance = 1e-6};
 
 

@@ -36,7 +36,7 @@ auto bar(const std::array<Index, 3>& cells, const Compliance& compliance) {
       Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}},
       ImplicitEuler{.rayleigh_mass = 0.1, .rayleigh_stiffness = 0.1},
       NativeCollision{.margin = 0.002},
-      BasicGaussSeidel<LastChange>{.tolerance = 1e-6, .max_iterations = 200, .scale_tolerance = true},
+      GaussSeidel{.tolerance = 1e-6, .max_iterations = 200, .scale_tolerance = true, .criterion = Criterion::last_change},
       compliance};
   auto& soft = bodies<Soft>(loop.world());
   bodies<RigidBodies>(loop.world()).add_fixed(HalfSpace{});

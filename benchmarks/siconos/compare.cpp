@@ -164,10 +164,10 @@ double run_once(FrictionProblem& p, const Entry& e, double tolerance, int most, 
   if (e.siconos != nullptr)
     return solve_siconos(p, *e.siconos, tolerance > 0 ? tolerance : 1e-300, most, result);
   if (e.sweeps)
-    return solve_own(p, BasicGaussSeidel<SiconosError>{.tolerance = tolerance, .max_iterations = most},
+    return solve_own(p, GaussSeidel{.tolerance = tolerance, .max_iterations = most, .criterion = Criterion::siconos_error},
                      result);
   return solve_own(
-      p, BasicAcceleratedGaussSeidel<SiconosError>{.tolerance = tolerance, .max_iterations = most}, result);
+      p, AcceleratedSweeps{.tolerance = tolerance, .max_iterations = most, .criterion = Criterion::siconos_error}, result);
 }
 
 /// In a process of its own: false when it did not come back in time.

@@ -115,9 +115,9 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND void forget_lost_islands(AllLaws<double>, inner::Slice<const PoolView<double>>, ContactCache&, const Islands<double>&, inner::Slice<const SolveReport>);
 
 #define DELASSUS_COMPILED_SOLVERS(KIND)                                                                                           \
-  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const; \
-  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, ThenNewton>::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const; \
-  KIND SolveReport BasicAcceleratedGaussSeidel<Residual, SweepsAlone>::solve(Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const; \
+  KIND SolveReport AcceleratedGaussSeidel::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const; \
+  KIND SolveReport AcceleratedGaussSeidel::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const; \
+  KIND SolveReport AcceleratedSweeps::solve(Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const; \
   KIND class inner::NewtonSystem<double, 6>;                                                                                      \
   KIND class BlockLu<6, double>;                                                                                                  \
   KIND class OwningArray<inner::IslandGraph<BlockLu<6, double>>>;                                                                 \
@@ -130,9 +130,9 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 
 // Declared at the end of solvers/direct_gauss_seidel.hpp, whose reading costs something, for who includes it behind this header.
 #define DELASSUS_COMPILED_DIRECT(KIND, R)                                                                                       \
-  KIND SolveReport BasicDirectGaussSeidel<Residual>::solve(Island<double>&, inner::DirectSpace<Residual, double, R, 6>&) const; \
+  KIND SolveReport DirectGaussSeidel::solve(Island<double>&, inner::DirectSpace<double, R, 6>&) const; \
   KIND class inner::SchurComplement<double, inner::DirectSystem<R, 6>>;                                                         \
-  KIND struct inner::DefinedOnce<inner::DirectSpace<Residual, double, R, 6>>;                                                    \
+  KIND struct inner::DefinedOnce<inner::DirectSpace<double, R, 6>>;                                                    \
   KIND class OwningArray<inner::IslandGraph<SparseLu<R, double>>>;
 
 #define DELASSUS_COMPILED_BODIES(KIND, ...)                                                                                       \

@@ -68,19 +68,14 @@ struct ImplicitEuler;
 struct ImplicitMidpoint;
 struct LiePoisson;
 
-struct Residual;
+struct GaussSeidel;
 struct SweepsAlone;
 struct ThenNewton;
-template <class Criterion>
-struct BasicGaussSeidel;
-using GaussSeidel = BasicGaussSeidel<Residual>;
-template <class Criterion, class Newton>
+template <class Newton>
 struct BasicAcceleratedGaussSeidel;
-using AcceleratedSweeps = BasicAcceleratedGaussSeidel<Residual, SweepsAlone>;
-using AcceleratedGaussSeidel = BasicAcceleratedGaussSeidel<Residual, ThenNewton>;
-template <class Criterion>
-struct BasicDirectGaussSeidel;
-using DirectGaussSeidel = BasicDirectGaussSeidel<Residual>;
+using AcceleratedSweeps = BasicAcceleratedGaussSeidel<SweepsAlone>;
+using AcceleratedGaussSeidel = BasicAcceleratedGaussSeidel<ThenNewton>;
+struct DirectGaussSeidel;
 
 struct MatrixFreeCompliance;
 struct CheaperCompliance;

@@ -35,7 +35,7 @@ struct Given {
 SolveReport follow(Given& problem, double tolerance) {
   const AcceleratedGaussSeidel solver{.tolerance = tolerance};
   int best = 0;
-  inner::ConvergenceMonitor<Residual, AcceleratedGaussSeidel, Given, int> monitor(solver, problem, best);
+  inner::ConvergenceMonitor<Given, int> monitor(solver.options(), problem, best);
   REQUIRE(monitor.begin());
   monitor.open("sweeps", 1000);
   do ++problem.sweeps;
@@ -78,7 +78,7 @@ TEST_CASE("a movement that foretells a large error does not keep the solve from 
   Given problem{[](int k) { return std::pow(0.5, k); }};
   const AcceleratedGaussSeidel solver{.tolerance = 1e-9};
   int best = 0;
-  inner::ConvergenceMonitor<Residual, AcceleratedGaussSeidel, Given, int> monitor(solver, problem, best);
+  inner::ConvergenceMonitor<Given, int> monitor(solver.options(), problem, best);
   REQUIRE(monitor.begin());
   monitor.open("sweeps", 1000);
   do ++problem.sweeps;

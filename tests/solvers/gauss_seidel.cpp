@@ -101,17 +101,17 @@ TEST_CASE("all_verified takes the unscaled tolerance even beside scale_tolerance
   REQUIRE(r.measure.worst <= 1e-7);
 }
 
-TEST_CASE("the criterion SiconosError stops on Siconos' measure") {
+TEST_CASE("the criterion siconos_error stops on Siconos' measure") {
   auto p = three;
-  const SolveReport r = solve(p, BasicGaussSeidel<SiconosError>{.tolerance = 1e-6, .max_iterations = 100000});
+  const SolveReport r = solve(p, GaussSeidel{.tolerance = 1e-6, .max_iterations = 100000, .criterion = Criterion::siconos_error});
   REQUIRE(r.status == Status::converged);
   REQUIRE(r.measure.siconos <= 1e-6);
 }
 
-TEST_CASE("the criterion LastChange stops on the displacement of the last sweep") {
+TEST_CASE("the criterion last_change stops on the displacement of the last sweep") {
   auto p = three;
   const double tolerance = 1e-9;  // m
-  const SolveReport r = solve(p, BasicGaussSeidel<LastChange>{.tolerance = tolerance, .max_iterations = 100000});
+  const SolveReport r = solve(p, GaussSeidel{.tolerance = tolerance, .max_iterations = 100000, .criterion = Criterion::last_change});
   REQUIRE(r.status == Status::converged);
   REQUIRE(r.sweeps > 1);
   // Σ |h W_ii Δλ_i| of the next sweep, computed here, is no larger: the sweeps contract.
@@ -127,8 +127,8 @@ TEST_CASE("the criterion LastChange stops on the displacement of the last sweep"
 TEST_CASE("the last change of every constraint below the tolerance is not yet their sum below it") {
   const double tolerance = 1e-9;  // m
   auto every = three, sum = three;
-  const SolveReport a = solve(every, BasicGaussSeidel<LastChange>{.tolerance = tolerance, .max_iterations = 100000, .all_verified = true});
-  const SolveReport b = solve(sum, BasicGaussSeidel<LastChange>{.tolerance = tolerance, .max_iterations = 100000});
+  const SolveReport a = solve(every, GaussSeidel{.tolerance = tolerance, .max_iterations = 100000, .all_verified = true, .criterion = Criterion::last_change});
+  const SolveReport b = solve(sum, GaussSeidel{.tolerance = tolerance, .max_iterations = 100000, .criterion = Criterion::last_change});
   REQUIRE(a.status == Status::converged);
   REQUIRE(a.sweeps < b.sweeps);
   auto before = every.rows.pool<0>().lambda;

@@ -9,7 +9,7 @@ namespace newton_in_impulses_tests {
 using namespace scenes;
 using cold_problems::error;
 using cold_problems::tower;
-using Newton = inner::NewtonInImpulses<Residual>;
+using Newton = inner::NewtonInImpulses;
 
 /// A hundred sweeps first, and all to 1e-9.
 const Newton after_sweeps{{.tolerance = 1e-9, .max_iterations = 100}};

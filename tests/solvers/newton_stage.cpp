@@ -163,7 +163,7 @@ TEST_CASE("where Newton's method cannot act the default sweeps to the same bits 
 TEST_CASE("a chain that stops by the last change has no such stage") {
   auto loop = leaning_stack(10, 1, AcceleratedSweeps{.max_iterations = 1});
   auto p = problem_of(loop);
-  const BasicAcceleratedGaussSeidel<LastChange, ThenNewton> solver{.tolerance = 1e-12, .max_iterations = 300};
+  const AcceleratedGaussSeidel solver{.tolerance = 1e-12, .max_iterations = 300, .criterion = Criterion::last_change};
   const SolveReport r = solve(p, solver);
   CHECK(r.sweeps > 40);
   CHECK(r.factorizations == 0);

@@ -38,6 +38,6 @@ using SameMachine = decltype(AnimationLoop{World{RigidBodies{}, Particles{}},
                                            AcceleratedGaussSeidel{}, Baumgarte{}});
 static_assert(std::is_same_v<Machine, SameMachine>);
 static_assert(std::is_same_v<decltype(std::declval<Simulator&>().loop().step(1e-3)), StepReport>);
-static_assert(std::is_same_v<DirectGaussSeidel, BasicDirectGaussSeidel<>> && std::is_same_v<AcceleratedSweeps, BasicAcceleratedGaussSeidel<>>);
+static_assert(std::is_same_v<AcceleratedSweeps, BasicAcceleratedGaussSeidel<SweepsAlone>>);
 
 }  // namespace

@@ -141,8 +141,8 @@ TEST_CASE(
   CHECK(code_of(GaussSeidel{}) == "GaussSeidel{}");
   CHECK(code_of(AcceleratedGaussSeidel{.tolerance = 1e-8, .max_iterations = 20, .all_verified = true}) ==
         "AcceleratedGaussSeidel{.tolerance = 1e-08, .max_iterations = 20, .all_verified = true}");
-  CHECK(code_of(BasicGaussSeidel<LastChange>{.relaxation = 1.0 / 3}) ==
-        "BasicGaussSeidel<LastChange>{.relaxation = 0.3333333333333333}");
+  CHECK(code_of(GaussSeidel{.relaxation = 1.0 / 3, .criterion = Criterion::last_change}) ==
+        "GaussSeidel{.relaxation = 0.3333333333333333, .criterion = Criterion::last_change}");
   CHECK(code_of(AssembledCompliance{}) == "AssembledCompliance{}");
   CHECK(inner::step_text(1. / 30) == "1. / 30");
   CHECK(inner::step_text(1. / 64) == "0.015625");

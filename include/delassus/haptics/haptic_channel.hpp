@@ -9,6 +9,7 @@
 #include <delassus/haptics/tool_rows.hpp>
 #include <delassus/listeners/double_buffer.hpp>
 #include <delassus/listeners/triple_buffer.hpp>
+#include <delassus/math/twist.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/with_deadline.hpp>
 #include <delassus/step/channels.hpp>

@@ -3,7 +3,6 @@
 
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
 #include <delassus/solvers/inner/compromise.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
@@ -12,6 +11,7 @@
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/newton_stage.hpp>
 #include <delassus/solvers/island.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ struct SweepSpace {
 /// Where λ runs away because the rows contradict each other, which `inner::Contradiction` proves when
 /// momentum has stalled, the status is `infeasible` and λ that of rows which yield by a tenth of their own W: a
 /// compromise, bounded, the same whatever came before.
-template <class Criterion = Residual, class Newton = SweepsAlone>
+template <class Newton>
 struct BasicAcceleratedGaussSeidel {
   using plays = role::Solver;
   double tolerance = 1e-6;       ///< of the criterion
@@ -71,12 +71,14 @@ struct BasicAcceleratedGaussSeidel {
   double relaxation = 1;         ///< ω in (0, 2) of each sweep
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Newton::needs;
   template <class Rows>
   using Workspace =
       inner::SweepSpace<typename Rows::Scalar, typename Newton::template Space<typename Rows::Scalar, Rows::widest>>;
 
+  SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
   void check() const {
     inner::expect_at_least_zero("AcceleratedGaussSeidel: tolerance", tolerance);
     inner::expect_at_least_zero("AcceleratedGaussSeidel: max_iterations", max_iterations);
@@ -109,13 +111,14 @@ struct BasicAcceleratedGaussSeidel {
   }
 };
 
-template <class Criterion, class Newton>
+template <class Newton>
 template <class T, class Space>
-SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Island<T>& problem, Space& work) const {
-  inner::ConvergenceMonitor<Criterion, BasicAcceleratedGaussSeidel, Island<T>, Array<T>> monitor(*this, problem, work.best);
+SolveReport BasicAcceleratedGaussSeidel<Newton>::solve(Island<T>& problem, Space& work) const {
+  const SolveOptions limits = options();
+  inner::ConvergenceMonitor<Island<T>, Array<T>> monitor(limits, problem, work.best);
   if (!monitor.begin()) return monitor.finish();
-  const SweepRule exact{.relaxation = relaxation, .tells_change = !Criterion::needs_measure}, projection{.projects = true};
-  auto newton = Newton::template stage<Criterion>(*this, problem, monitor, work.newton);
+  const SweepRule exact{.relaxation = relaxation, .tells_change = !limits.is_measured()}, projection{.projects = true};
+  auto newton = Newton::stage(limits, problem, monitor, work.newton);
   const int shortest = first_patience(problem.row_count());
   for (int patience = shortest;; patience *= 2) {
     const bool is_again = patience > shortest;
@@ -141,24 +144,24 @@ SolveReport BasicAcceleratedGaussSeidel<Criterion, Newton>::solve(Island<T>& pro
   }
 }
 
+/// Sweeps alone: a tenth less compiler memory than with Newton's method, and the same for what soon ends.
+using AcceleratedSweeps = BasicAcceleratedGaussSeidel<SweepsAlone>;
+
 namespace inner {
 
 /// Sweeps to the tolerance of another solver, or to a share of it.
-template <class Criterion, class Solver>
-BasicAcceleratedGaussSeidel<Criterion> sweeps_of(const Solver& solver, int most, int least, double share = 1) {
+inline AcceleratedSweeps sweeps_of(const SolveOptions& solver, int most, int least, double share = 1) {
   return {.tolerance = share * solver.tolerance,
           .max_iterations = most,
           .min_iterations = least,
           .scale_tolerance = solver.scale_tolerance,
-          .all_verified = solver.all_verified};
+          .all_verified = solver.all_verified,
+          .criterion = solver.criterion};
 }
 
 }  // namespace inner
 
-/// Sweeps alone: a tenth less compiler memory than with Newton's method, and the same for what soon ends.
-using AcceleratedSweeps = BasicAcceleratedGaussSeidel<>;
-
 /// The default of a loop.
-using AcceleratedGaussSeidel = BasicAcceleratedGaussSeidel<Residual, ThenNewton>;
+using AcceleratedGaussSeidel = BasicAcceleratedGaussSeidel<ThenNewton>;
 
 }  // namespace delassus

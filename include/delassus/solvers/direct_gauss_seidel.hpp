@@ -6,7 +6,6 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/compromise.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
@@ -22,7 +21,7 @@ namespace delassus {
 namespace inner {
 
 /// Room for the direct path: of constraints of `highest` rows at most, on blocks of `widest` velocities.
-template <class Criterion, class T, int highest, int widest>
+template <class T, int highest, int widest>
 struct DirectSpace {
   static_assert(widest > 0,
                 "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
@@ -30,7 +29,7 @@ struct DirectSpace {
   DirectSystem<highest, std::max(1, widest)> joints;
   SchurComplement<T, DirectSystem<highest, std::max(1, widest)>> others;
   Array<T> before, after;
-  typename SweepsThenNewton<Criterion>::template Space<T> contacts;
+  SweepsThenNewton::Space<T> contacts;
   void reset(Index rows) {
     contacts.reset(rows);
     for (auto* impulses : {&before, &after}) impulses->reserve(std::size_t(rows));
@@ -53,11 +52,7 @@ struct DirectSpace {
 /// mechanism only stands at a dead centre. The status is `infeasible` where `inner::Contradiction` proves it.
 /// Contacts and limits that joints leave no way get the compromise of `AcceleratedGaussSeidel`. Cannot
 /// mend what an explicit constraint force does to a heavy chain: see docs/decisions/0009.
-template <class Criterion = Residual>
-struct BasicDirectGaussSeidel {
-  static_assert(
-      Criterion::needs_measure,
-      "delassus: DirectGaussSeidel stops on a measured error; use the criterion Residual or SiconosError");
+struct DirectGaussSeidel {
   using plays = role::Solver;
   double tolerance = 1e-8;       ///< of the criterion
   int max_iterations = 4000;     ///< sweeps over contacts and limits
@@ -65,15 +60,18 @@ struct BasicDirectGaussSeidel {
   int max_swept_rows = 900;      ///< 6.5 MB of S at three rows a constraint
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
-  using Workspace = inner::DirectSpace<Criterion, typename Rows::Scalar, std::max(1, Rows::highest), Rows::widest>;
+  using Workspace = inner::DirectSpace<typename Rows::Scalar, std::max(1, Rows::highest), Rows::widest>;
 
+  SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
   void check() const {
     inner::expect_at_least_zero("DirectGaussSeidel: tolerance", tolerance);
     inner::expect_at_least_zero("DirectGaussSeidel: max_iterations", max_iterations);
     inner::expect_at_least_zero("DirectGaussSeidel: max_swept_rows", max_swept_rows);
+    inner::expect_measured("DirectGaussSeidel", criterion);
   }
 
   template <class T, class Space>
@@ -167,8 +165,8 @@ struct BasicDirectGaussSeidel {
   Status sweep_others(Island<T>& problem, Space& work, SolveReport& report, double share) const {
     Island<T> rest = work.others.build(work.joints, problem);
     problem.save(work.before);
-    const inner::SweepsThenNewton<Criterion> solver{
-        inner::sweeps_of<Criterion>(*this, max_iterations - report.sweeps, min_iterations, share)};
+    const inner::SweepsThenNewton solver{
+        inner::sweeps_of(options(), max_iterations - report.sweeps, min_iterations, share)};
     const SolveReport swept = solver.solve(rest, work.contacts);
     report.sweeps += swept.sweeps;
     report.factorizations += swept.factorizations;
@@ -190,15 +188,14 @@ struct BasicDirectGaussSeidel {
   }
 };
 
-template <class Criterion>
 template <class T, class Space>
-SolveReport BasicDirectGaussSeidel<Criterion>::solve(Island<T>& problem, Space& work) const {
+SolveReport DirectGaussSeidel::solve(Island<T>& problem, Space& work) const {
   SolveReport report{.measure = problem.measure()};
   if (!std::isfinite(report.measure.residual))
     return {.status = Status::quarantined, .measure = report.measure};
   auto& joints = work.joints;
   if (!gather(problem, joints))
-    return inner::sweeps_of<Criterion>(*this, max_iterations, min_iterations)
+    return inner::sweeps_of(options(), max_iterations, min_iterations)
         .solve(problem, work.contacts.newton.sweeps);
   problem.notify(0, report.measure);
   report.ended_by = "factorization";
@@ -228,16 +225,14 @@ SolveReport BasicDirectGaussSeidel<Criterion>::solve(Island<T>& problem, Space& 
     report.measure = problem.measure();
     report.status = swept;
     if (swept == Status::infeasible) return report;
-    if (inner::is_done<Criterion>(*this, report.measure, problem.row_count()) || problem.is_out_of_time()) break;
+    if (options().is_done(report.measure, problem.row_count()) || problem.is_out_of_time()) break;
   }
   problem.notify(report.sweeps + report.factorizations, report.measure);
   report.status = is_contradiction
                       ? Status::infeasible
-                      : inner::verdict<Criterion>(*this, report.measure, problem.row_count());
+                      : options().verdict(report.measure, problem.row_count());
   return report;
 }
-
-using DirectGaussSeidel = BasicDirectGaussSeidel<>;
 
 #ifdef DELASSUS_COMPILED_DIRECT  // after delassus/compiled.hpp
 DELASSUS_COMPILED_DIRECT(extern template, 3)

@@ -4,8 +4,8 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
-#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/island.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 namespace delassus {
@@ -13,8 +13,7 @@ namespace delassus {
 /// λ_i ← law_i(W_ii, d_i + Σ_j W_ij λ_j) for i = 1 … n, until the criterion holds. Contracts like r/(1 + r) for a heavy
 /// body on a light one of mass ratio r and like cos²(π/2N) for N bodies on each other: `AcceleratedGaussSeidel` is the
 /// default for that reason.
-template <class Criterion = Residual>
-struct BasicGaussSeidel {
+struct GaussSeidel {
   using plays = role::Solver;
   double tolerance = 1e-6;       ///< of the criterion
   int max_iterations = 1000;     ///< sweeps; reaching it is a status
@@ -22,11 +21,13 @@ struct BasicGaussSeidel {
   double relaxation = 1;         ///< ω in (0, 2), inside the projection: the result stays in the cone
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
   struct Workspace {};
 
+  SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
   void check() const {
     inner::expect_at_least_zero("GaussSeidel: tolerance", tolerance);
     inner::expect_at_least_zero("GaussSeidel: max_iterations", max_iterations);
@@ -37,32 +38,31 @@ struct BasicGaussSeidel {
   template <class T, class Room>
   SolveReport solve(Island<T>& problem, Room&) const {
     const int rows = problem.row_count();
+    const SolveOptions limits = options();
+    const bool is_measured = limits.is_measured();
     SolveReport report;
     report.measure = problem.measure();
     problem.notify(0, report.measure);
     if (!std::isfinite(report.measure.residual)) return {.status = Status::quarantined, .measure = report.measure};
     bool is_over = max_iterations == 0;
     while (!is_over) {
-      const bool is_done = Criterion::needs_measure ? inner::is_done<Criterion>(*this, report.measure, rows)
-                                                    : inner::is_within<Criterion>(*this, report.measure, rows);
+      const bool is_done = is_measured ? limits.is_done(report.measure, rows) : limits.is_within(report.measure, rows);
       if (report.sweeps >= min_iterations && is_done) break;
-      const int batch = Criterion::needs_measure && !problem.observes_sweeps() ? inner::patience(report.sweeps) : 1;
+      const int batch = is_measured && !problem.observes_sweeps() ? inner::patience(report.sweeps) : 1;
       for (int k = 0; k < batch && !is_over && !(k > 0 && problem.is_measure_due()); ++k) {
-        problem.sweep({.relaxation = relaxation, .tells_change = !Criterion::needs_measure});
+        problem.sweep({.relaxation = relaxation, .tells_change = !is_measured});
         ++report.sweeps;
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       }
-      if (Criterion::needs_measure || problem.observes_sweeps()) report.measure = problem.measure();
+      if (is_measured || problem.observes_sweeps()) report.measure = problem.measure();
       else report.measure.last_change = problem.last_change(), report.measure.worst_change = problem.worst_change();
       problem.notify(report.sweeps, report.measure);
     }
-    const bool is_within = inner::is_within<Criterion>(*this, report.measure, rows);
-    if constexpr (!Criterion::needs_measure) report.measure = problem.measure();
-    report.status = is_within ? Status::converged : inner::verdict<Criterion>(*this, report.measure, rows);
+    const bool is_within = limits.is_within(report.measure, rows);
+    if (!is_measured) report.measure = problem.measure();
+    report.status = is_within ? Status::converged : limits.verdict(report.measure, rows);
     return report;
   }
 };
-
-using GaussSeidel = BasicGaussSeidel<>;
 
 }  // namespace delassus

@@ -6,7 +6,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
-#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
@@ -43,15 +43,15 @@ struct NormSpace {
 };
 
 /// The residual that a solver, or the one it goes around, was asked for; 0 where it stops by another measure.
-template <template <class...> class Solver, class... More>
-double wanted_residual(const Solver<Residual, More...>& solver) {
-  return solver.all_verified ? 0 : solver.tolerance;
-}
 double wanted_residual(const auto& solver) {
-  if constexpr (requires { solver.solver; })
+  if constexpr (requires { solver.solver; }) {
     return wanted_residual(solver.solver);
-  else
+  } else if constexpr (requires { solver.options(); }) {
+    const SolveOptions options = solver.options();
+    return options.criterion == Criterion::residual && !options.all_verified ? options.tolerance : 0;
+  } else {
     return 0;
+  }
 }
 
 }  // namespace inner

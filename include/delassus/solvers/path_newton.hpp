@@ -6,7 +6,6 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/path_laws.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -28,10 +27,7 @@ namespace delassus {
 /// are left as they are, and so are coefficients of zero where there are no bodies. Source:
 /// [ChenMangasarian1996] for following smoothed complementarity, [FukushimaLuoTseng2002] for the cone,
 /// [AllgowerGeorg1990] for the length of the curve.
-template <class Criterion = Residual>
-struct BasicPathNewton {
-  static_assert(Criterion::needs_measure,
-                "delassus: PathNewton stops on a measured error; use the criterion Residual or SiconosError");
+struct PathNewton {
   using plays = role::Solver;
   double tolerance = 1e-8;    ///< of the criterion
   int max_iterations = 4000;  ///< factorizations
@@ -39,6 +35,7 @@ struct BasicPathNewton {
       4000;  ///< accelerated ones, from the best λ of the path where rounding or a limit ended it
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::tangents;
   template <class Rows>
@@ -46,17 +43,19 @@ struct BasicPathNewton {
     using T = typename Rows::Scalar;
     inner::PathLaws<T, inner::PathSystem<Rows>> laws;
     Array<T> best;
-    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    AcceleratedSweeps::Workspace<Rows> sweeps;
     void reset(Index rows) {
       best.reserve(std::size_t(rows));
       sweeps.reset(rows);
     }
   };
 
+  SolveOptions options() const { return {tolerance, max_iterations, 0, scale_tolerance, all_verified, criterion}; }
   void check() const {
     inner::expect_at_least_zero("PathNewton: tolerance", tolerance);
     inner::expect_at_least_zero("PathNewton: max_iterations", max_iterations);
     inner::expect_at_least_zero("PathNewton: max_sweeps", max_sweeps);
+    inner::expect_measured("PathNewton", criterion);
   }
 
   template <class T, class Space>
@@ -77,11 +76,11 @@ struct BasicPathNewton {
       now.report.measure = problem.measure();
     }
     if (max_sweeps > 0 && !meets(now.report.measure, problem) && !problem.is_out_of_time()) {
-      SolveReport report = inner::sweeps_of<Criterion>(*this, max_sweeps, 0).solve(problem, work.sweeps);
+      SolveReport report = inner::sweeps_of(options(), max_sweeps, 0).solve(problem, work.sweeps);
       report.factorizations = now.report.factorizations;
       return report;
     }
-    now.report.status = inner::verdict<Criterion>(*this, now.report.measure, problem.row_count());
+    now.report.status = options().verdict(now.report.measure, problem.row_count());
     return now.report;
   }
 
@@ -90,7 +89,7 @@ struct BasicPathNewton {
 
   template <class T, class Laws>
   struct Walk {
-    const BasicPathNewton& solver;
+    const PathNewton& solver;
     Island<T>& problem;
     Laws& work;
     Array<T>& kept;
@@ -208,7 +207,7 @@ struct BasicPathNewton {
     bool is_done() {
       const Measure m = problem.measure();
       problem.notify(report.factorizations, m);
-      if (Criterion::sum(m) < Criterion::sum(best)) {
+      if (solver.options().error(m) < solver.options().error(best)) {
         best = m;
         problem.save(kept);
       }
@@ -217,10 +216,8 @@ struct BasicPathNewton {
   };
 
   bool meets(const Measure& m, const auto& problem) const {
-    return inner::is_done<Criterion>(*this, m, problem.row_count());
+    return options().is_done(m, problem.row_count());
   }
 };
-
-using PathNewton = BasicPathNewton<>;
 
 }  // namespace delassus

@@ -5,7 +5,6 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
 #include <delassus/solvers/inner/proximal_point.hpp>
 #include <delassus/solvers/island.hpp>
@@ -27,11 +26,7 @@ namespace delassus {
 /// residual is what is kept. Source: [Rockafellar1976] for the proximal point, [QiSun1993] for
 /// Newton's method on it, [AcaryBremondHuber2018] for both together, [AlartCurnier1991] for the contact's
 /// equations.
-template <class Criterion = Residual>
-struct BasicProximalNewton {
-  static_assert(
-      Criterion::needs_measure,
-      "delassus: ProximalNewton stops on a measured error; use the criterion Residual or SiconosError");
+struct ProximalNewton {
   using plays = role::Solver;
   double tolerance = 1e-8;       ///< of the criterion
   int max_iterations = 60;       ///< factorizations; then come the sweeps
@@ -39,6 +34,7 @@ struct BasicProximalNewton {
   int max_sweeps = 4000;         ///< in all, of an island where Newton's method stalls or cannot act
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::tangents;
   template <class Rows>
@@ -48,21 +44,24 @@ struct BasicProximalNewton {
                   "delassus: Newton's method needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
                   "solve it by AcceleratedGaussSeidel");
     inner::BodySpace<T, inner::NewtonSystem<T, std::max(1, Rows::widest)>, inner::LawsAsTheyAre<T>> body;
-    typename BasicAcceleratedGaussSeidel<Criterion>::template Workspace<Rows> sweeps;
+    AcceleratedSweeps::Workspace<Rows> sweeps;
     void reset(Index rows) { sweeps.reset(rows); }
   };
 
+  SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
   void check() const {
     inner::expect_at_least_zero("ProximalNewton: tolerance", tolerance);
     inner::expect_at_least_zero("ProximalNewton: max_iterations", max_iterations);
     inner::expect_at_least_zero("ProximalNewton: max_sweeps", max_sweeps);
+    inner::expect_measured("ProximalNewton", criterion);
   }
 
   template <class T, class Space>
   SolveReport solve(Island<T>& problem, Space& work) const {
     problem.must_complete();  // what `body` has found since the last measure by W is the better λ
     if (!work.body.gather(problem)) return sweep(problem, work, max_sweeps, min_iterations);
-    Point<T, decltype(work.body)> now(*this, problem, work.body);
+    const SolveOptions limits = options();
+    inner::ProximalPoint<T, decltype(work.body)> now(limits, problem, work.body);
     const Measure start = now.begin();
     problem.notify(0, start);
     if (!std::isfinite(start.residual)) return {.status = Status::quarantined, .measure = start};
@@ -83,9 +82,6 @@ struct BasicProximalNewton {
   }
 
  private:
-  template <class T, class Body>
-  using Point = inner::ProximalPoint<Criterion, BasicProximalNewton, T, Body>;
-
   /// The tolerance was not met: what is left of the sweeps leads on from the best λ.
   SolveReport give_up(auto& now, auto& work) const {
     auto& problem = now.problem();
@@ -104,15 +100,13 @@ struct BasicProximalNewton {
   }
 
   SolveReport sweep(auto& problem, auto& work, int most, int least) const {
-    return inner::sweeps_of<Criterion>(*this, most, least).solve(problem, work.sweeps);
+    return inner::sweeps_of(options(), most, least).solve(problem, work.sweeps);
   }
 
   SolveReport finish(const auto& now) const {
-    return {inner::verdict<Criterion>(*this, now.measure, now.rows()), now.sweeps, now.measure,
+    return {options().verdict(now.measure, now.rows()), now.sweeps, now.measure,
             now.factorizations};
   }
 };
-
-using ProximalNewton = BasicProximalNewton<>;
 
 }  // namespace delassus

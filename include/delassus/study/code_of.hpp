@@ -45,7 +45,9 @@ void append_member(std::string& out, const char* name, const T& value, const T& 
   if (value == usual) return;
   if (out.back() != '{') out += ", ";
   out += std::string(".") + name + " = ";
-  if constexpr (std::is_same_v<T, bool>)
+  if constexpr (std::is_same_v<T, Criterion>)
+    out += value == Criterion::residual ? "Criterion::residual" : value == Criterion::siconos_error ? "Criterion::siconos_error" : "Criterion::last_change";
+  else if constexpr (std::is_same_v<T, bool>)
     out += value ? "true" : "false";
   else if constexpr (std::is_integral_v<T>)
     out += std::to_string(value);
@@ -69,7 +71,7 @@ std::string code_of(const P& policy) {
     if constexpr (std::is_default_constructible_v<P>) {
       const P usual{};
       const auto append = [&](const char* name, const auto& member) {
-        if constexpr (requires { requires std::is_arithmetic_v<std::remove_cvref_t<decltype(member(usual))>>; })
+        if constexpr (requires { requires std::is_arithmetic_v<std::remove_cvref_t<decltype(member(usual))>> || std::is_same_v<std::remove_cvref_t<decltype(member(usual))>, Criterion>; })
           inner::append_member(out, name, member(policy), member(usual));
       };
       append("tolerance", [](const auto& p) -> decltype((p.tolerance)) { return p.tolerance; });
@@ -78,6 +80,7 @@ std::string code_of(const P& policy) {
       append("relaxation", [](const auto& p) -> decltype((p.relaxation)) { return p.relaxation; });
       append("scale_tolerance", [](const auto& p) -> decltype((p.scale_tolerance)) { return p.scale_tolerance; });
       append("all_verified", [](const auto& p) -> decltype((p.all_verified)) { return p.all_verified; });
+      append("criterion", [](const auto& p) -> decltype((p.criterion)) { return p.criterion; });
       append("frequency", [](const auto& p) -> decltype((p.frequency)) { return p.frequency; });
       append("damping_ratio", [](const auto& p) -> decltype((p.damping_ratio)) { return p.damping_ratio; });
       append("rate", [](const auto& p) -> decltype((p.rate)) { return p.rate; });

@@ -1,7 +1,7 @@
 /// Impulses for rows that contradict each other.
 #pragma once
 
-#include <delassus/solvers/criteria.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/inner/convergence_monitor.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/softened.hpp>
@@ -16,8 +16,8 @@ SolveReport compromise(Island<T>& problem, SolveReport report, Array<T>& best, A
   problem.must_complete();
   Softened<T> softened(problem);
   Island<T>& soft = softened.island();
-  const SolveLimits limits{.max_iterations = 1000, .min_iterations = 1};
-  ConvergenceMonitor<Residual, SolveLimits, Island<T>, Array<T>> monitor(limits, soft, best);
+  const SolveOptions limits{.max_iterations = 1000, .min_iterations = 1};
+  ConvergenceMonitor<Island<T>, Array<T>> monitor(limits, soft, best);
   if (monitor.begin()) {
     monitor.open("compromise", limits.max_iterations);
     NoNewton no_newton;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/core/cmath.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -13,12 +14,12 @@ namespace delassus::inner {
 /// Sweeps are counted and measured here; a stage asks after each of its sweeps whether to go on. A stage has
 /// stalled when the best measured error did not halve within `patience` sweeps, or half as many as it took to
 /// get there if that is more.
-template <class Criterion, class Solver, class Problem, class Impulses>
+template <class Problem, class Impulses>
 class ConvergenceMonitor {
  public:
-  ConvergenceMonitor(const Solver& solver, Problem& problem, Impulses& best)
-      : solver_(solver), problem_(problem), best_set_(best), rows_(problem.row_count()) {
-    tolerance_ = solver.tolerance * (solver.scale_tolerance ? rows_ : 1);
+  ConvergenceMonitor(const SolveOptions& options, Problem& problem, Impulses& best)
+      : options_(options), problem_(problem), best_set_(best), rows_(problem.row_count()) {
+    tolerance_ = options.tolerance * (options.scale_tolerance ? rows_ : 1);
     reach_ = near * tolerance_;
   }
 
@@ -27,35 +28,35 @@ class ConvergenceMonitor {
   /// tolerance after their first.
   bool begin() {
     problem_.save(best_set_);
-    if (solver_.min_iterations > 0 && solver_.max_iterations > 0 && !problem_.observes_sweeps())
+    if (options_.min_iterations > 0 && options_.max_iterations > 0 && !problem_.observes_sweeps())
       return true;
     report_.measure = best_ = problem_.measure();
     problem_.notify(0, report_.measure);
     if (is_not_finite()) return false;
-    is_met_ = solver_.min_iterations == 0 && is_done(best_);
-    return !is_met_ && solver_.max_iterations > 0;
+    is_met_ = options_.min_iterations == 0 && is_done(best_);
+    return !is_met_ && options_.max_iterations > 0;
   }
 
   void open(const char* stage, int patience) {
     report_.ended_by = stage;
     patience_ = patience;
     opened_ = progressed_ = report_.sweeps;
-    mark_ = Criterion::sum(best_);
+    mark_ = options_.error(best_);
   }
 
   /// After a sweep of the present stage that moved λ by `moved` in energy, λ being what it made: false when
   /// the stage, or the solve, is over.
   bool goes_on(double moved) {
     ++report_.sweeps;
-    is_last_ = report_.sweeps >= solver_.max_iterations ||
-               (report_.sweeps >= solver_.min_iterations && problem_.is_out_of_time());
+    is_last_ = report_.sweeps >= options_.max_iterations ||
+               (report_.sweeps >= options_.min_iterations && problem_.is_out_of_time());
     if (!is_last_ && !is_due(moved) && !problem_.is_measure_due()) return true;
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
-    per_root_of_movement_ = Criterion::sum(report_.measure) / std::sqrt(moved);
+    per_root_of_movement_ = options_.error(report_.measure) / std::sqrt(moved);
     problem_.notify(report_.sweeps, report_.measure);
     if (std::isinf(best_.residual) && is_not_finite()) return false;
-    is_met_ = report_.sweeps >= solver_.min_iterations && is_done(report_.measure);
+    is_met_ = report_.sweeps >= options_.min_iterations && is_done(report_.measure);
     if (is_met_) return false;
     note_pace();
     keep_if_best();
@@ -66,7 +67,7 @@ class ConvergenceMonitor {
   void take(const Measure& measure, int factorizations) {
     report_.factorizations += factorizations;
     report_.measure = measure;
-    is_met_ = report_.sweeps >= solver_.min_iterations && is_done(measure);
+    is_met_ = report_.sweeps >= options_.min_iterations && is_done(measure);
     if (!is_met_) keep_if_best();
   }
   /// The stage goes on, or another name is in it for a while: its patience does not begin anew.
@@ -75,7 +76,7 @@ class ConvergenceMonitor {
   /// The best error did not halve within 60 sweeps, or half as many as it took to get there: a stage that has
   /// another sign of going round in circles need not wait for the end of its patience.
   bool is_stagnating() const {
-    return Criterion::needs_measure &&
+    return options_.is_measured() &&
            report_.sweeps - progressed_ > std::max(60, (progressed_ - opened_) / 2);
   }
 
@@ -90,11 +91,11 @@ class ConvergenceMonitor {
   const Measure& best() const { return best_; }
   /// Sweeps to the tolerance at the pace of the last half of them or more; infinite where the error stands.
   double likely_left() const {
-    const double now = Criterion::sum(report_.measure), fallen = std::log(from_.error / now);
+    const double now = options_.error(report_.measure), fallen = std::log(from_.error / now);
     return fallen > 0 ? std::log(now / tolerance_) * (measured_ - from_.sweeps) / fallen : infinity;
   }
   /// What is left of the sweeps.
-  int left() const { return solver_.max_iterations - report_.sweeps; }
+  int left() const { return options_.max_iterations - report_.sweeps; }
 
   /// λ ← the best measured.
   void back_to_best() { problem_.load(best_set_); }
@@ -105,7 +106,7 @@ class ConvergenceMonitor {
       if (report_.sweeps > 0) back_to_best();
       report_.measure = best_;
     }
-    report_.status = inner::verdict<Criterion>(solver_, report_.measure, rows_);
+    report_.status = options_.verdict(report_.measure, rows_);
     return report_;
   }
 
@@ -117,21 +118,21 @@ class ConvergenceMonitor {
     if (report_.sweeps > 0) back_to_best();
     return true;
   }
-  bool is_done(const Measure& m) const { return inner::is_done<Criterion>(solver_, m, rows_); }
+  bool is_done(const Measure& m) const { return options_.is_done(m, rows_); }
   void note_pace() {
-    if (lately_.sweeps == 0) first_error_ = Criterion::sum(report_.measure);
+    if (lately_.sweeps == 0) first_error_ = options_.error(report_.measure);
     if (measured_ < 2 * lately_.sweeps) return;
     from_ = lately_;
-    lately_ = {Criterion::sum(report_.measure), measured_};
+    lately_ = {options_.error(report_.measure), measured_};
   }
   void keep_if_best() {
-    if (!(Criterion::needs_measure ? Criterion::sum(report_.measure) < Criterion::sum(best_)
+    if (!(options_.is_measured() ? options_.error(report_.measure) < options_.error(best_)
                                    : report_.measure.residual < best_.residual))
       return;
     best_ = report_.measure;
     problem_.save(best_set_);
-    if (!(Criterion::sum(best_) < 0.5 * mark_)) return;
-    mark_ = Criterion::sum(best_);
+    if (!(options_.error(best_) < 0.5 * mark_)) return;
+    mark_ = options_.error(best_);
     progressed_ = report_.sweeps;
   }
   /// The error is foretold from the sweep's movement, their ratio being that of the last measure: where that
@@ -139,14 +140,14 @@ class ConvergenceMonitor {
   /// but for the first few where ten times the tolerance is not in sight: a measure costs about a sweep, and
   /// small problems end after ten.
   bool is_due(double moved) const {
-    if (problem_.observes_sweeps() || !Criterion::needs_measure || measured_ == 0) return true;
+    if (problem_.observes_sweeps() || !options_.is_measured() || measured_ == 0) return true;
     const double foretold = per_root_of_movement_ * std::sqrt(moved);
     if (foretold <= reach_) return true;
     const bool is_late = report_.sweeps - measured_ >= 2 * inner::patience(report_.sweeps);
     return is_late && (report_.sweeps >= 7 || foretold <= 10 * reach_);
   }
   bool stalls() const {
-    return Criterion::needs_measure &&
+    return options_.is_measured() &&
            report_.sweeps - progressed_ > std::max(patience_, (progressed_ - opened_) / 2);
   }
 
@@ -156,7 +157,7 @@ class ConvergenceMonitor {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
 
-  const Solver& solver_;
+  const SolveOptions options_;
   Problem& problem_;
   Impulses& best_set_;
   SolveReport report_{};

@@ -4,7 +4,6 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
-#include <delassus/solvers/criteria.hpp>
 #include <delassus/solvers/inner/contact_space.hpp>
 #include <delassus/solvers/inner/halve_step.hpp>
 #include <delassus/solvers/island.hpp>
@@ -19,11 +18,9 @@ namespace delassus::inner {
 /// dense, of the rows that carry: one factorization of n rows costs n³/3 multiplications. The smallest
 /// measured error is kept. Source: [Rockafellar1976] for the proximal point, [QiSun1993] for Newton's method
 /// on it, [AcaryBremondHuber2018] for both.
-template <class Criterion>
 struct NewtonInImpulses {
   using plays = role::Solver;
-  BasicAcceleratedGaussSeidel<Criterion>
-      sweeps;  ///< before the first factorization; their tolerance is that of all
+  AcceleratedSweeps sweeps;  ///< before the first factorization; their tolerance is that of all
   int max_factorizations = 100;
 
   static constexpr Needs needs = Needs::sweeps;
@@ -46,17 +43,18 @@ struct NewtonInImpulses {
 
   template <class T>
   SolveReport solve(Island<T>& problem, Space<T>& work) const {
+    const SolveOptions limits = sweeps.options();
     SolveReport report = sweeps.solve(problem, work.sweeps);
     if (report.status != Status::max_iterations || problem.is_out_of_time()) return report;
     if (problem.may_attempt(cost_in_sweeps(problem.row_count())) && work.space.gather(problem)) {
-      const double before = Criterion::sum(report.measure);
+      const double before = limits.error(report.measure);
       problem.save(work.best);
       descend(problem, work, report);
       problem.load(work.best);
-      problem.attempted(Criterion::sum(report.measure) < 0.5 * before);
+      problem.attempted(limits.error(report.measure) < 0.5 * before);
       report.ended_by = "newton";
     }
-    report.status = verdict<Criterion>(sweeps, report.measure, problem.row_count());
+    report.status = limits.verdict(report.measure, problem.row_count());
     return report;
   }
 
@@ -64,24 +62,25 @@ struct NewtonInImpulses {
   template <class T>
   void descend(Island<T>& problem, Space<T>& work, SolveReport& report) const {
     auto& space = work.space;
+    const SolveOptions limits = sweeps.options();
     const int rows = problem.row_count();
-    double epsilon = 1e-4, last = Criterion::sum(report.measure);
+    double epsilon = 1e-4, last = limits.error(report.measure);
     space.take(problem);
-    for (int stalled = 0; stalled < 8 && !is_done<Criterion>(sweeps, report.measure, rows);) {
+    for (int stalled = 0; stalled < 8 && !limits.is_done(report.measure, rows);) {
       if (report.factorizations >= max_factorizations || !problem.has_time_for(cost_in_sweeps(rows))) return;
       const double fall = approach(problem, space, epsilon, report);
       space.give(problem);
       const Measure now = problem.measure();
       problem.notify(report.sweeps + report.factorizations, now);
-      const bool is_better = Criterion::sum(now) < Criterion::sum(report.measure);
+      const bool is_better = limits.error(now) < limits.error(report.measure);
       if (is_better) {
         report.measure = now;
         problem.save(work.best);
       }
       stalled = is_better ? 0 : stalled + 1;
-      if (!(Criterion::sum(now) <= 2 * last)) problem.load(work.best);  // lost: from the best again
+      if (!(limits.error(now) <= 2 * last)) problem.load(work.best);  // lost: from the best again
       epsilon = fall < 0.3 ? std::max(0.1 * epsilon, 1e-10) : std::min(10 * epsilon, 10.0);
-      last = std::min(Criterion::sum(now), 2 * last);
+      last = std::min(limits.error(now), 2 * last);
       space.take(problem);
     }
   }

@@ -31,16 +31,12 @@ struct NewtonSpace {
 /// before the sweeps: they leave it where each step of Newton's method changes which rows carry, and ten
 /// boxes cost 29 factorizations in place of two. Warm they have helped, and λ from before them is for the
 /// second opening. From the sweeps' λ ε begins large, and grows where it stalls.
-template <class Criterion, class T, class ConvergenceMonitor, class Space>
+template <class T, class ConvergenceMonitor, class Space>
 class NewtonStage {
  public:
-  NewtonStage(const auto& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space)
-      : limits_{.tolerance = chain.tolerance,
-                .scale_tolerance = chain.scale_tolerance,
-                .all_verified = chain.all_verified},
-        problem_(problem),
-        monitor_(monitor),
-        space_(space) {
+  NewtonStage(const SolveOptions& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space)
+      : limits_(chain), problem_(problem), monitor_(monitor), space_(space), opening_(chain.is_measured() ? least : never) {
+    limits_.min_iterations = 0;
     problem.save(space.start);
   }
 
@@ -52,8 +48,8 @@ class NewtonStage {
   [[gnu::noinline]] void run() {
     monitor_.back_to_best();
     monitor_.name("newton");
-    const double before = Criterion::sum(monitor_.best());
-    ProximalPoint<Criterion, SolveLimits, T, decltype(space_.body)> point(limits_, problem_, space_.body);
+    const double before = limits_.error(monitor_.best());
+    ProximalPoint<T, decltype(space_.body)> point(limits_, problem_, space_.body);
     point.sweeps = monitor_.sweeps();
     point.work = around * cost_;
     const double allowed = 100 * std::max(energy(), space_.body.energy_of_stopping(problem_));
@@ -66,13 +62,13 @@ class NewtonStage {
       space_.body.keep();
       point.begin();
       const int share = std::max(2 * likely, int(monitor_.sweeps() / cost_));
-      double smallest = std::min(Criterion::sum(point.measure), Criterion::sum(monitor_.best()));
+      double smallest = std::min(limits_.error(point.measure), limits_.error(monitor_.best()));
       limits_.max_iterations = share;
       while (!(point.run() && point.is_met())) {
         point.restore_best();
         if (!point.restart()) break;
         if (point.has_time()) continue;
-        const double error = Criterion::sum(point.measure);
+        const double error = limits_.error(point.measure);
         if (!(error < 0.5 * smallest)) break;
         smallest = error;
         limits_.max_iterations += share;
@@ -83,7 +79,7 @@ class NewtonStage {
       if (!from_start) epsilon_ = point.epsilon;
     }
     if (!monitor_.is_over()) monitor_.back_to_best();
-    problem_.attempted(Criterion::sum(monitor_.best()) < 0.5 * before);
+    problem_.attempted(limits_.error(monitor_.best()) < 0.5 * before);
     wait_ *= 2;
     open_after(monitor_.sweeps() + std::max(double(wait_), 2 * point.factorizations * cost_));
   }
@@ -130,13 +126,13 @@ class NewtonStage {
   }
   void open_after(double sweeps) { opening_ = sweeps < never ? std::max(least, int(sweeps)) : never; }
 
-  SolveLimits limits_;  ///< of the proximal point iteration in one opening: factorizations
+  SolveOptions limits_;  ///< of the proximal point iteration in one opening: factorizations
   Island<T>& problem_;
   ConvergenceMonitor& monitor_;
   Space& space_;
   double cost_ = 0;  ///< of a factorization, in sweeps
   double epsilon_ = 1e-5;
-  int opening_ = least, wait_ = least, openings_ = 0;
+  int opening_, wait_ = least, openings_ = 0;
   bool is_gathered_ = false;
 };
 
@@ -151,7 +147,7 @@ struct SweepsAlone {
   struct Space {
     void reserve(std::size_t) {}
   };
-  template <class Criterion, class Space>
+  template <class Space>
   static inner::NoNewton stage(const auto&, auto&, auto&, Space&) {
     return {};
   }
@@ -163,10 +159,10 @@ struct ThenNewton {
   static constexpr Needs needs = Needs::tangents;
   template <class T, int width>
   using Space = std::conditional_t<(width > 0), inner::NewtonSpace<T, width>, SweepsAlone::Space<T, width>>;
-  template <class Criterion, class Space, class T, class ConvergenceMonitor>
-  static auto stage(const auto& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space) {
-    if constexpr (Criterion::needs_measure && requires { space.body; })
-      return inner::NewtonStage<Criterion, T, ConvergenceMonitor, Space>(chain, problem, monitor, space);
+  template <class Space, class T, class ConvergenceMonitor>
+  static auto stage(const SolveOptions& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space) {
+    if constexpr (requires { space.body; })
+      return inner::NewtonStage<T, ConvergenceMonitor, Space>(chain, problem, monitor, space);
     else
       return inner::NoNewton{};
   }

@@ -5,6 +5,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/solvers/inner/halve_step.hpp>
 #include <delassus/solvers/island.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -12,13 +13,13 @@
 namespace delassus::inner {
 
 /// Outside λ̂ ← λ(u) while ε shrinks, inside Newton's method on F of `Body`, a `BodySpace` that holds the
-/// island, each step halved until the rows see less of F. `Solver` has the tolerance and how many
+/// island, each step halved until the rows see less of F. The options have the tolerance and how many
 /// factorizations are allowed; the smallest measured error is kept in `Body`. See `ProximalNewton`.
-template <class Criterion, class Solver, class T, class Body>
+template <class T, class Body>
 class ProximalPoint {
  public:
-  ProximalPoint(const Solver& solver, Island<T>& problem, Body& body)
-      : solver_(solver), problem_(problem), body_(body), rows_(problem.row_count()) {}
+  ProximalPoint(const SolveOptions& options, Island<T>& problem, Body& body)
+      : options_(options), problem_(problem), body_(body), rows_(problem.row_count()) {}
 
   /// Around the λ that was gathered.
   Measure begin() {
@@ -67,8 +68,8 @@ class ProximalPoint {
   }
 
   bool has_time() {
-    if (std::max(factorizations, rounds_ - 1) >= solver_.max_iterations) return false;
-    if (factorizations >= std::max(1, solver_.min_iterations))
+    if (std::max(factorizations, rounds_ - 1) >= options_.max_iterations) return false;
+    if (factorizations >= std::max(1, options_.min_iterations))
       is_late_ = is_late_ || !problem_.has_time_for(work);
     return !is_late_;
   }
@@ -76,7 +77,7 @@ class ProximalPoint {
   Island<T>& problem() const { return problem_; }
   int rows() const { return rows_; }
   bool is_done(const Measure& m) const {
-    return inner::is_done<Criterion>(solver_, m, rows_);
+    return options_.is_done(m, rows_);
   }
 
   int factorizations = 0, sweeps = 0;  ///< sweeps: what the observer is told beside them
@@ -125,7 +126,7 @@ class ProximalPoint {
     body_.keep();
   }
 
-  const Solver& solver_;
+  const SolveOptions& options_;
   Island<T>& problem_;
   Body& body_;
   int rows_;

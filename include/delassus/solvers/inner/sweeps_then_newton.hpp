@@ -18,15 +18,14 @@ namespace delassus::inner {
 /// the sweeps, from the smallest error of all. Each of both may cost half of what that rest does, so that no
 /// solve takes more than some twice the time of its sweeps alone. Without contacts, with a law that Newton's
 /// method has no form of, or without a rest, there are sweeps alone.
-template <class Criterion>
 struct SweepsThenNewton {
-  using Newton = NewtonInImpulses<Criterion>;
+  using Newton = NewtonInImpulses;
   static constexpr int first = 400;
-  BasicAcceleratedGaussSeidel<Criterion> sweeps;  ///< and how many in all
+  AcceleratedSweeps sweeps;  ///< and how many in all
 
   template <class T>
   struct Space {
-    typename Newton::template Space<T> newton;
+    Newton::Space<T> newton;
     Array<T> best;
     /// What Newton's method needs is made where it acts.
     void reset(Index rows) { newton.sweeps.reset(rows); }
@@ -57,9 +56,10 @@ struct SweepsThenNewton {
   }
 
   /// The later report with the work of both; the error is that of the better. Whether that is the later.
-  static bool add(SolveReport later, SolveReport& report) {
+  bool add(SolveReport later, SolveReport& report) const {
+    const SolveOptions limits = sweeps.options();
     const bool is_better =
-        later.status == Status::infeasible || Criterion::sum(later.measure) < Criterion::sum(report.measure);
+        later.status == Status::infeasible || limits.error(later.measure) < limits.error(report.measure);
     later.sweeps += report.sweeps;
     later.factorizations += report.factorizations;
     if (!is_better) later.measure = report.measure, later.status = report.status;

@@ -1,0 +1,64 @@
+/// When a solve may stop.
+#pragma once
+
+#include <delassus/core/cmath.hpp>
+#include <delassus/core/expect.hpp>
+#include <delassus/core/status.hpp>
+#include <delassus/solvers/measure.hpp>
+
+#include <string>
+
+namespace delassus {
+
+/// What a solver's tolerance is compared with.
+enum class Criterion : unsigned char {
+  residual,       ///< the residual, free of scale
+  siconos_error,  ///< Siconos' measure, for comparison. It has no shares: `all_verified` compares the island's, which is stricter
+  last_change,    ///< the change of the last sweep as displacement, m: cheap, and blind to slow convergence
+};
+
+/// The numbers that all solvers have, whose meanings and defaults are theirs.
+struct SolveOptions {
+  double tolerance = 1e-6;  ///< of the criterion
+  int max_iterations = 0, min_iterations = 0;
+  bool scale_tolerance = false;  ///< tolerance × number of rows
+  bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  Criterion criterion = Criterion::residual;
+
+  /// Whether the criterion needs a measure of all rows.
+  bool is_measured() const { return criterion != Criterion::last_change; }
+  /// What is compared with the tolerance of an island.
+  double error(const Measure& m) const {
+    return criterion == Criterion::residual ? m.residual : criterion == Criterion::siconos_error ? m.siconos : m.last_change;
+  }
+  /// The largest share of one constraint.
+  double worst_error(const Measure& m) const {
+    return criterion == Criterion::residual ? m.worst : criterion == Criterion::siconos_error ? m.siconos : m.worst_change;
+  }
+
+  bool is_within(const Measure& m, int rows) const {
+    if (all_verified) return worst_error(m) <= tolerance;
+    return error(m) <= tolerance * (scale_tolerance ? rows : 1);
+  }
+  /// Within it, or at the floor of rounding by what was measured.
+  bool is_done(const Measure& m, int rows) const { return is_within(m, rows) || m.residual <= m.floor; }
+
+  /// Converged, at the rounding floor above the tolerance, out of sweeps, or away to where there are no numbers.
+  Status verdict(const Measure& m, int rows) const {
+    if (is_within(m, rows)) return Status::converged;
+    if (!std::isfinite(m.residual)) return Status::quarantined;
+    return m.residual <= m.floor ? Status::stalled : Status::max_iterations;
+  }
+};
+
+namespace inner {
+
+/// Of a solver that has no sweeps whose change it could ask for.
+template <class T = std::string>
+void expect_measured(const char* solver, Criterion criterion) {
+  DELASSUS_EXPECT(criterion != Criterion::last_change,
+                  T(solver) + ": criterion last_change is none of this solver, which stops on a measured error; use residual or siconos_error");
+}
+
+}  // namespace inner
+}  // namespace delassus
