@@ -3,6 +3,7 @@
 #include "catch.hpp"
 
 #include <delassus/collision/native.hpp>
+#include <delassus/collision/native_engine.hpp>
 
 #include <limits>
 #include <stdexcept>

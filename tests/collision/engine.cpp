@@ -2,6 +2,8 @@
 #include "collision/samples.hpp"
 #include "collision/scene.hpp"
 
+#include <delassus/collision/native_engine.hpp>
+
 #include <cmath>
 #include <cstring>
 #include <limits>

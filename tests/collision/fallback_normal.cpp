@@ -2,6 +2,7 @@
 #include "collision/scene.hpp"
 
 #include <delassus/delassus.hpp>
+#include <delassus/collision/native_engine.hpp>
 
 #include <algorithm>
 #include <cmath>

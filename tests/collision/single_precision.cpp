@@ -1,5 +1,6 @@
 // A set in single precision hands its rotations over in double: orthogonal to 1e-7 only.
 #include <delassus/delassus.hpp>
+#include <delassus/collision/native_engine.hpp>
 
 #include <random>
 

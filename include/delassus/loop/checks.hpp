@@ -39,69 +39,49 @@ concept LawOfConstraints = ConstraintLaw<P> || LawOfContact<P> || HollowLaw<P> |
 template <class P>
 consteval bool has_role() {
   constexpr bool has = requires { typename P::plays; };
-  if constexpr (LawOfConstraints<P>)
-    static_assert(has,
-                  "delassus: a constraint law is no argument of AnimationLoop by itself; put it into Constraints{...}, as in "
-                  "Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}");
-  else if constexpr (BodySet<P>)
-    static_assert(has,
-                  "delassus: a set of bodies is no argument of AnimationLoop by itself; put it into World{...}, as in "
-                  "World{RigidBodies{}}");
-  else if constexpr (std::is_arithmetic_v<P>)
-    static_assert(has,
-                  "delassus: a plain number is no argument of AnimationLoop; write it into the policy it is meant for, as in "
-                  "GaussSeidel{.tolerance = 1e-6}, or give it to step(h) if it is the step");
-  else
-    static_assert(has,
-                  "delassus: every argument of AnimationLoop is a policy that says its role; add `using plays = "
-                  "role::...;` to this type, or take it out of the list");
+  constexpr bool is_law = LawOfConstraints<P>, is_set = !is_law && BodySet<P>, is_number = std::is_arithmetic_v<P>;
+  static_assert(has || !is_law,
+                "delassus: a constraint law is no argument of AnimationLoop by itself; put it into Constraints{...}, as in "
+                "Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}}");
+  static_assert(has || !is_set,
+                "delassus: a set of bodies is no argument of AnimationLoop by itself; put it into World{...}, as in "
+                "World{RigidBodies{}}");
+  static_assert(has || !is_number,
+                "delassus: a plain number is no argument of AnimationLoop; write it into the policy it is meant for, as in "
+                "GaussSeidel{.tolerance = 1e-6}, or give it to step(h) if it is the step");
+  static_assert(has || is_law || is_set || is_number,
+                "delassus: every argument of AnimationLoop is a policy that says its role; add `using plays = "
+                "role::...;` to this type, or take it out of the list");
   return has;
 }
 
-/// A wrapper around what it is made for.
-template <class P>
-consteval bool is_filled() {
-  constexpr bool is = !IsHollow<P>;
-  if constexpr (Plays<P, role::Collision>)
-    static_assert(is,
-                  "delassus: the layers of a collision go around a backend and each other in this order, each at most once: "
-                  "WithFilter{WithSurfaces{WithCompounds{Continuous{WithMeshes{Seamless{NativeCollision{}}}}}}}; take out what "
-                  "is not wanted, and write numbers second, as in Seamless{NativeCollision{}, 1e-3}");
-  else if constexpr (Plays<P, role::Solver>)
-    static_assert(is,
-                  "delassus: WithDeadline and MinimumNorm go around a solver, each at most once, and numbers come second: "
-                  "WithDeadline{MinimumNorm{AcceleratedGaussSeidel{}}, 1e-3}");
-  else
-    static_assert(is,
-                  "delassus: WithCompliance goes around a stabilisation, once, and its number comes second: "
-                  "WithCompliance{Baumgarte{}, 1e-7}");
-  return is;
-}
-
-/// Sound so far, or stop: the first failed check is the only one that speaks.
+/// A policy of its role, and filled if it is a wrapper.
 template <class P>
 consteval bool plays_its_role() {
-  if constexpr (IsHollow<P>) {
-    return is_filled<P>();
-  } else if constexpr (Plays<P, role::Integrator>) {
-    static_assert(Integrator<P>,
-                  "delassus: this type plays role::Integrator but lacks scale(h), impulse(set, p, h) or "
-                  "advance(set, h); see integrators/integrator.hpp for their types");
-    return Integrator<P>;
-  } else if constexpr (Plays<P, role::Stabilisation>) {
-    static_assert(Stabilisation<P>,
-                  "delassus: this type plays role::Stabilisation but lacks equality(phi, h) or penetration(phi, h), "
-                  "which return double");
-    return Stabilisation<P>;
-  } else if constexpr (Plays<P, role::Listener>) {
-    constexpr bool listens = requires { typename P::listens; };
-    static_assert(listens,
-                  "delassus: this type plays role::Listener but does not say what it hears; add `using listens = "
-                  "Listens<stage::Solve>;`");
-    return listens;
-  } else {
-    return true;
-  }
+  constexpr bool is_filled = !IsHollow<P>, is_collision = Plays<P, role::Collision>, is_solver = Plays<P, role::Solver>;
+  static_assert(is_filled || !is_collision,
+                "delassus: the layers of a collision go around a backend and each other in this order, each at most once: "
+                "WithFilter{WithSurfaces{WithCompounds{Continuous{WithMeshes{Seamless{NativeCollision{}}}}}}}; take out what "
+                "is not wanted, and write numbers second, as in Seamless{NativeCollision{}, 1e-3}");
+  static_assert(is_filled || !is_solver,
+                "delassus: WithDeadline and MinimumNorm go around a solver, each at most once, and numbers come second: "
+                "WithDeadline{MinimumNorm{AcceleratedGaussSeidel{}}, 1e-3}");
+  static_assert(is_filled || is_collision || is_solver,
+                "delassus: WithCompliance goes around a stabilisation, once, and its number comes second: "
+                "WithCompliance{Baumgarte{}, 1e-7}");
+  constexpr bool integrates = !is_filled || !Plays<P, role::Integrator> || Integrator<P>;
+  static_assert(integrates,
+                "delassus: this type plays role::Integrator but lacks scale(h), impulse(set, p, h) or "
+                "advance(set, h); see integrators/integrator.hpp for their types");
+  constexpr bool stabilises = !is_filled || !Plays<P, role::Stabilisation> || Stabilisation<P>;
+  static_assert(stabilises,
+                "delassus: this type plays role::Stabilisation but lacks equality(phi, h) or penetration(phi, h), "
+                "which return double");
+  constexpr bool listens = !Plays<P, role::Listener> || requires { typename P::listens; };
+  static_assert(listens,
+                "delassus: this type plays role::Listener but does not say what it hears; add `using listens = "
+                "Listens<stage::Solve>;`");
+  return is_filled && integrates && stabilises && listens;
 }
 
 template <class Role, class... Args>
@@ -152,17 +132,13 @@ consteval bool has_one_scalar() {
 template <class Laws, class Collision>
 consteval bool collision_fits() {
   constexpr bool is_backend = CollisionBackend<Collision>;
-  if constexpr (Laws::has_contacts) {
-    static_assert(is_backend,
-                  "delassus: this type plays role::Collision but lacks detect(std::span<const Collider>, double, "
-                  "std::vector<ContactPoint>&), which returns a CollisionReport");
-    return is_backend;
-  } else {
-    static_assert(!is_backend,
-                  "delassus: a collision backend without a contact law does nothing; add Contact{...} to "
-                  "Constraints{...}, or take the backend out");
-    return !is_backend;
-  }
+  static_assert(is_backend || !Laws::has_contacts,
+                "delassus: this type plays role::Collision but lacks detect(std::span<const Collider>, double, "
+                "std::vector<ContactPoint>&), which returns a CollisionReport");
+  static_assert(!is_backend || Laws::has_contacts,
+                "delassus: a collision backend without a contact law does nothing; add Contact{...} to "
+                "Constraints{...}, or take the backend out");
+  return is_backend == Laws::has_contacts;
 }
 
 /// A law of the library that `compiled.hpp` has: it was checked where it was compiled.
@@ -182,10 +158,11 @@ consteval bool law_linearizes() {
 }
 
 template <class Law, class T>
-consteval bool law_fits() {
-  if constexpr (was_checked<Law, T>) return true;
-  else if constexpr (!law_is_sound<Law, WorldView<T>>()) return false;
-  else return law_linearizes<Law, T>();
+concept LawFits = was_checked<Law, T> || (law_is_sound<Law, WorldView<T>>() && law_linearizes<Law, T>());
+
+template <class T, class... Laws>
+consteval bool laws_fit(std::type_identity<Constraints<Laws...>>) {
+  return (LawFits<Laws, T> && ...);
 }
 
 template <class Compliance, class World, class Rows>
@@ -194,19 +171,15 @@ consteval bool compliance_is_sound() {
   static_assert(has_operator,
                 "delassus: this type plays role::Compliance but lacks `template <class Rows> class Operator`; see "
                 "compliance/compliance.hpp for what it must do");
-  if constexpr (has_operator) {
-    constexpr bool builds =
-        requires(typename Compliance::template Operator<Rows>& W, const World& world, Rows& rows) {
-          { W.build(world, rows) } -> std::same_as<void>;
-          { W.reset(rows) } -> std::same_as<void>;
-        };
-    static_assert(builds,
-                  "delassus: the Operator of a compliance needs void build(const World&, Rows&) and void reset(const "
-                  "Rows&); see compliance/compliance.hpp");
-    return builds;
-  } else {
-    return false;
-  }
+  constexpr bool builds =
+      requires(typename Compliance::template Operator<Rows>& W, const World& world, Rows& rows) {
+        { W.build(world, rows) } -> std::same_as<void>;
+        { W.reset(rows) } -> std::same_as<void>;
+      };
+  static_assert(builds || !has_operator,
+                "delassus: the Operator of a compliance needs void build(const World&, Rows&) and void reset(const "
+                "Rows&); see compliance/compliance.hpp");
+  return builds;
 }
 
 template <class Solver, class Laws, class Rows, class Operator>
@@ -223,23 +196,11 @@ consteval bool solver_is_sound() {
 }
 
 /// The parts that meet in the rows: only a loop with constraints has them.
-template <class Policies>
-consteval bool constraints_are_sound() {
-  using World = typename Policies::World;
-  using Laws = typename Policies::Laws;
-  using T = typename World::Scalar;
-  constexpr std::type_identity<Laws> laws;
-  if constexpr (Laws::pool_count == 0) {
-    return true;
-  } else if constexpr (!all_parts(laws, []<class L>() { return law_fits<L, T>(); })) {
-    return false;
-  } else {
-    using Rows = typename rows_of<World, Laws>::type;
-    if constexpr (compliance_is_sound<typename Policies::Compliance, World, Rows>())
-      return solver_is_sound<typename Policies::Solver, Laws, Rows, typename Policies::Compliance::template Operator<Rows>>();
-    return false;
-  }
-}
+template <class P>
+concept MeetsInRows = laws_fit<typename P::World::Scalar>(std::type_identity<typename P::Laws>{}) &&
+    compliance_is_sound<typename P::Compliance, typename P::World, typename rows_of<typename P::World, typename P::Laws>::type>() &&
+    solver_is_sound<typename P::Solver, typename P::Laws, typename rows_of<typename P::World, typename P::Laws>::type,
+                    typename P::Compliance::template Operator<typename rows_of<typename P::World, typename P::Laws>::type>>();
 
 template <class Scheme, class Loop>
 consteval bool scheme_runs() {
@@ -252,34 +213,22 @@ consteval bool scheme_runs() {
   return runs;
 }
 
-/// Every publisher is asked whether it can, and says what it lacks.
-template <class Policies, class... Args>
-consteval bool publishers_are_sound() {
-  const auto one = []<class P>(std::type_identity<P>) {
-    if constexpr (Publisher<P>) return P::template can_publish<typename problem_of<Policies>::type>();
-    else return true;
-  };
-  return (one(std::type_identity<Args>{}) && ...);
+/// A publisher is asked whether it can, and says what it lacks.
+template <class Policies, class P>
+concept CanPublish = !Publisher<P> || P::template can_publish<typename problem_of<Policies>::type>();
+
+template <class... Laws>
+consteval bool restitutions_act(std::type_identity<Constraints<Laws...>>) {
+  return (restitution_acts<Laws>() && ...);
 }
 
-template <class Policies, class... Args>
-consteval bool loop_is_sound() {
-  if constexpr (!(has_role<Args>() && ...)) return false;
-  else if constexpr (!has_one_world<Args...>()) return false;
-  else if constexpr (!one_of_each<Args...>()) return false;
-  else if constexpr (!(plays_its_role<Args>() && ...)) return false;
-  else if constexpr (!has_bodies<typename Policies::World>()) return false;
-  else if constexpr (!has_one_scalar<typename Policies::World>()) return false;
-  else if constexpr (!constraints_are_sound<Policies>()) return false;
-  else if constexpr (!whole_step_fits<Policies, Args...>()) return false;
-  else if constexpr (!visits_fit<Policies, Args...>()) return false;
-  else if constexpr (!mean_springs_fit<Policies>()) return false;
-  else if constexpr (!refinement_fits<Policies>()) return false;
-  else if constexpr (!all_parts(std::type_identity<typename Policies::Laws>{}, []<class L>() { return restitution_acts<L>(); })) return false;
-  else if constexpr (!substeps_fit<typename Policies::Scheme, typename Policies::Activity>()) return false;
-  else if constexpr (!publishers_are_sound<Policies, Args...>()) return false;
-  else return collision_fits<typename Policies::Laws, typename Policies::Collision>();
-}
+/// The first check that fails says its sentence, and the later ones are not asked.
+template <class P, class... Args>
+concept SoundLoop = (has_role<Args>() && ...) && has_one_world<Args...>() && one_of_each<Args...>() && (plays_its_role<Args>() && ...) &&
+    has_bodies<typename P::World>() && has_one_scalar<typename P::World>() && (P::Laws::pool_count == 0 || MeetsInRows<P>) &&
+    whole_step_fits<P, Args...>() && visits_fit<P, Args...>() && mean_springs_fit<P>() && refinement_fits<P>() &&
+    restitutions_act(std::type_identity<typename P::Laws>{}) && substeps_fit<typename P::Scheme, typename P::Activity>() &&
+    (CanPublish<P, Args> && ...) && collision_fits<typename P::Laws, typename P::Collision>();
 
 }  // namespace inner
 }  // namespace delassus

@@ -52,7 +52,7 @@ namespace inner {
 
 template <class... Args>
 struct loop_policies {
-  static constexpr bool are_sound = loop_is_sound<Policies<Args...>, Args...>();
+  static constexpr bool are_sound = SoundLoop<Policies<Args...>, Args...>;
   using type = std::conditional_t<are_sound, SoundPolicies<Args...>, UnsoundPolicies<Args...>>;
 };
 
