@@ -105,7 +105,7 @@ class Sleepers {
   /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
   bool wake_touched(World& world, Laws& laws, const ContactCache& book, double h) {
     double gravity = 0;
-    world.each([&](const auto& set, auto) { gravity = std::max(gravity, norm(Supports::gravity_of(set))); });
+    world.each([&](const auto& set, auto) { gravity = std::max(gravity, norm(inner::gravity_of(set))); });
     for (const ContactPoint& p : book.points) {
       const Collider &a = book.colliders[p.a], &b = book.colliders[p.b];
       const Index group = std::max(group_of(a), group_of(b));
@@ -135,7 +135,7 @@ class Sleepers {
     world.each([&](auto& set, auto s) {
       auto& quiet = quiet_[s];
       quiet.resize(set.blocks(), 0);
-      const double gravity = norm(Supports::gravity_of(set));
+      const double gravity = norm(inner::gravity_of(set));
       bool may_sleep = true;
       if constexpr (requires { set.may_sleep(); }) may_sleep = set.may_sleep();
       for (const Index b : set.active()) {

@@ -8,6 +8,7 @@
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/slice.hpp>
 
@@ -48,7 +49,7 @@ struct Continuous {
   Continuous() = default;
   explicit Continuous(Backend b) : backend(std::move(b)) {}
 
-  void check() const { inner::check_inside(backend); }
+  void check() const { inner::check_if_it_can(backend); }
 
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,

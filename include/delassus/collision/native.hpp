@@ -39,6 +39,8 @@ struct NativeDetection {
   inner::OnDemand<CollisionEngine<Kernel, Broad>> engine{};
 
   void check() const;
+  /// What outlives a step.
+  void memory(auto& archive) { engine->memory(archive); }
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
                          const Filter& filter = {});

@@ -6,6 +6,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/support.hpp>
@@ -42,7 +43,7 @@ struct Seamless {
 
   void check() const {
     inner::expect_positive("Seamless: level", level, "m");
-    inner::check_inside(backend);
+    inner::check_if_it_can(backend);
   }
 
   template <class Filter = NoFilter>

@@ -6,6 +6,7 @@
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/geometry/compound.hpp>
@@ -40,7 +41,7 @@ struct WithCompounds {
     return KeptShape{ShapeKind::compound, int(compounds_.size()) - 1, reach};
   }
 
-  void check() const { inner::check_inside(backend); }
+  void check() const { inner::check_if_it_can(backend); }
 
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,

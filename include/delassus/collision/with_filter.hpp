@@ -6,6 +6,7 @@
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/rows/anchor.hpp>
@@ -50,7 +51,7 @@ struct WithFilter {
     if (place != named_.end()) named_.erase(place);
   }
 
-  void check() const { inner::check_inside(backend); }
+  void check() const { inner::check_if_it_can(backend); }
 
   /// The loop says before each detection who is still there, and whom joints hold: each_joint(f) calls f(a,
   /// b).

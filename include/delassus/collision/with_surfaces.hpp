@@ -6,6 +6,7 @@
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/sort.hpp>
 
@@ -35,7 +36,7 @@ struct WithSurfaces {
   explicit WithSurfaces(Backend b, bool meets_itself = true)
       : backend(std::move(b)), self_contact(meets_itself) {}
 
-  void check() const { inner::check_inside(backend); }
+  void check() const { inner::check_if_it_can(backend); }
 
   /// The loop shows its world before each detection: bodies come and go, nodes have moved.
   template <class World>
@@ -93,7 +94,7 @@ struct WithSurfaces {
   }
 
   void memory(auto& archive) {
-    if constexpr (std::remove_reference_t<decltype(archive)>::reads) surfaces_.clear();
+    if (archive.reads) surfaces_.clear();
     inner::remember(backend, archive);
   }
 
@@ -219,10 +220,7 @@ struct WithSurfaces<Backend>::Pairing {
   /// Meshes are kept by some layer of the backend.
   template <class Layer, class F>
   static void with_surface(const Layer& layer, const Shape& shape, const F& f) {
-    if constexpr (requires { layer.with_surface(shape, f); })
-      layer.with_surface(shape, f);
-    else if constexpr (requires { layer.backend; })
-      with_surface(layer.backend, shape, f);
+    inner::ask_layer(layer, [&](const auto& own) -> decltype(own.with_surface(shape, f)) { own.with_surface(shape, f); });
   }
 
   /// Turns features of surface i with surface j, or with the collider at `other` where j < 0, into contacts.

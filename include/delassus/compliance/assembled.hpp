@@ -105,7 +105,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   void show(const Rows& rows, RowView<T>& view, SetBlocksView<T>*, BlockRowsView<T>* out) const {
     view.diagonal = own_.matrix.diagonal(p).data();
     const T* impulses[pools];
-    for_each_index<pools>([&](auto b) __attribute__((always_inline)) { impulses[b] = inner::numbers_of(rows.template pool<b>().lambda); });
+    for_each_index<pools>([&](auto b) __attribute__((always_inline)) { impulses[b] = rows.template pool<b>().lambda.numbers.data(); });
     constexpr int heights[] = {R...};
     const auto add = [&](int b) {
       const auto& W = own_.matrix.blocks(p, b);
@@ -166,7 +166,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     for (int k = 0; k < R_of<p>; ++k) r[k] = double(d[k]);
     for_each_index<pools>([&](auto b) {
       const auto& W = own_.matrix.blocks(p, b);
-      const T* x = inner::numbers_of(rows.template pool<b>().lambda);
+      const T* x = rows.template pool<b>().lambda.numbers.data();
       if (R_of<p> == R_of<b>) inner::add_row<R_of<p>>(r, W.start[i], W.start[i + 1], W.numbers.data(), W.column.data(), x);
       else inner::add_wide_row<R_of<p>>(r, W.start[i], W.start[i + 1], W.numbers.data(), W.column.data(), x, R_of<b>);
     });

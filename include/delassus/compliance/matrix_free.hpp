@@ -53,9 +53,9 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   template <int p>
   void show(const Rows&, RowView<T>& view, SetBlocksView<T>* sets, BlockRowsView<T>*) {
     view.form = FormOfW::bodies;
-    view.diagonal = inner::numbers_of(std::get<p>(diagonal_));
-    view.on_diagonal = inner::numbers_of(std::get<p>(compliance_));
-    std::apply([&](auto&... y) { ((sets++->y = inner::numbers_of(y)), ...); }, y_);
+    view.diagonal = std::get<p>(diagonal_).numbers.data();
+    view.on_diagonal = std::get<p>(compliance_).numbers.data();
+    std::apply([&](auto&... y) { ((sets++->y = y.numbers.data()), ...); }, y_);
   }
 
   template <int p>
@@ -110,9 +110,9 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     }
   }
 
-  std::tuple<Array<Vec<w, Sum>>...> y_;  ///< in double: it takes thousands of small changes
-  std::tuple<Array<Mat<R, R, T>>...> diagonal_;
-  std::tuple<Array<Vec<R, T>>...> compliance_;
+  std::tuple<BlockArray<Vec<w, Sum>>...> y_;  ///< in double: it takes thousands of small changes
+  std::tuple<BlockArray<Mat<R, R, T>>...> diagonal_;
+  std::tuple<BlockArray<Vec<R, T>>...> compliance_;
 };
 
 }  // namespace delassus

@@ -82,7 +82,7 @@ class BasicConvexHull {
   void memory(auto& archive) {
     archive(vertices_, normals_, face_start_, face_loop_, around_start_, around_, volume_, inner_radius_, outer_radius_, centroid_,
             second_moment_, fingerprint_);
-    if constexpr (std::remove_reference_t<decltype(archive)>::reads) put_in_blocks();
+    if (archive.reads) put_in_blocks();
   }
 
  private:

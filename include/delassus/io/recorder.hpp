@@ -17,6 +17,20 @@
 #include <vector>
 
 namespace delassus {
+namespace inner {
+
+/// What a step was asked for: by its scheme, else by the solver if there is one to ask; 0 if nobody.
+template <class Loop>
+double tolerance_of(const Loop& loop) {
+  if constexpr (requires { loop.template policy<role::Scheme>().tolerance; })
+    return loop.template policy<role::Scheme>().tolerance;
+  else if constexpr (requires { loop.island_reports(), loop.template policy<role::Solver>().tolerance; })
+    return loop.template policy<role::Solver>().tolerance;
+  else
+    return 0;
+}
+
+}  // namespace inner
 
 /// Bodies as they are when the first step ends; frames at most `frames_per_second`; a sample of every series
 /// a step. A Stopwatch listed before it gives the stage times. A joint is drawn from the centre of one body
@@ -44,12 +58,7 @@ class Recorder {
 
  private:
   void begin(const auto& loop) {
-    if constexpr (requires { loop.template policy<role::Scheme>().tolerance; }) {
-      recording_.steps.tolerance = loop.template policy<role::Scheme>().tolerance;
-    } else if constexpr (requires { loop.island_reports(); }) {  // else there is no solver to ask
-      if constexpr (requires { loop.template policy<role::Solver>().tolerance; })
-        recording_.steps.tolerance = loop.template policy<role::Solver>().tolerance;
-    }
+    recording_.steps.tolerance = inner::tolerance_of(loop);
     loop.world().each([&](const auto& set, auto s) {
       for (const Index b : alive(set)) {
         if (set.has_collider(b))
@@ -57,8 +66,7 @@ class Recorder {
         else
           recording_.bodies.push_back(recorded_particle(has_mesh<decltype(set)> ? 1e-3 : 0.03));
       }
-      if constexpr (has_mesh<decltype(set)>)
-        set.each_mesh([&](Index, auto, const auto& body) { find_edges(Index(s), body); });
+      each_mesh(set, [&](Index, auto, const auto& body) { find_edges(Index(s), body); });
     });
   }
 
@@ -66,6 +74,10 @@ class Recorder {
   static constexpr bool has_mesh = requires(const std::remove_cvref_t<Set>& set) {
     set.each_mesh([](Index, auto, const auto&) {});
   };
+
+  static void each_mesh(const auto& set, const auto& f) {
+    if constexpr (has_mesh<decltype(set)>) set.each_mesh(f);
+  }
 
   /// The edges of a body's surface, each once, by blocks of its set.
   void find_edges(Index set, const auto& body) {
@@ -104,9 +116,8 @@ class Recorder {
       }
     loop.each_joint([&](const Anchor& a, const Anchor& b) { add_joint(frame, loop.world(), a, b); });
     loop.world().each([&](const auto& set, auto s) {
-      if constexpr (has_mesh<decltype(set)>)
-        for (const auto& [of, a, b] : edges_)
-          if (of == Index(s)) frame.lines.push_back({set.pose(a).position, set.pose(b).position});
+      for (const auto& [of, a, b] : edges_)
+        if (of == Index(s)) frame.lines.push_back({set.pose(a).position, set.pose(b).position});
     });
     recording_.frames.push_back(std::move(frame));
   }

@@ -1,6 +1,7 @@
 /// What the parts of a loop keep between the stages of a step, and from step to step.
 #pragma once
 
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/pack.hpp>
 #include <delassus/core/roles.hpp>
 
@@ -50,7 +51,7 @@ class States {
   void memory(auto& archive) {
     const auto one = [&]<class Part>(std::type_identity<Part>) {
       if constexpr (HasState<Part, P> && Plays<Part, role::Activity> == of_activity)
-        if constexpr (requires { of<Part>().memory(archive); }) of<Part>().memory(archive);
+        memory_if_any(of<Part>(), archive);
     };
     (one(std::type_identity<F>{}), ...);
   }

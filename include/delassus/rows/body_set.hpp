@@ -70,5 +70,12 @@ V mean(const V& before, const V& after, typename V::Scalar old_share) {
   return old_share == T(0) ? after : V(old_share * before + (T(1) - old_share) * after);
 }
 
+/// m/s²; zero of a set without.
+template <class Set>
+Vec3 gravity_of(const Set& set) {
+  if constexpr (requires { set.gravity; }) return set.gravity;
+  else return zero<Vec3>();
+}
+
 }  // namespace inner
 }  // namespace delassus

@@ -123,11 +123,8 @@ struct SetFunctions {
 
   /// Those of the functions that a set has.
   static constexpr SetTable<T> make_table() {
-    SetTable<T> out{owns, is_current, point, nullptr, nullptr, add_blocks, along, along_three, along_axes, nullptr};
-    if constexpr (has_frame) out.frame = frame;
-    if constexpr (has_axes) out.axes = axes;
-    if constexpr (turns) out.about = about;
-    return out;
+    return {owns,       is_current, point,       has_frame ? frame : nullptr, has_axes ? axes : nullptr,
+            add_blocks, along,      along_three, along_axes,                  turns ? about : nullptr};
   }
   static const SetTable<T> table;
 };

@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/solve_options.hpp>
@@ -36,7 +37,7 @@ struct NormSpace {
   Array<T> solved, target;
   NormSearch search;
   void reset(Index rows) {
-    if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
+    reset_if_it_can(solver, rows);
     for (auto* impulses : {&solved, &target}) impulses->reserve(std::size_t(rows));
     search.reserve(std::size_t(rows));
   }

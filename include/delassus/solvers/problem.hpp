@@ -1,6 +1,7 @@
 /// The constraint problem of a step as a thing of its own.
 #pragma once
 
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/solvers/law_set.hpp>
@@ -35,7 +36,7 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver,
                   SolverWorkspace<Problem<Laws, Rows, Operator>, Solver>& workspace) {
   auto& book = workspace.book;
   book.attach(problem.laws);
-  if constexpr (requires { workspace.solver.reset(Index()); }) workspace.solver.reset(problem.rows.row_count());
+  inner::reset_if_it_can(workspace.solver, problem.rows.row_count());
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
   NoObserver nobody;

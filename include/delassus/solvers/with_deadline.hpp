@@ -5,6 +5,7 @@
 #include <delassus/core/clock.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/rows/impulses.hpp>
@@ -28,7 +29,7 @@ struct TimedSpace {
   double until = std::numeric_limits<double>::quiet_NaN();  ///< NaN before the first island
 
   void reset(Index rows) {
-    if constexpr (requires { solver.reset(rows); }) solver.reset(rows);
+    reset_if_it_can(solver, rows);
     best.reserve(std::size_t(rows));
     const auto islands = std::size_t(rows);  // at most
     if (attempts.capacity() < islands) attempts.reserve(2 * islands);

@@ -20,6 +20,12 @@ double lower_bias(const S& stabilisation, double phi, double h) {
 
 namespace inner {
 
+/// 1/kg on the rows of rigid joints; zero of a stabilisation without.
+double joint_compliance_of(const auto& stabilisation, double h) {
+  if constexpr (requires { stabilisation.joint_compliance(h); }) return stabilisation.joint_compliance(h);
+  else return 0;
+}
+
 /// What turns the direction of u⁺ into that of its mean with u, the slip at the start: (1−θ) of u across `free`, the
 /// slip without friction. It is of order h, as the turn of the slip is. Slips that may end within the step keep the
 /// direction of u⁺, which alone can be held at rest.
@@ -68,7 +74,7 @@ template <class T, class S>
     } else if (kind == RowKind::equality) {
       (*pool.bias)[row] = T(stabilisation.equality(phi, theta * h));
       u[k] += before * start[k];
-      if constexpr (requires { stabilisation.joint_compliance(h); }) (*pool.compliance)[row] = T(stabilisation.joint_compliance(h));
+      (*pool.compliance)[row] = T(joint_compliance_of(stabilisation, h));
     } else {
       const double sign = kind == RowKind::lower ? 1 : -1;
       (*pool.bias)[row] = T(sign * lower_bias(stabilisation, sign * phi, h));

@@ -149,12 +149,17 @@ struct LawRows {
   }
 
   static constexpr LawSteps<T> make_table() {
-    LawSteps<T> out{kinds.data(), inner::has_slip(kinds), inner::has_mean_springs<Law>, nullptr, nullptr, linearize, nullptr, nullptr, warm_start, keep_impulses, forget};
-    if constexpr (!ContactLaw<Law>) out.drop_stale = drop_stale;
-    if constexpr (refines<Law>(refine::follow)) out.follow = follow;
-    if constexpr (refines<Law>(refine::speed)) out.speed = speed;
-    if constexpr (refines<Law>(refine::restitution)) out.restitution = restitution;
-    return out;
+    return {kinds.data(),
+            inner::has_slip(kinds),
+            inner::has_mean_springs<Law>,
+            ContactLaw<Law> ? nullptr : drop_stale,
+            refines<Law>(refine::follow) ? follow : nullptr,
+            linearize,
+            refines<Law>(refine::speed) ? speed : nullptr,
+            refines<Law>(refine::restitution) ? restitution : nullptr,
+            warm_start,
+            keep_impulses,
+            forget};
   }
   static const LawSteps<T> table;
 };

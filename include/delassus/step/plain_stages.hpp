@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/correct.hpp>
@@ -104,7 +105,7 @@ struct PlainStages : StagesWithoutConstraints {
   static void solve_islands(auto& step, auto& observer) {
     using Stages = typename std::remove_reference_t<decltype(step)>::Stages;
     step.W.reset(step.rows);
-    if constexpr (requires { step.solver_workspace.reset(Index()); }) step.solver_workspace.reset(step.rows.row_count());
+    inner::reset_if_it_can(step.solver_workspace, step.rows.row_count());
     step.reports.resize(step.islands.count());
     for (Index k = 0; k < step.islands.count(); ++k) {
       observer.begin_island(k);

@@ -6,6 +6,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/alive.hpp>
+#include <delassus/rows/body_set.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/stage.hpp>
@@ -98,7 +99,7 @@ class Audit {
   static double speed_of(const auto& loop) {
     double speed = 0, fall = 0;
     loop.world().each([&](const auto& set, auto) {
-      if constexpr (requires { set.gravity; }) fall = std::max(fall, loop.step_size() * set.gravity.norm());
+      fall = std::max(fall, loop.step_size() * norm(inner::gravity_of(set)));
       for (const Index b : alive(set))
         speed = std::max(speed, double(set.velocity()[b].template head<3>().norm()));
     });
@@ -134,11 +135,12 @@ class Audit {
         constexpr int along = ContactLaw<Law> ? std::min(R, 3) : R;
         double w = 0;
         for (int k = 0; k < along; ++k) w += double(own(k, k)) / along;
-        if constexpr (ContactLaw<Law> && R > 3) see_rolling(use, own, rows.lambda[i], w, threshold);
-        if constexpr (ContactLaw<Law>)
-          see_contact(use, loop, pool, rows, i, w, threshold);
-        else
+        if constexpr (!ContactLaw<Law>) {
           see_joint(use, pool, rows.lambda[i].template cast<double>().norm(), i, w, threshold);
+        } else {
+          if (R > 3) see_rolling(use, own, rows.lambda[i], w, threshold);
+          see_contact(use, loop, pool, rows, i, w, threshold);
+        }
         if constexpr (ContactLaw<Law> && R >= 3) {
           if (i > 0 && pool.item(i).record->pair == pool.item(i - 1).record->pair)
             continue;  // contacts are sorted by pair

@@ -13,23 +13,22 @@
 #include <cstddef>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 namespace delassus {
 
 namespace inner {
 
+/// The short name of a type that has one.
 template <class P>
 std::string policy_name() {
-  if constexpr (std::is_same_v<P, AcceleratedGaussSeidel>)
-    return "AcceleratedGaussSeidel";
-  else if constexpr (std::is_same_v<P, GaussSeidel>)
-    return "GaussSeidel";
-  else if constexpr (std::is_same_v<P, AssembledCompliance>)
-    return "AssembledCompliance";
-  else if constexpr (std::is_same_v<P, UncoupledCompliance>)
-    return "UncoupledCompliance";
-  else
-    return type_text<P>();
+  const std::string text = type_text<P>();
+  for (const auto& [full, name] : {std::pair{type_text<AcceleratedGaussSeidel>(), "AcceleratedGaussSeidel"},
+                                   std::pair{type_text<AcceleratedSweeps>(), "AcceleratedSweeps"},
+                                   std::pair{type_text<AssembledCompliance>(), "AssembledCompliance"},
+                                   std::pair{type_text<UncoupledCompliance>(), "UncoupledCompliance"}})
+    if (text == full) return name;
+  return text;
 }
 
 /// A step as C++ writes it best: 0.005, but 1. / 30.
@@ -39,21 +38,30 @@ inline std::string step_text(double h) {
   return text.size() > 8 && rate > 1 && 1 / rate == h ? "1. / " + number_text(rate, 12) : text;
 }
 
-/// ".name = value" for a number that differs from its default.
-template <class T>
-void append_member(std::string& out, const char* name, const T& value, const T& usual) {
-  if (value == usual) return;
-  if (out.back() != '{') out += ", ";
-  out += std::string(".") + name + " = ";
-  if constexpr (std::is_same_v<T, Criterion>)
-    out += value == Criterion::residual ? "Criterion::residual" : value == Criterion::siconos_error ? "Criterion::siconos_error" : "Criterion::last_change";
-  else if constexpr (std::is_same_v<T, bool>)
-    out += value ? "true" : "false";
-  else if constexpr (std::is_integral_v<T>)
-    out += std::to_string(value);
-  else
-    out += number_text(double(value), 17);
+inline std::string member_text(bool value) { return value ? "true" : "false"; }
+std::string member_text(std::integral auto value) { return std::to_string(value); }
+std::string member_text(std::floating_point auto value) { return number_text(double(value), 17); }
+inline std::string member_text(Criterion value) {
+  const char* const names[] = {"residual", "siconos_error", "last_change"};
+  return std::string("Criterion::") + names[int(value)];
 }
+
+/// ".name = value" for a number that differs from its default; nothing for what is no number, or is not there.
+struct MemberList {
+  std::string text;
+
+  template <class P, class Member>
+    requires requires(Member member, const P& policy) { member_text(member(policy)); }
+  void append(const char* name, const P& policy, const P& usual, Member member) {
+    if (member(policy) == member(usual)) return;
+    if (text.back() != '{') text += ", ";
+    text += std::string(".") + name + " = " + member_text(member(policy));
+  }
+  void append(const char*, const auto&, const auto&, auto) {}
+};
+
+template <class P>
+concept SaysItsCode = requires(const P& policy) { { policy.code() } -> std::convertible_to<std::string>; };
 
 }  // namespace inner
 
@@ -61,37 +69,35 @@ void append_member(std::string& out, const char* name, const T& value, const T& 
 /// the order in which the library declares them. A policy with other numbers says `std::string code() const`
 /// itself.
 template <class P>
+  requires(!inner::SaysItsCode<P> && !std::is_default_constructible_v<P>)
+std::string code_of(const P&) {
+  return inner::policy_name<P>() + "{}";
+}
+template <inner::SaysItsCode P>
 std::string code_of(const P& policy) {
-  if constexpr (requires {
-                  { policy.code() } -> std::convertible_to<std::string>;
-                }) {
-    return policy.code();
-  } else {
-    std::string out = inner::policy_name<P>() + "{";
-    if constexpr (std::is_default_constructible_v<P>) {
-      const P usual{};
-      const auto append = [&](const char* name, const auto& member) {
-        if constexpr (requires { requires std::is_arithmetic_v<std::remove_cvref_t<decltype(member(usual))>> || std::is_same_v<std::remove_cvref_t<decltype(member(usual))>, Criterion>; })
-          inner::append_member(out, name, member(policy), member(usual));
-      };
-      append("tolerance", [](const auto& p) -> decltype((p.tolerance)) { return p.tolerance; });
-      append("max_iterations", [](const auto& p) -> decltype((p.max_iterations)) { return p.max_iterations; });
-      append("min_iterations", [](const auto& p) -> decltype((p.min_iterations)) { return p.min_iterations; });
-      append("relaxation", [](const auto& p) -> decltype((p.relaxation)) { return p.relaxation; });
-      append("scale_tolerance", [](const auto& p) -> decltype((p.scale_tolerance)) { return p.scale_tolerance; });
-      append("all_verified", [](const auto& p) -> decltype((p.all_verified)) { return p.all_verified; });
-      append("criterion", [](const auto& p) -> decltype((p.criterion)) { return p.criterion; });
-      append("frequency", [](const auto& p) -> decltype((p.frequency)) { return p.frequency; });
-      append("damping_ratio", [](const auto& p) -> decltype((p.damping_ratio)) { return p.damping_ratio; });
-      append("rate", [](const auto& p) -> decltype((p.rate)) { return p.rate; });
-      append("max_speed", [](const auto& p) -> decltype((p.max_speed)) { return p.max_speed; });
-      append("max_joint_speed", [](const auto& p) -> decltype((p.max_joint_speed)) { return p.max_joint_speed; });
-      append("joint_rate", [](const auto& p) -> decltype((p.joint_rate)) { return p.joint_rate; });
-      append("rayleigh_mass", [](const auto& p) -> decltype((p.rayleigh_mass)) { return p.rayleigh_mass; });
-      append("rayleigh_stiffness", [](const auto& p) -> decltype((p.rayleigh_stiffness)) { return p.rayleigh_stiffness; });
-    }
-    return out + "}";
-  }
+  return policy.code();
+}
+template <class P>
+  requires(!inner::SaysItsCode<P> && std::is_default_constructible_v<P>)
+std::string code_of(const P& policy) {
+  inner::MemberList list{inner::policy_name<P>() + "{"};
+  const P usual{};
+  list.append("tolerance", policy, usual, [](const auto& p) -> decltype((p.tolerance)) { return p.tolerance; });
+  list.append("max_iterations", policy, usual, [](const auto& p) -> decltype((p.max_iterations)) { return p.max_iterations; });
+  list.append("min_iterations", policy, usual, [](const auto& p) -> decltype((p.min_iterations)) { return p.min_iterations; });
+  list.append("relaxation", policy, usual, [](const auto& p) -> decltype((p.relaxation)) { return p.relaxation; });
+  list.append("scale_tolerance", policy, usual, [](const auto& p) -> decltype((p.scale_tolerance)) { return p.scale_tolerance; });
+  list.append("all_verified", policy, usual, [](const auto& p) -> decltype((p.all_verified)) { return p.all_verified; });
+  list.append("criterion", policy, usual, [](const auto& p) -> decltype((p.criterion)) { return p.criterion; });
+  list.append("frequency", policy, usual, [](const auto& p) -> decltype((p.frequency)) { return p.frequency; });
+  list.append("damping_ratio", policy, usual, [](const auto& p) -> decltype((p.damping_ratio)) { return p.damping_ratio; });
+  list.append("rate", policy, usual, [](const auto& p) -> decltype((p.rate)) { return p.rate; });
+  list.append("max_speed", policy, usual, [](const auto& p) -> decltype((p.max_speed)) { return p.max_speed; });
+  list.append("max_joint_speed", policy, usual, [](const auto& p) -> decltype((p.max_joint_speed)) { return p.max_joint_speed; });
+  list.append("joint_rate", policy, usual, [](const auto& p) -> decltype((p.joint_rate)) { return p.joint_rate; });
+  list.append("rayleigh_mass", policy, usual, [](const auto& p) -> decltype((p.rayleigh_mass)) { return p.rayleigh_mass; });
+  list.append("rayleigh_stiffness", policy, usual, [](const auto& p) -> decltype((p.rayleigh_stiffness)) { return p.rayleigh_stiffness; });
+  return list.text + "}";
 }
 
 }  // namespace delassus

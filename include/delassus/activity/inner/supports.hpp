@@ -3,6 +3,7 @@
 
 #include <delassus/activity/inner/dormant.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/rows/body_set.hpp>
 
 #include <array>
 #include <cstdint>
@@ -44,14 +45,6 @@ class Supports {
       gravity_[s] = now;
     });
   }
-  template <class Set>
-  static Vec3 gravity_of(const Set& set) {
-    if constexpr (requires { set.gravity; })
-      return set.gravity;
-    else
-      return zero<Vec3>();
-  }
-
   void memory(auto& archive) { archive(gravity_, supports_); }
 
  private:

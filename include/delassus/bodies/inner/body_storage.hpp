@@ -93,7 +93,7 @@ class BodyStorage {
   /// What outlives a step; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
     archive(gravity, slots_, v_, load_, v_free, v_next, material_, group_, collides_with_);
-    if constexpr (std::remove_reference_t<decltype(archive)>::reads)
+    if (archive.reads)
       for (const Index material : material_) note_material(material);
   }
 

@@ -15,46 +15,32 @@ template <class Backend, unsigned own>
 concept Detects = CollisionBackend<Backend> && Fills<Backend, role::Collision, own> &&
     layers_of<Backend> < (own < layer::compounds ? layer::compounds : own);
 
-template <class Backend>
-void check_inside(const Backend& backend) {
-  if constexpr (requires { backend.check(); }) backend.check();
+/// f(layer) of the outermost layer that can take it, or of the backend within; nothing where none can.
+template <class Backend, class F>
+void ask_layer(Backend& backend, const F& f) {
+  if constexpr (requires { f(backend); }) f(backend);
+  else if constexpr (requires { backend.backend; }) ask_layer(backend.backend, f);
 }
 
-/// What the backend keeps from step to step, by itself, in its engine or in what it goes around.
-template <class Backend>
-void remember(Backend& backend, auto& archive) {
-  if constexpr (requires { backend.memory(archive); })
-    backend.memory(archive);
-  else if constexpr (requires { backend.engine->memory(archive); })
-    backend.engine->memory(archive);
-  else if constexpr (requires { backend.backend; })
-    remember(backend.backend, archive);
+/// What the backend keeps from step to step.
+void remember(auto& backend, auto& archive) {
+  ask_layer(backend, [&](auto& layer) -> decltype(layer.memory(archive)) { return layer.memory(archive); });
 }
 
 /// Those of the innermost backend.
 template <class Backend>
 CollisionSettings settings_of(const Backend& backend) {
-  if constexpr (requires { backend.backend; })
-    return settings_of(backend.backend);
-  else
-    return {backend.margin, backend.contact_distance, backend.max_points};
+  if constexpr (requires { backend.backend; }) return settings_of(backend.backend);
+  else return {backend.margin, backend.contact_distance, backend.max_points};
 }
 
 /// Shows the world to the layer of the backend that asks for it, before it detects.
-template <class Backend, class World>
-void show_world(Backend& backend, const World& world) {
-  if constexpr (requires { backend.see(world); })
-    backend.see(world);
-  else if constexpr (requires { backend.backend; })
-    show_world(backend.backend, world);
+void show_world(auto& backend, const auto& world) {
+  ask_layer(backend, [&](auto& layer) -> decltype(layer.see(world)) { return layer.see(world); });
 }
 /// Lets that layer say where the ends of its contacts are, when these are not at the bodies' own anchors.
-template <class Backend, class Results>
-void place_ends(const Backend& backend, Results& results) {
-  if constexpr (requires { backend.place_ends(results); })
-    backend.place_ends(results);
-  else if constexpr (requires { backend.backend; })
-    place_ends(backend.backend, results);
+void place_ends(const auto& backend, auto& results) {
+  ask_layer(backend, [&](auto& layer) -> decltype(layer.place_ends(results)) { return layer.place_ends(results); });
 }
 
 /// The order in which every backend answers: by pair, then by feature.

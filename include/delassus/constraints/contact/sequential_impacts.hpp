@@ -6,6 +6,7 @@
 #include <delassus/constraints/newton_impact.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
+#include <delassus/rows/body_set.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/rate.hpp>
 
@@ -97,7 +98,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
   double fastest = 0;  // what closes below its rounding does not: a stack at rest has no impacts
   world.each([&](auto& set, auto) {
     set.factor({.mass = 1});
-    if constexpr (requires { set.gravity; }) fastest = std::max(fastest, h * set.gravity.norm());
+    fastest = std::max(fastest, h * norm(inner::gravity_of(set)));
     for (const Index b : set.active())
       fastest = std::max(fastest, double(linear_part(set.velocity()[b]).norm()));
   });

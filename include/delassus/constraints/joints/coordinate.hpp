@@ -58,7 +58,7 @@ namespace inner {
 /// half a turn a step.
 template <class Coordinate>
 double unwound(double value, double last) {
-  if constexpr (Coordinate::winds) {
+  if (Coordinate::winds) {
     constexpr double turn = 2 * std::numbers::pi;
     return value + turn * std::round((last - value) / turn);
   }

@@ -144,7 +144,7 @@ class ElasticBody {
   void memory(auto& archive) {
     archive(mesh_.points, mesh_.cells(), material_, blocks_);
     if constexpr (requires { mesh_.thickness; }) archive(mesh_.thickness);
-    if constexpr (std::remove_reference_t<decltype(archive)>::reads) prepare();
+    if (archive.reads) prepare();
   }
 
  private:

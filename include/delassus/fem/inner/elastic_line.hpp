@@ -119,7 +119,7 @@ class ElasticLine {
 
   void memory(auto& archive) {
     archive(beams_, blocks_);
-    if constexpr (std::remove_reference_t<decltype(archive)>::reads) prepare();
+    if (archive.reads) prepare();
   }
 
  private:

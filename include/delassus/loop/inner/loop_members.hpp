@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/core/type_text.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
@@ -18,12 +19,12 @@ void AnimationLoop<Args...>::memory(auto& archive) {
   this->states.template memory<false>(archive);
   each_kept_pool(laws(), [&](auto, auto& pool) {
     archive(pool);
-    if constexpr (std::remove_reference_t<decltype(archive)>::reads) inner::adopt(world(), pool);
+    if (archive.reads) inner::adopt(world(), pool);
   });
   if constexpr (has_constraints) {
     archive(this->contact_cache, this->material_pairs);
     this->states.template memory<true>(archive);  // it names constraints
-    if constexpr (requires { this->solver_workspace.memory(archive); }) this->solver_workspace.memory(archive);
+    inner::memory_if_any(this->solver_workspace, archive);
     if constexpr (Laws::has_contacts) inner::remember(Data::collision(), archive);
     forget_rows();
   }
@@ -31,11 +32,8 @@ void AnimationLoop<Args...>::memory(auto& archive) {
 
 template <class... Args>
 void AnimationLoop<Args...>::check_policies() const {
-  const auto check = [](const auto& part) __attribute__((always_inline)) {
-    if constexpr (requires { part.check(); }) part.check();
-  };
-  this->policies.each_with_defaults(check);
-  each_pool(laws(), [&](auto, const auto& pool) { check(pool.law); });
+  this->policies.each_with_defaults([](const auto& part) __attribute__((always_inline)) { inner::check_if_it_can(part); });
+  each_pool(laws(), [&](auto, const auto& pool) { inner::check_if_it_can(pool.law); });
 }
 
 template <class... Args>

@@ -20,6 +20,14 @@ void with_set(const World& world, const Anchor& end, F&& f) {
   }
 }
 
+/// f(s) for an end on a body that may move.
+template <class World, class F>
+void with_set_of_body(const World& world, const Anchor& end, F&& f) {
+  with_set(world, end, [&]<int s>(std::integral_constant<int, s> set) {
+    if constexpr (s >= 0) f(set);
+  });
+}
+
 /// H of one end, row by row; the last three columns of a block that does not turn are zero.
 template <int R>
 using RowsOfEnd = std::array<Vec<6>, std::size_t(R)>;
@@ -65,11 +73,9 @@ class ItemEnd {
  private:
   template <class F>
   void add(int k, const F& row) {
-    with_set(world_, anchor_, [&](auto s) {
-      if constexpr (s >= 0) {
-        const auto& set = world_.template set<s>();
-        rows_[std::size_t(k)].template head<std::remove_cvref_t<decltype(set)>::width>() += row(set).template cast<double>();
-      }
+    with_set_of_body(world_, anchor_, [&](auto s) {
+      const auto& set = world_.template set<s>();
+      rows_[std::size_t(k)].template head<std::remove_cvref_t<decltype(set)>::width>() += row(set).template cast<double>();
     });
   }
 

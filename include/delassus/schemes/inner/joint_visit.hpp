@@ -75,9 +75,7 @@ class JointVisit {
   void each_moving(const World& world, F&& f) const {
     for (const End* end : {&a_, &b_})
       if (end->next != nullptr)
-        with_set(world, *end->anchor, [&](auto s) {
-          if constexpr (s >= 0) f(s, end->anchor->block);
-        });
+        with_set_of_body(world, *end->anchor, [&](auto s) { f(s, end->anchor->block); });
   }
 
  private:
@@ -91,27 +89,25 @@ class JointVisit {
   };
 
   void answer(World& world, const Anchor& anchor, const RowsOfEnd<R>& H, End& end) {
-    with_set(world, anchor, [&](auto s) {
-      if constexpr (s >= 0) {
-        auto& set = world.template set<s>();
-        using Set = std::remove_cvref_t<decltype(set)>;
-        const Index block = anchor.block;
-        end.anchor = &anchor;
-        end.H = H;
-        end.width = Set::width;
-        end.any = set.v_next[block].data();
-        end.free = set.v_free[block].data();
-        if (!set.moves(block)) return;
-        end.next = set.v_next[block].data();
-        for (int k = 0; k < R; ++k) {
-          auto& G = end.G[std::size_t(k)];
-          set_zero(G);
-          G.template head<3>() = double(set.inverse_mass(block)) * H[std::size_t(k)].template head<3>();
-          if constexpr (Set::width == 6)
-            G.template tail<3>() = set.inverse_inertia(block).template cast<double>() * H[std::size_t(k)].template tail<3>();
-          for (int l = 0; l <= k; ++l) W_(k, l) += dot(H[std::size_t(l)], G);
-          for (int l = 0; l < k; ++l) W_(l, k) = W_(k, l);
-        }
+    with_set_of_body(world, anchor, [&](auto s) {
+      auto& set = world.template set<s>();
+      using Set = std::remove_cvref_t<decltype(set)>;
+      const Index block = anchor.block;
+      end.anchor = &anchor;
+      end.H = H;
+      end.width = Set::width;
+      end.any = set.v_next[block].data();
+      end.free = set.v_free[block].data();
+      if (!set.moves(block)) return;
+      end.next = set.v_next[block].data();
+      for (int k = 0; k < R; ++k) {
+        auto& G = end.G[std::size_t(k)];
+        set_zero(G);
+        G.template head<3>() = double(set.inverse_mass(block)) * H[std::size_t(k)].template head<3>();
+        if constexpr (Set::width == 6)
+          G.template tail<3>() = set.inverse_inertia(block).template cast<double>() * H[std::size_t(k)].template tail<3>();
+        for (int l = 0; l <= k; ++l) W_(k, l) += dot(H[std::size_t(l)], G);
+        for (int l = 0; l < k; ++l) W_(l, k) = W_(k, l);
       }
     });
   }
@@ -123,7 +119,7 @@ class JointVisit {
       yield_[k] = row.compliance;
       bias_[k] = row.bias;
     } else {
-      if constexpr (requires { stabilisation.joint_compliance(h); }) yield_[k] = stabilisation.joint_compliance(h);
+      yield_[k] = inner::joint_compliance_of(stabilisation, h);
       bias_[k] = stabilisation.equality(H.phi[k], h);
       violation = std::max(violation, std::abs(H.phi[k]));
     }

@@ -40,8 +40,7 @@ class PointVisit {
     for (double& w : w_) w = 0;
     answer<sa>(a_, point);
     answer<sb>(b_, point);
-    if constexpr (requires { stabilisation.joint_compliance(h); })
-      if (answers()) yield_ = stabilisation.joint_compliance(h);
+    if (answers()) yield_ = inner::joint_compliance_of(stabilisation, h);
     bias_ = {stabilisation.equality(gap[0], h), stabilisation.equality(gap[1], h), stabilisation.equality(gap[2], h)};
     violation = std::max({std::abs(gap[0]), std::abs(gap[1]), std::abs(gap[2])});
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/core/if_it_has.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -42,14 +43,10 @@ class StepBySets {
     return report;
   }
   void memory(auto& archive) {
-    std::apply([&](auto&... one) { (keep(one, archive), ...); }, sets_);
+    std::apply([&](auto&... one) { (inner::memory_if_any(one, archive), ...); }, sets_);
   }
 
  private:
-  static void keep(auto& one, auto& archive) {
-    if constexpr (requires { one.memory(archive); }) one.memory(archive);
-  }
-
   typename World::template PerSet<One> sets_;
 };
 

@@ -1,0 +1,20 @@
+/// Functions that a part may have: called where it has them.
+#pragma once
+
+#include <delassus/core/index.hpp>
+
+namespace delassus::inner {
+
+void check_if_it_can(const auto& part) {
+  if constexpr (requires { part.check(); }) part.check();
+}
+/// What outlives a step.
+void memory_if_any(auto& part, auto& archive) {
+  if constexpr (requires { part.memory(archive); }) part.memory(archive);
+}
+/// Room for so many rows.
+void reset_if_it_can(auto& workspace, Index rows) {
+  if constexpr (requires { workspace.reset(rows); }) workspace.reset(rows);
+}
+
+}  // namespace delassus::inner
