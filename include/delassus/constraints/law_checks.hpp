@@ -4,8 +4,11 @@
 #include <delassus/constraints/contact/wrapped_law.hpp>
 #include <delassus/constraints/inner/refinement_checks.hpp>
 #include <delassus/constraints/law.hpp>
+#include <delassus/rows/row_kind.hpp>
 
+#include <array>
 #include <concepts>
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -85,6 +88,18 @@ consteval bool law_answers() {
          refine_inside<L, Given, Memory, World>();
 }
 
+/// As many rows as solvers have room for, and a kind for each.
+template <class L>
+consteval bool law_has_rows() {
+  constexpr bool has_rows = L::rows >= 1 && L::rows <= most_rows;
+  static_assert(has_rows, "delassus: a constraint law has from 1 to 32 rows an item; change `rows`, or make two laws of it");
+  constexpr bool has_kinds = !has_rows || !requires { L::kinds; } ||
+                             requires { requires std::same_as<const std::array<RowKind, std::size_t(L::rows)>, decltype(L::kinds)>; };
+  static_assert(has_kinds, "delassus: the `kinds` of a constraint law are one for each of its rows; write `static constexpr "
+                           "std::array<RowKind, rows> kinds{...};`");
+  return has_rows && has_kinds;
+}
+
 /// One sentence for the first thing a law lacks.
 template <class L, class World>
 consteval bool law_is_sound() {
@@ -124,7 +139,7 @@ consteval bool law_is_sound() {
                   "delassus: a constraint law needs `static constexpr int rows` and a type `Item`; add what "
                   "is missing");
   if constexpr (has_shape && is_wrapped_once)
-    return law_answers<L, World>();
+    return law_has_rows<L>() && law_answers<L, World>();
   else
     return false;
 }
