@@ -3,6 +3,7 @@
 
 #include <delassus/activity/hand_picked.hpp>
 #include <delassus/activity/inner/dormant.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
 #include <array>

@@ -1,6 +1,7 @@
 /// A loop as a file: restored, it goes on to the bit as if it had never stopped.
 #pragma once
 
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/core/archive.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/io/inner/text_reader.hpp>
