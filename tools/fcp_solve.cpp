@@ -51,13 +51,6 @@ constexpr const char* usage =
     "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|path|plain] "
     "[--warm FILE] [--out FILE] [--save FILE] [--time-limit S]";
 
-/// The criterion of this tool: both errors within the tolerance.
-struct BothErrors {
-  static constexpr bool needs_measure = true;
-  static double sum(const Measure& m) { return std::max(m.residual, m.siconos); }
-  static double worst(const Measure& m) { return std::max(m.worst, m.siconos); }
-};
-
 struct Result {
   SolveReport report;
   double build = 0, solve = 0;  ///< s
@@ -105,17 +98,16 @@ std::string name_of(const std::string& path) {
 
 constexpr int no_limit = 2000000000;
 
-template <class Criterion>
-Result run_named(FrictionProblem& problem, const Options& o) {
+Result run_named(FrictionProblem& problem, const Options& o, Criterion criterion) {
   if (o.solver == "plain")
-    return run(problem, BasicGaussSeidel<Criterion>{.tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},
+    return run(problem, GaussSeidel{.tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0, .criterion = criterion},
                o.time_limit);
   if (o.solver == "path")
-    return run(problem, BasicPathNewton<Criterion>{.tolerance = o.tolerance, .max_iterations = no_limit, .max_sweeps = no_limit}, o.time_limit);
+    return run(problem, PathNewton{.tolerance = o.tolerance, .max_iterations = no_limit, .max_sweeps = no_limit, .criterion = criterion},
+               o.time_limit);
   DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'path' and 'plain'");
   return run(problem,
-             BasicAcceleratedGaussSeidel<Criterion>{
-                 .tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0},
+             AcceleratedSweeps{.tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0, .criterion = criterion},
              o.time_limit);
 }
 
@@ -160,9 +152,7 @@ bool solve_file(const std::string& file, const Options& o) {
   auto& lambda = problem.rows.pool<0>().lambda;
   if (!o.warm.empty()) lambda = read_impulses(o.warm, Index(lambda.size()));
   DELASSUS_EXPECT(o.stop == "err" || o.stop == "err_s" || o.stop == "both", "--stop '" + o.stop + "' is none of err, err_s, both");
-  const Result r = o.stop == "err"     ? run_named<SiconosError>(problem, o)
-                   : o.stop == "err_s" ? run_named<Residual>(problem, o)
-                                       : run_named<BothErrors>(problem, o);
+  const Result r = run_named(problem, o, o.stop == "err" ? Criterion::siconos_error : o.stop == "err_s" ? Criterion::residual : Criterion::both_errors);
   std::printf("%-40s %4d %-14s %9.2e %9.2e %8d %3d %9.4f %10.4f %s\n", name_of(file).c_str(), int(lambda.size()),
               name(r.report.status), r.report.measure.siconos, r.report.measure.residual, r.report.sweeps, r.report.factorizations, 1e3 * r.build,
               1e3 * r.solve, r.report.ended_by);

@@ -166,16 +166,18 @@ consteval bool laws_fit(std::type_identity<Constraints<Laws...>>) {
 }
 
 template <class Compliance, class World, class Rows>
+concept BuildsW = requires(typename Compliance::template Operator<Rows>& W, const World& world, Rows& rows) {
+  { W.build(world, rows) } -> std::same_as<void>;
+  { W.reset(rows) } -> std::same_as<void>;
+};
+
+template <class Compliance, class World, class Rows>
 consteval bool compliance_is_sound() {
   constexpr bool has_operator = requires { typename Compliance::template Operator<Rows>; };
   static_assert(has_operator,
                 "delassus: this type plays role::Compliance but lacks `template <class Rows> class Operator`; see "
                 "compliance/compliance.hpp for what it must do");
-  constexpr bool builds =
-      requires(typename Compliance::template Operator<Rows>& W, const World& world, Rows& rows) {
-        { W.build(world, rows) } -> std::same_as<void>;
-        { W.reset(rows) } -> std::same_as<void>;
-      };
+  constexpr bool builds = BuildsW<Compliance, World, Rows>;
   static_assert(builds || !has_operator,
                 "delassus: the Operator of a compliance needs void build(const World&, Rows&) and void reset(const "
                 "Rows&); see compliance/compliance.hpp");

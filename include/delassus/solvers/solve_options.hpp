@@ -14,6 +14,7 @@ namespace delassus {
 enum class Criterion : unsigned char {
   residual,       ///< the residual, free of scale
   siconos_error,  ///< Siconos' measure, for comparison. It has no shares: `all_verified` compares the island's, which is stricter
+  both_errors,    ///< the larger of these two
   last_change,    ///< the change of the last sweep as displacement, m: cheap, and blind to slow convergence
 };
 
@@ -29,11 +30,11 @@ struct SolveOptions {
   bool is_measured() const { return criterion != Criterion::last_change; }
   /// What is compared with the tolerance of an island.
   double error(const Measure& m) const {
-    return criterion == Criterion::residual ? m.residual : criterion == Criterion::siconos_error ? m.siconos : m.last_change;
+    return error(m.residual, m.siconos, m.last_change);
   }
   /// The largest share of one constraint.
   double worst_error(const Measure& m) const {
-    return criterion == Criterion::residual ? m.worst : criterion == Criterion::siconos_error ? m.siconos : m.worst_change;
+    return error(m.worst, m.siconos, m.worst_change);
   }
 
   bool is_within(const Measure& m, int rows) const {
@@ -49,6 +50,16 @@ struct SolveOptions {
     if (!std::isfinite(m.residual)) return Status::quarantined;
     return m.residual <= m.floor ? Status::stalled : Status::max_iterations;
   }
+
+ private:
+  double error(double residual, double siconos, double change) const {
+    switch (criterion) {
+      case Criterion::residual: return residual;
+      case Criterion::siconos_error: return siconos;
+      case Criterion::both_errors: return siconos > residual ? siconos : residual;
+      default: return change;
+    }
+  }
 };
 
 namespace inner {
@@ -57,7 +68,7 @@ namespace inner {
 template <class T = std::string>
 void expect_measured(const char* solver, Criterion criterion) {
   DELASSUS_EXPECT(criterion != Criterion::last_change,
-                  T(solver) + ": criterion last_change is none of this solver, which stops on a measured error; use residual or siconos_error");
+                  T(solver) + ": criterion last_change is none of this solver, which stops on a measured error; use residual, siconos_error or both_errors");
 }
 
 }  // namespace inner

@@ -42,7 +42,7 @@ inline std::string member_text(bool value) { return value ? "true" : "false"; }
 std::string member_text(std::integral auto value) { return std::to_string(value); }
 std::string member_text(std::floating_point auto value) { return number_text(double(value), 17); }
 inline std::string member_text(Criterion value) {
-  const char* const names[] = {"residual", "siconos_error", "last_change"};
+  const char* const names[] = {"residual", "siconos_error", "both_errors", "last_change"};
   return std::string("Criterion::") + names[int(value)];
 }
 
