@@ -143,6 +143,10 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND void ContactCache::add(const __VA_ARGS__&, Index, Index, bool);
 
 #define DELASSUS_COMPILED_WORLD(KIND)                                                                  \
+  KIND void inner::refuse_number(std::string_view, double, const char*, const char*);                  \
+  KIND std::string inner::shown_type(std::string_view);                                                \
+  KIND void inner::refuse_one_body(const std::string&, const std::string&);                            \
+  KIND void inner::refuse_no_body(const std::string&);                                                 \
   KIND class BasicRigidBodies<double>;                                                                 \
   KIND class BasicParticles<double>;                                                                   \
   KIND struct inner::RigidState<double>;                                                               \
@@ -158,6 +162,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 
 #define DELASSUS_COMPILED_COLLISION(KIND)                                                                                         \
   KIND class BasicContactCache<double>;                                                                                           \
+  KIND struct inner::DefinedOnce<ContactCache>;                                                                                   \
+  KIND struct inner::DefinedOnce<Materials>;                                                                                      \
   KIND class BasicContactMemory<double>;                                                                                          \
   KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                   \
   KIND class inner::OnDemand<CollisionEngine<GjkEpa, BoxTree>>;                                                                     \

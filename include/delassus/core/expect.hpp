@@ -26,8 +26,9 @@ inline std::string text(double value) {
   return buffer;
 }
 
-/// The sentence "`what` `value` `unit` `rule`".
-[[noreturn, gnu::cold]] inline void refuse_number(std::string_view what, double value, const char* rule, const char* unit) {
+/// The sentence "`what` `value` `unit` `rule`". A template, so that a program can compile it once.
+template <class Char>
+[[noreturn, gnu::cold]] void refuse_number(std::basic_string_view<Char> what, double value, const char* rule, const char* unit) {
   const std::string space = *unit ? " " : "";
   refuse(std::string(what) + " " + text(value) + space + unit + " " + rule);
 }

@@ -5,15 +5,15 @@
 
 namespace delassus::inner {
 
-void check_if_it_can(const auto& part) {
+[[gnu::always_inline]] inline void check_if_it_can(const auto& part) {
   if constexpr (requires { part.check(); }) part.check();
 }
 /// What outlives a step.
-void memory_if_any(auto& part, auto& archive) {
+[[gnu::always_inline]] inline void memory_if_any(auto& part, auto& archive) {
   if constexpr (requires { part.memory(archive); }) part.memory(archive);
 }
 /// Room for so many rows.
-void reset_if_it_can(auto& workspace, Index rows) {
+[[gnu::always_inline]] inline void reset_if_it_can(auto& workspace, Index rows) {
   if constexpr (requires { workspace.reset(rows); }) workspace.reset(rows);
 }
 

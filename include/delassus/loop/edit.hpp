@@ -35,6 +35,16 @@ inline bool are_on_one_body(const Anchor& a, const Anchor& b) {
   return a.element < 0 || a.local == b.local;
 }
 
+/// A joint between one body and itself, or between the world and the world. Templates, so that a program can compile them once.
+template <class Char>
+[[noreturn]] void refuse_one_body(const std::basic_string<Char>& law, const std::basic_string<Char>& body) {
+  refuse(law + ": both ends are on " + body + "; it would hold nothing, let one be on another body or a world_anchor");
+}
+template <class Char>
+[[noreturn]] void refuse_no_body(const std::basic_string<Char>& law) {
+  refuse(law + ": both ends are in the world; one must be on a body");
+}
+
 template <class World>
 std::string name_of_body(const World& world, const Anchor& end) {
   std::string name;

@@ -48,8 +48,8 @@ struct RowData {
   Array<SolveReport> reports;  ///< of the islands, in their order
   Array<char> is_nonfinite;         ///< islands with a velocity that is not finite
   FixedArray<SetVersion, std::size_t(P::World::set_count)> versions;
-  ContactCache contact_cache;
-  Materials material_pairs;
+  inner::DefinedOnce<ContactCache> contact_cache;
+  inner::DefinedOnce<Materials> material_pairs;
 };
 
 /// A loop without constraints, or one whose parts do not fit together and which therefore never steps.
@@ -77,7 +77,7 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   template <class Key>
   static constexpr bool has_state = P::States::template has<Key>;
 
-  explicit StepData(typename P::Held given) : policies(std::move(given)), channels(policies.given()) {}
+  explicit StepData(typename P::Held given) : policies(static_cast<typename P::Held&&>(given)), channels(policies.given()) {}
 
   typename P::Held policies;
   [[no_unique_address]] typename P::States states;

@@ -9,7 +9,7 @@
 namespace delassus {
 
 template <class... Args>
-AnimationLoop<Args...>::AnimationLoop(Args... policies) : Data(typename Data::Policies::Held(std::move(policies)...)) {
+AnimationLoop<Args...>::AnimationLoop(Args... policies) : Data(typename Data::Policies::Held(static_cast<Args&&>(policies)...)) {
   if constexpr (is_sound) check_policies();
 }
 
@@ -64,11 +64,9 @@ auto AnimationLoop<Args...>::add(Item item) {
                                     "constraint, second end's carrier"};
       int k = 0;
       each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
-      DELASSUS_EXPECT(item.a.is_world() || !inner::are_on_one_body(item.a, item.b),
-                      inner::type_text<Law>() + ": both ends are on " + inner::name_of_body(world(), item.a) +
-                          "; it would hold nothing, let one be on another body or a world_anchor");
-      DELASSUS_EXPECT(!item.a.is_world() || !item.b.is_world(),
-                      inner::type_text<Law>() + ": both ends are in the world; one must be on a body");
+      if (item.a.is_world() && item.b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
+      if (!item.a.is_world() && inner::are_on_one_body(item.a, item.b))
+        inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), item.a));
     }
     return laws().template of<Law>().add(item);
   }
