@@ -153,12 +153,11 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
     Velocity solve(Index b, const Velocity& p) const { return (inverse_scale * inverse_mass[b]) * p; }
     /// x and v from v_next; `old_share` of the old velocity in the mean that moves x.
     void advance(Index b, const Velocity& next, double h, T old_share) const {
-      if (moves(b)) {
-        const Velocity moved = x[b] + T(h) * inner::mean(v[b], next, old_share);
-        if (!is_finite(moved)) [[unlikely]] return record->leave(load, load[b]);
-        x[b] = moved;
-        v[b] = next;
-      }
+      if (!moves(b)) return set_zero(load[b]);
+      const Velocity moved = x[b] + T(h) * inner::mean(v[b], next, old_share);
+      if (!is_finite(moved)) [[unlikely]] return record->leave(load, load[b]);
+      x[b] = moved;
+      v[b] = next;
       set_zero(load[b]);
     }
   };

@@ -32,8 +32,8 @@ void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* cons
       if (!(restitution > 0)) continue;
       for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = T(0);
       for (int s = 0; s < pool.sets; ++s) {
-        pool.set[s].products->add_rate(pool.set[s], i, v_free[s], free);
-        pool.set[s].products->add_rate(pool.set[s], i, v[s], start);
+        pool.set[s].products->rate(pool.set[s], i, v_free[s], free, free);
+        pool.set[s].products->rate(pool.set[s], i, v[s], start, start);
       }
       for (int k = 0; k < pool.rows; ++k) {
         const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);

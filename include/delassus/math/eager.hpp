@@ -61,6 +61,21 @@ template <int R, int K, int C, class T>
   }
 }
 
+/// Y = A Bᵀ.
+template <int R, int K, int C, class T>
+[[gnu::always_inline]] inline void set_product_with_transposed(const T* A, const T* B, T* Y) {
+  DELASSUS_UNROLL
+  for (int c = 0; c < C; ++c) {
+    DELASSUS_UNROLL
+    for (int i = 0; i < R; ++i) Y[i + R * c] = A[i] * B[c];
+    DELASSUS_UNROLL
+    for (int k = 1; k < K; ++k) {
+      DELASSUS_UNROLL
+      for (int i = 0; i < R; ++i) Y[i + R * c] += A[i + R * k] * B[c + C * k];
+    }
+  }
+}
+
 /// (x, y, z) · column.
 template <class T>
 inline T row_times(T x, T y, T z, const T* column) {
@@ -239,17 +254,7 @@ template <class M, class T, int R, int K, int O, int C = int(M::RowsAtCompileTim
   requires inner::Plain<M, T, C, K> && inner::SmallSizes<R> && inner::ByColumns<R, O> && (R * C > 1)
 inline Eigen::Matrix<T, R, C> operator*(const inner::Fixed<T, R, K, O>& A, const Eigen::Transpose<M>& Bt) {
   Eigen::Matrix<T, R, C> Y;
-  const T *a = A.data(), *b = Bt.nestedExpression().data();
-  DELASSUS_UNROLL
-  for (int c = 0; c < C; ++c) {
-    DELASSUS_UNROLL
-    for (int i = 0; i < R; ++i) Y.data()[i + R * c] = a[i] * b[c];
-    DELASSUS_UNROLL
-    for (int k = 1; k < K; ++k) {
-      DELASSUS_UNROLL
-      for (int i = 0; i < R; ++i) Y.data()[i + R * c] += a[i + R * k] * b[c + C * k];
-    }
-  }
+  inner::set_product_with_transposed<R, K, C>(A.data(), Bt.nestedExpression().data(), Y.data());
   return Y;
 }
 
@@ -268,7 +273,9 @@ inline Eigen::Matrix<T, R, C> transposed_times(const Eigen::Matrix<T, K, R>& A, 
 template <class T, int R, int K, int C>
   requires inner::SmallSizes<R, K, C>
 inline Eigen::Matrix<T, R, C> times_transposed(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, C, K>& B) {
-  return A * transposed(B);
+  Eigen::Matrix<T, R, C> Y;
+  inner::set_product_with_transposed<R, K, C>(A.data(), B.data(), Y.data());
+  return Y;
 }
 
 /// a · b of all entries, summed from left to right.

@@ -125,8 +125,8 @@ inline bool is_zero(const Eigen::Matrix<T, R, C>& x) {
 /// True when every entry is finite: 0·x is 0 for finite x and NaN otherwise, so one sum decides.
 template <class T, int R, int C>
 inline bool is_finite(const Eigen::Matrix<T, R, C>& x) {
-  T sum = 0;
-  for (int k = 0; k < R * C; ++k) sum += x.data()[k] * T(0);
+  T sum = x.data()[0] * T(0);
+  for (int k = 1; k < R * C; ++k) sum += x.data()[k] * T(0);
   return sum == T(0);
 }
 

@@ -49,6 +49,18 @@ template <class T>
   *reinterpret_cast<typename inner::PacketTypes<T>::Unaligned*>(to) = x;
 }
 
+/// Two numbers, whatever the processor could take.
+typedef double NumberPair __attribute__((vector_size(16)));
+
+[[gnu::always_inline]] inline NumberPair load_pair(const double* from) {
+  typedef double Unaligned __attribute__((vector_size(16), aligned(8), may_alias));
+  return *reinterpret_cast<const Unaligned*>(from);
+}
+[[gnu::always_inline]] inline void store_pair(double* to, NumberPair x) {
+  typedef double Unaligned __attribute__((vector_size(16), aligned(8), may_alias));
+  *reinterpret_cast<Unaligned*>(to) = x;
+}
+
 /// |x|: the sign bits off.
 [[gnu::always_inline]] inline Packet<double> size_of(const Packet<double>& x) {
   using Bits = Packet<long long>;

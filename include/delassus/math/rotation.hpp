@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/math/linear.hpp>
+#include <delassus/math/packet.hpp>
 
 #include <limits>
 
@@ -28,6 +29,17 @@ inline Eigen::Quaternion<T> product(const Eigen::Quaternion<T>& a, const Eigen::
   const T *p = a.coeffs().data(), *q = b.coeffs().data();  // x, y, z, w
   return {(p[3] * q[3] - p[1] * q[1]) - (p[2] * q[2] + p[0] * q[0]), (p[3] * q[0] + p[1] * q[2]) - (p[2] * q[1] - p[0] * q[3]),
           (p[3] * q[1] + p[1] * q[3]) + (p[2] * q[0] - p[0] * q[2]), (p[3] * q[2] - p[1] * q[0]) + (p[2] * q[3] + p[0] * q[1])};
+}
+/// The same to the bit, two entries at a time.
+[[gnu::always_inline]] inline Eigen::Quaternion<double> product(const Eigen::Quaternion<double>& a, const Eigen::Quaternion<double>& b) {
+  const double *p = a.coeffs().data(), *q = b.coeffs().data();
+  const NumberPair xy = load_pair(q), zw = load_pair(q + 2), yx{q[1], q[0]}, wz{q[3], q[2]};
+  const NumberPair A = p[3] * xy + p[1] * zw, B = p[2] * yx - p[0] * wz;
+  const NumberPair C = p[3] * zw - p[1] * xy, D = p[2] * wz + p[0] * yx;
+  Eigen::Quaternion<double> c;
+  store_pair(c.coeffs().data(), A + NumberPair{-B[0], B[1]});
+  store_pair(c.coeffs().data() + 2, C + NumberPair{D[0], -D[1]});
+  return c;
 }
 /// The turn back, of a unit quaternion.
 template <class T>

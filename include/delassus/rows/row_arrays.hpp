@@ -19,8 +19,8 @@ struct SetArrays;
 /// Products with the blocks of one pool and one set, whose sizes the functions know.
 template <class T>
 struct BlockProducts {
-  /// u += H v of item i, v by block.
-  void (*add_rate)(const SetArrays<T>&, Index i, const T* v, T* u);
+  /// u = start + H v of item i, v by block; `start` may be u.
+  void (*rate)(const SetArrays<T>&, Index i, const T* v, const T* start, T* u);
   /// to += G λ of items i of 0 … items − 1, `to` by block.
   void (*add_motion)(const SetArrays<T>&, Index items, const T* lambda, T* to);
   /// to += Hᵀ λ, likewise.
@@ -43,9 +43,9 @@ struct BlockLoops {
   using Row = Vec<R, T>;
   using Column = Vec<w, T>;
 
-  static void add_rate(const SetArrays<T>& set, Index i, const T* v, T* u) {
+  static void rate(const SetArrays<T>& set, Index i, const T* v, const T* start, T* u) {
     const auto* H = reinterpret_cast<const Mat<R, w, T>*>(set.H->data());
-    Row sum = *reinterpret_cast<Row*>(u);
+    Row sum = *reinterpret_cast<const Row*>(start);
     for (Index e = (*set.offset)[i]; e < (*set.offset)[i + 1]; ++e)
       sum += H[e] * reinterpret_cast<const Column*>(v)[(*set.block)[e]];
     assign(*reinterpret_cast<Row*>(u), sum);
@@ -66,7 +66,7 @@ struct BlockLoops {
 };
 
 template <int R, int w, class T>
-constinit const BlockProducts<T> BlockLoops<R, w, T>::table = {add_rate, add_motion, add_impulse};
+constinit const BlockProducts<T> BlockLoops<R, w, T>::table = {rate, add_motion, add_impulse};
 
 }  // namespace inner
 
@@ -81,7 +81,7 @@ struct RowArrays {
   /// Row k of item i is a spring, or a damper.
   bool is_soft(std::size_t row) const { return (*stiffness)[row] > 0 || (*damping)[row] > 0; }
 
-  /// The rows of `items` items, all zero and without entries. The items are closed one by one, in order.
+  /// Room for the rows of `items` items, which are begun and closed one by one, in order.
   void reset(Index items) const {
     if (items == 0 && phi->empty()) return;  // a law without items, step after step
     for (int s = 0; s < sets; ++s) {
@@ -91,7 +91,13 @@ struct RowArrays {
       set[s].G->clear();
     }
     for (auto* array : {phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda})
-      array->assign_zeros(std::size_t(items) * std::size_t(rows));
+      array->resize_for_overwrite(std::size_t(items) * std::size_t(rows));
+  }
+  /// The next item, i: its R rows are zero, and without entries.
+  template <int R>
+  void begin(Index i) const {
+    for (auto* array : {phi, stiffness, damping, bias, compliance, relative_compliance, d, lambda})
+      set_zero(reinterpret_cast<Vec<R, T>*>(array->data())[i]);
   }
   /// The entries of the next item end here in every set.
   void close() const {

@@ -73,8 +73,8 @@ class Island {
     Sweep<T> sums{.relaxation = T(rule.relaxation), .tells_change = rule.tells_change};
     for (Pass pass(*this); pass.next();) {
       if (x) sums.x = x + pass.row();
-      const LawTable<T>& law = *pass.span.pool->table;
-      (rule.projects ? law.project_once : law.sweep)(pass.span, sums);
+      const LawTable<T>& law = *pass.span->pool->table;
+      (rule.projects ? law.project_once : law.sweep)(*pass.span, sums);
     }
     if (rule.tells_change) {
       last_change_ = h_ * double(sums.displacement);
@@ -86,7 +86,7 @@ class Island {
 
   Measure measure() {
     MeasureSums sums;
-    for (Pass pass(*this); pass.next();) pass.span.pool->table->measure(pass.span, sums);
+    for (Pass pass(*this); pass.next();) pass.span->pool->table->measure(*pass.span, sums);
     Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
     m.worst_change = worst_change_;
@@ -95,7 +95,7 @@ class Island {
 
   /// λ ← λ + β (λ − before), each brought back into its law's cone; `before` takes the λ that was.
   void extrapolate(Array<T>& before, double beta) {
-    for (Pass pass(*this); pass.next();) pass.span.pool->table->extrapolate(pass.span, before.data() + pass.row(), T(beta));
+    for (Pass pass(*this); pass.next();) pass.span->pool->table->extrapolate(*pass.span, before.data() + pass.row(), T(beta));
   }
 
   double last_change() const { return last_change_; }
@@ -240,32 +240,36 @@ class Island {
   /// One pass over all items: a span a pool, or pieces of it between which the clock is looked at.
   struct Pass {
     Island& island;
-    Span<T> span{};
+    const Span<T>* span = nullptr;
 
     explicit Pass(Island& of) : island(of) {}
     /// The first row of `span` in impulses that are set aside.
     Index row() const { return row_; }
     bool next() {
-      row_ += span.count > 0 ? span.count * span.pool->rows : 0;
-      while (place_ < island.count_) {
+      if (span) row_ += span->count * span->pool->rows;
+      if (island.limits()) return next_piece();
+      span = place_ < island.count_ ? island.spans_ + place_++ : nullptr;
+      return span;
+    }
+
+   private:
+    bool next_piece() {
+      for (; place_ < island.count_; ++place_, done_ = 0) {
         const Span<T>& whole = island.spans_[place_];
-        if (!island.limits()) return ++place_, span = whole, true;
         if (done_ < whole.count && !(done_ == 0 ? island.timer_->lets_go() : island.timer_->cuts_off())) {
-          span = {whole.pool, whole.items + done_, std::min(whole.count - done_, Index(inner::SolveTimer<T>::stride))};
-          done_ += span.count;
+          piece_ = {whole.pool, whole.items + done_, std::min(whole.count - done_, Index(inner::SolveTimer<T>::stride))};
+          done_ += piece_.count;
+          span = &piece_;
           return true;
         }
         row_ += (whole.count - done_) * whole.pool->rows;
-        ++place_;
-        done_ = 0;
-        span.count = 0;
       }
       return false;
     }
 
-   private:
     int place_ = 0;
     Index done_ = 0, row_ = 0;
+    Span<T> piece_;
   };
 
   /// Whether work ends at a deadline.

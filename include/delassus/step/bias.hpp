@@ -63,21 +63,24 @@ template <class T, class S>
     const auto rotated = rotated_slip<T>({start[1], start[2]}, {u[1], u[2]}, theta);
     u[1] += rotated[0], u[2] += rotated[1];
   }
+  const T *const all_phi = pool.phi->data() + first, *const stiffness = pool.stiffness->data() + first,
+          *const damping = pool.damping->data() + first;
+  T* const bias = pool.bias->data() + first;
   for (int k = 0; k < pool.rows; ++k) {
     const std::size_t row = first + std::size_t(k);
     const RowKind kind = law.kinds[k];
-    const double phi = double((*pool.phi)[row]);
+    const double phi = double(all_phi[k]);
     if (kind == RowKind::friction) continue;
-    if (pool.is_soft(row)) {
+    if (stiffness[k] > 0 || damping[k] > 0) {
       soften(pool, row, h, law.has_mean_springs ? theta : 1.0);
       if (law.has_mean_springs) u[k] += before * start[k];
     } else if (kind == RowKind::equality) {
-      (*pool.bias)[row] = T(stabilisation.equality(phi, theta * h));
+      bias[k] = T(stabilisation.equality(phi, theta * h));
       u[k] += before * start[k];
       (*pool.compliance)[row] = T(joint_compliance_of(stabilisation, h));
     } else {
       const double sign = kind == RowKind::lower ? 1 : -1;
-      (*pool.bias)[row] = T(sign * lower_bias(stabilisation, sign * phi, h));
+      bias[k] = T(sign * lower_bias(stabilisation, sign * phi, h));
       if constexpr (requires { stabilisation.contact_compliance(h); }) (*pool.compliance)[row] = T(stabilisation.contact_compliance(h));
       // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
       if constexpr (requires { stabilisation.relative_compliance(h); })
@@ -101,14 +104,17 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
     const RowArrays<T>& pool = rows[p];
     const LawSteps<T>& law = *laws[p].law;
     const Index items = pool.items();
-    T start[most_rows] = {};
+    const T nothing[most_rows] = {};
+    T of_start[most_rows];
     for (Index i = 0; i < items; ++i) {
       const std::size_t first = std::size_t(i) * std::size_t(pool.rows);
       T* const d = pool.d->data() + first;
-      for (int k = 0; k < pool.rows; ++k) d[k] = start[k] = T(0);
-      for (int s = 0; s < pool.sets; ++s) {
-        pool.set[s].products->add_rate(pool.set[s], i, v_free[s], d);
-        if (theta != 1) pool.set[s].products->add_rate(pool.set[s], i, v[s], start);
+      const T *u = nothing, *start = nothing;
+      for (int s = 0; s < pool.sets; ++s, u = d) {
+        pool.set[s].products->rate(pool.set[s], i, v_free[s], u, d);
+        if (theta == 1) continue;
+        pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
+        start = of_start;
       }
       make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta);
       if (law.speed) drive(pool, first, law.speed(laws[p].pool, i), h);

@@ -91,6 +91,7 @@ struct LawRows {
     const Index count = pool.count();
     rows.reset(count);
     for (Index i = 0; i < count; ++i) {
+      rows.template begin<R>(i);
       pool.law.linearize(pool.item(i), world, RowWriter<T>(world, rows, i));
       rows.close();
     }

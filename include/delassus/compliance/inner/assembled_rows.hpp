@@ -122,7 +122,7 @@ void AssembledRows<T>::build_pool(AssembledRows& W, int a, const CrowdedRow* cro
   bool any_coupled = false;
   for (int s = 0; s < mine.sets; ++s) any_coupled = any_coupled || coupled[s] != HowCoupled::not_at_all;
   for (Index i = 0; i < mine.items; ++i) {
-    W.matrix.begin_row(mine, a, i);
+    W.matrix.template begin_row<height>(a, i);
     if (!crowded || !crowded[i].is_crowded) {
       if (any_coupled) W.template add_coupled<height>(a, i);
       for (int s = 0; s < mine.sets; ++s)

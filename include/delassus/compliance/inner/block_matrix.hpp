@@ -66,9 +66,11 @@ class BlockMatrix {
     }
     return true;
   }
-  void begin_row(const RowView<T>& mine, int a, Index i) {
-    T* own = own_block(mine, a, i);
-    for (int k = 0; k < mine.rows * mine.rows; ++k) own[k] = T(0);
+  template <int R>
+  void begin_row(int a, Index i) {
+    T* own = diagonal(a).data() + std::ptrdiff_t(R * R) * i;
+    DELASSUS_UNROLL
+    for (int k = 0; k < R * R; ++k) own[k] = T(0);
   }
   /// W_ij += block of R × columns, opening the column when it is the first. A square block is no wider than the R of pool a.
   template <int R>

@@ -53,11 +53,11 @@ class ConvergenceMonitor {
     if (!is_last_ && !is_due(moved) && !problem_.is_measure_due()) return true;
     measured_ = report_.sweeps;
     report_.measure = problem_.measure();
-    per_root_of_movement_ = options_.error(report_.measure) / std::sqrt(moved);
     problem_.notify(report_.sweeps, report_.measure);
     if (std::isinf(best_.residual) && is_not_finite()) return false;
     is_met_ = report_.sweeps >= options_.min_iterations && is_done(report_.measure);
     if (is_met_) return false;
+    per_root_of_movement_ = options_.error(report_.measure) / std::sqrt(moved);
     note_pace();
     keep_if_best();
     return !is_last_ && !stalls();
@@ -97,6 +97,10 @@ class ConvergenceMonitor {
   /// What is left of the sweeps.
   int left() const { return options_.max_iterations - report_.sweeps; }
 
+  /// λ as it was at the beginning stays known, in this room.
+  void keep_start_in(Impulses& room) { start_ = &room; }
+  const Impulses& start() const { return has_improved_ ? *start_ : best_set_; }
+
   /// λ ← the best measured.
   void back_to_best() { problem_.load(best_set_); }
 
@@ -130,6 +134,7 @@ class ConvergenceMonitor {
                                    : report_.measure.residual < best_.residual))
       return;
     best_ = report_.measure;
+    if (start_ && !has_improved_) start_->swap(best_set_), has_improved_ = true;
     problem_.save(best_set_);
     if (!(options_.error(best_) < 0.5 * mark_)) return;
     mark_ = options_.error(best_);
@@ -157,9 +162,10 @@ class ConvergenceMonitor {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
 
-  const SolveOptions options_;
+  const SolveOptions& options_;
   Problem& problem_;
   Impulses& best_set_;
+  Impulses* start_ = nullptr;
   SolveReport report_{};
   Measure best_ = unmeasured;
   int rows_, measured_ = 0, patience_ = 0, opened_ = 0, progressed_ = 0;
@@ -168,7 +174,7 @@ class ConvergenceMonitor {
     double error;
     int sweeps;
   } from_{infinity, 0}, lately_{infinity, 0};  ///< measures, at less than half of the sweeps and later
-  bool is_met_ = false, is_last_ = false;
+  bool is_met_ = false, is_last_ = false, has_improved_ = false;
 };
 
 }  // namespace delassus::inner

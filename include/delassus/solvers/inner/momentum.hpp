@@ -68,11 +68,11 @@ bool momentum(Island<T>& problem, ConvergenceMonitor& monitor, Array<T>& x, cons
   for (;;) {
     RestartRule restarts;
     double theta = 1;
-    bool is_futile = false;
-    problem.save(x);
+    bool is_first = true, is_futile = false;
     while (!is_futile && !newton.opens()) {
-      double curvature = 0;
-      const double moved = problem.sweep(rule, x.data(), &curvature);  // λ is z now
+      double curvature = 0;  // of the first sweep, where y = x, it is −(z − x)²: no sign of a restart
+      const double moved = is_first ? problem.sweep(rule) : problem.sweep(rule, x.data(), &curvature);  // λ is z now
+      is_first = false;
       if (!monitor.goes_on(moved)) break;
       if (restarts.asks(curvature, moved)) {
         problem.save(x);

@@ -37,7 +37,7 @@ class NewtonStage {
   NewtonStage(const SolveOptions& chain, Island<T>& problem, ConvergenceMonitor& monitor, Space& space)
       : limits_(chain), problem_(problem), monitor_(monitor), space_(space), opening_(chain.is_measured() ? least : never) {
     limits_.min_iterations = 0;
-    problem.save(space.start);
+    monitor.keep_start_in(space.start);
   }
 
   /// Asked before each sweep of momentum. The island is gathered when it has been swept for a while, and
@@ -55,7 +55,7 @@ class NewtonStage {
     const double allowed = 100 * std::max(energy(), space_.body.energy_of_stopping(problem_));
     const bool from_start = openings_++ == (monitor_.first_error() > cold ? 0 : 1);
     if (from_start)
-      problem_.load(space_.start);
+      problem_.load(monitor_.start());
     else
       point.epsilon = epsilon_;
     if (space_.body.restart(problem_)) {
