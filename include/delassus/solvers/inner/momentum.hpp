@@ -71,7 +71,7 @@ bool momentum(Island<T>& problem, ConvergenceMonitor& monitor, Array<T>& x, cons
     bool is_first = true, is_futile = false;
     while (!is_futile && !newton.opens()) {
       double curvature = 0;  // of the first sweep, where y = x, it is −(z − x)²: no sign of a restart
-      const double moved = is_first ? problem.sweep(rule) : problem.sweep(rule, x.data(), &curvature);  // λ is z now
+      const double moved = problem.sweep(rule, is_first ? nullptr : x.data(), is_first ? nullptr : &curvature);  // λ is z now
       is_first = false;
       if (!monitor.goes_on(moved)) break;
       if (restarts.asks(curvature, moved)) {
