@@ -104,13 +104,14 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
     const RowArrays<T>& pool = rows[p];
     const LawSteps<T>& law = *laws[p].law;
     const Index items = pool.items();
+    const int height = pool.rows, sets = pool.sets;
     const T nothing[most_rows] = {};
     T of_start[most_rows];
     for (Index i = 0; i < items; ++i) {
-      const std::size_t first = std::size_t(i) * std::size_t(pool.rows);
+      const std::size_t first = std::size_t(i) * std::size_t(height);
       T* const d = pool.d->data() + first;
       const T *u = nothing, *start = nothing;
-      for (int s = 0; s < pool.sets; ++s, u = d) {
+      for (int s = 0; s < sets; ++s, u = d) {
         pool.set[s].products->rate(pool.set[s], i, v_free[s], u, d);
         if (theta == 1) continue;
         pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
@@ -118,7 +119,8 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
       }
       make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta);
       if (law.speed) drive(pool, first, law.speed(laws[p].pool, i), h);
-      for (int k = 0; k < pool.rows; ++k) d[k] += (*pool.bias)[first + std::size_t(k)];
+      const T* const bias = pool.bias->data() + first;
+      for (int k = 0; k < height; ++k) d[k] += bias[k];
     }
   }
 }

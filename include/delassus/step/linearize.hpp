@@ -39,10 +39,12 @@ double worst_equality(AllLaws<T> laws, AllRows<T> rows) {
   double worst = 0;
   for (std::size_t p = 0; p < laws.size(); ++p) {
     const RowArrays<T>& pool = rows[p];
-    for (std::size_t first = 0; first < pool.phi->size(); first += std::size_t(pool.rows))
-      for (int k = 0; k < pool.rows; ++k)
-        if (laws[p].law->kinds[k] == RowKind::equality && !pool.is_soft(first + std::size_t(k)))
-          worst = std::max(worst, double(std::abs((*pool.phi)[first + std::size_t(k)])));
+    const RowKind* const kinds = laws[p].law->kinds;
+    const int height = pool.rows;
+    const T *phi = pool.phi->begin(), *const end = pool.phi->end(), *stiffness = pool.stiffness->begin(), *damping = pool.damping->begin();
+    for (; phi != end; phi += height, stiffness += height, damping += height)
+      for (int k = 0; k < height; ++k)
+        if (kinds[k] == RowKind::equality && !(stiffness[k] > 0 || damping[k] > 0)) worst = std::max(worst, double(std::abs(phi[k])));
   }
   return worst;
 }
