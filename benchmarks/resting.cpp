@@ -1,4 +1,4 @@
-// Two resting scenes that SOFA was measured on (docs/performance.md): ten unit cubes, 6 × 6 × 6 spheres; whole steps, stopped by
+// Two resting scenes that SOFA was measured on (docs/evidence/performance.md): ten unit cubes, 6 × 6 × 6 spheres; whole steps, stopped by
 // the same criterion at the same tolerance. The counters: the error that criterion leaves, by the residual (err_s), and by how
 // much SOFA's processor time a step, measured on a machine like this one, is longer: of both the mean over the steps of a run.
 #include "scenes.hpp"

@@ -1,6 +1,6 @@
 // Also built with: -march=native
 //
-// A soft bar on a plane that SOFA was measured on (docs/performance.md): 20 mm cells cut in six, 60 kPa, ν =
+// A soft bar on a plane that SOFA was measured on (docs/evidence/performance.md): 20 mm cells cut in six, 60 kPa, ν =
 // 0.4, 1000 kg/m³, Rayleigh 0.1/0.1, friction 0.5, h = 10 ms; nine nodes of one end are held by joints, all
 // nodes of the underside touch. Whole steps stopped by the last change of the impulses, 1e-6 m a row, 200
 // sweeps at most. CPU time of the thread. Counters: what the same criterion leaves by the residual (err_s),

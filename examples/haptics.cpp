@@ -24,7 +24,7 @@ int main() {
   HapticForce out;
   double before = 0;
   for (int ms = 0; ms < 3000; ++ms) {
-    if (ms % 33 == 0) {  // with a real device: a thread of its own, see docs/haptics.md
+    if (ms % 33 == 0) {  // with a real device: a thread of its own, see docs/theory/haptics.md
       rigid.move_to(proxy, device.position);
       loop.step(0.033);
     }

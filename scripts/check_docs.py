@@ -6,15 +6,19 @@
     scripts/check_docs.py --self-test    makes each mistake once and expects to be told
 
 A page shows an example by a code block after the line `<!-- from examples/x.cpp -->`. The example's leading comments
-speak to its tests and are left out.
+speak to its tests and are left out. A part of a program stands after `<!-- part of docs/snippets/x.cpp -->`: a run of its
+lines, but for the common indent. Every other block of C++ is a mistake, but for those in docs/decisions.
 """
 import re
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 SHOWN = re.compile(r"(<!-- from (\S+) -->\n```cpp\n)(.*?)(```)", re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+PART = re.compile(r"<!-- part of (\S+) -->\n```cpp\n(.*?)```", re.DOTALL)
+BLOCK = re.compile(r"([^\n]*)\n```(?:cpp|c\+\+)\n(.*?)```", re.DOTALL)
 CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 
 
@@ -31,6 +35,16 @@ def program(path):
     return "".join(lines)
 
 
+def lines_of(text):
+    return [line.strip() for line in textwrap.dedent(text).splitlines()]
+
+
+def is_part(shown, whole):
+    """Whether the lines follow each other in the program."""
+    some, every = lines_of(shown), lines_of(whole)
+    return any(every[k : k + len(some)] == some for k in range(len(every) - len(some) + 1))
+
+
 def complaints(root):
     for page in pages(root):
         name, text = page.relative_to(root), page.read_text(encoding="utf-8")
@@ -39,6 +53,15 @@ def complaints(root):
                 yield f"{name}: shows {source}, which does not exist"
             elif shown != program(root / source):
                 yield f"{name}: what it shows of {source} is not that program; scripts/check_docs.py --write copies it"
+        for source, shown in PART.findall(text):
+            if not (root / source).exists():
+                yield f"{name}: shows a part of {source}, which does not exist"
+            elif not is_part(shown, (root / source).read_text(encoding="utf-8")):
+                yield f"{name}: what it shows as a part of {source} is none: {lines_of(shown)[0]}"
+        if "decisions" not in name.parts:
+            for before, shown in BLOCK.findall("\n" + text):
+                if not re.match(r"<!-- (from|part of) \S+ -->$", before):
+                    yield f"{name}: no program is named above the block that begins with {shown.splitlines()[0].strip()!r}"
         for target in LINK.findall(CODE.sub("", text)):
             if "://" not in target and not target.startswith("mailto:") and not (page.parent / target).exists():
                 yield f"{name}: the link to {target} leads nowhere"
@@ -60,6 +83,10 @@ def self_test():
         ("<!-- from examples/a.cpp -->\n```cpp\nint main(){}\n```\n", "is not that program"),
         ("<!-- from examples/b.cpp -->\n```cpp\nint main() {}\n```\n", "does not exist"),
         ("[a](docs/gone.md)\n", "leads nowhere"),
+        ("<!-- part of examples/a.cpp -->\n```cpp\nint main() {}\n```\n", None),
+        ("<!-- part of examples/a.cpp -->\n```cpp\nint x;\n```\n", "is none"),
+        ("<!-- part of examples/b.cpp -->\n```cpp\nint x;\n```\n", "does not exist"),
+        ("text\n```cpp\nint x;\n```\n", "no program is named"),
     ]
     failures = 0
     for text, word in cases:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks who includes whom: the rooms and levels of docs/architecture.md, and the form of a header's first lines.
+"""Checks who includes whom: the rooms and levels of docs/project/architecture.md, and the form of a header's first lines.
 
     scripts/check_includes.py [ROOT]       one line per broken rule, exit code 1 if there is one
     scripts/check_includes.py --self-test  breaks every rule once and expects to be told

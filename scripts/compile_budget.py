@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Measures what the umbrella header and each example cost to compile, and keeps memory and functions from growing.
 
-    scripts/compile_budget.py           compiles each (-O0), with delassus/compiled.hpp and without, and writes docs/compile_budget.md
+    scripts/compile_budget.py           compiles each (-O0), with delassus/compiled.hpp and without, and writes docs/evidence/compile_budget.md
     scripts/compile_budget.py --check [NAME...]
                                         compiles those, or those that have a budget of their own and the three that need
-                                        most memory by docs/compile_budget.md, prints, writes nothing
+                                        most memory by docs/evidence/compile_budget.md, prints, writes nothing
 
 With --check, exit code 1 if one needs more memory, or makes more functions, than its budget and a tenth more than
-docs/compile_budget.md records of the same compiler: no load changes these two. CPU time is printed in units of what
+docs/evidence/compile_budget.md records of the same compiler: no load changes these two. CPU time is printed in units of what
 `#include <Eigen/Dense>` takes beside it, and never fails.
 """
 import argparse
@@ -120,7 +120,7 @@ def main():
     parser.add_argument("--check", nargs="*", metavar="NAME")
     a = parser.parse_args()
 
-    version, page = version_of(a.compiler), a.root / "docs/compile_budget.md"
+    version, page = version_of(a.compiler), a.root / "docs/evidence/compile_budget.md"
     before = recorded(page, version)
     checks = a.check is not None
     only = set(a.check or (*BUDGETS, *sorted(before, key=lambda name: before[name][0])[-3:])) if checks and before else None

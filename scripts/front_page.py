@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the table of docs/README.md that says what holds, out of the one of docs/ladders.md.
+"""Writes the table of docs/README.md that says what holds, out of the one of docs/evidence/ladders.md.
 
     scripts/front_page.py            writes it
     scripts/front_page.py --check    exit code 1 if it is not what would be written; a test of the tree
@@ -55,7 +55,7 @@ def main():
     if "--check" not in sys.argv:
         page.write_text(new, encoding="utf-8")
     elif new != old:
-        print("docs/README.md does not say what docs/ladders.md says; scripts/front_page.py brings it up to date")
+        print("docs/README.md does not say what docs/evidence/ladders.md says; scripts/front_page.py brings it up to date")
         return 1
     return 0
 

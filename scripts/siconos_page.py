@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tables and diagrams of what compare_siconos measured.
 
-    scripts/siconos_page.py results RESULTS.csv [--svg FILE]    the tables of docs/siconos.md on stdout, performance profiles
+    scripts/siconos_page.py results RESULTS.csv [--svg FILE]    the tables of docs/evidence/siconos.md on stdout, performance profiles
     scripts/siconos_page.py curves CURVES.csv --svg FILE        error against time
 
 A performance profile tells of each solver which share of the problems it solves within τ times the time of the fastest.

@@ -26,7 +26,7 @@ engines do) and gold (meets a stated number). Writes DIR/ladders.csv with every 
   ROW            HC-01 or a word of a title or of its parts, "stack" say: only these rows; all if none is said
   --out DIR      the folder of what is written, made if missing; "out/ladders" if not said
   --docs FILE    replaces the table of this page, between its two ladder marks
-  --peers FILE   what delassus_peers measured of other engines; docs/ladders/peers.csv of the tree if not said
+  --peers FILE   what delassus_peers measured of other engines; docs/evidence/ladders/peers.csv of the tree if not said
   --seconds S    a rung that takes more processor time has failed, and no harder one of its row is tried; 60 if not said,
                  and in rows of very many bodies ten times that
   --quick        the easiest rung of each row, cut short; fails where one reaches less than it is known to

@@ -1,4 +1,4 @@
-// Reading docs/ladders/peers.csv, and the best of a row.
+// Reading docs/evidence/ladders/peers.csv, and the best of a row.
 #include "peer_figures.hpp"
 
 #include <delassus/io/inner/text.hpp>

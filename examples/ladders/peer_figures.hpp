@@ -1,4 +1,4 @@
-/// What delassus_peers measured of other engines on the same rungs, as docs/ladders/peers.csv keeps it.
+/// What delassus_peers measured of other engines on the same rungs, as docs/evidence/ladders/peers.csv keeps it.
 #pragma once
 
 #include <string>

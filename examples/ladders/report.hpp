@@ -1,5 +1,5 @@
 /// What the rungs of all rows add up to: a table on the terminal, a CSV, a page, and the table of
-/// docs/ladders.md.
+/// docs/evidence/ladders.md.
 #pragma once
 
 #include "peer_figures.hpp"

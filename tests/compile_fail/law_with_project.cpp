@@ -1,4 +1,4 @@
-// expect: delassus: a constraint law needs Vec<rows> solve_local(item, W, b) const in the place of project(item, local); see docs/migration.md
+// expect: delassus: a constraint law needs Vec<rows> solve_local(item, W, b) const in the place of project(item, local); see docs/project/migration.md
 #include <delassus/delassus.hpp>
 
 using namespace delassus;

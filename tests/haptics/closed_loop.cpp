@@ -19,7 +19,7 @@ double least_energy(const std::vector<Sample>& samples) {
 
 TEST_CASE("a stiff wall at 1 kHz is passive and at rest, where the loop's force at 30 Hz swings") {
   const auto ticks = press({.max_force = 8}), direct = press({.display = Display::direct, .max_force = 8});
-  // b = k T/2 + c: docs/haptics.md derives that then no energy comes out. Rounding: 3000 sums of 1e-3 J.
+  // b = k T/2 + c: docs/theory/haptics.md derives that then no energy comes out. Rounding: 3000 sums of 1e-3 J.
   CHECK(least_energy(ticks) >= -1e-12);
   // The slowest mode, K + k against b + B, decays like exp(−t (b + B)/2m) = e^(−14 t): two seconds after the touch to 1e-12
   // of 3 cm.

@@ -10,7 +10,7 @@ import tempfile
 
 from programs import NO_VALGRIND, arguments, build, has_valgrind, instructions, verdict
 
-# Scene and way, limit of library / hand. Those of pendulums by W guard what was reached; docs/performance.md says where it goes.
+# Scene and way, limit of library / hand. Those of pendulums by W guard what was reached; docs/evidence/performance.md says where it goes.
 LIMITS = {("particles", "library"): 1.02, ("bodies", "library"): 1.05,
           ("pendulum", "visits"): 1.30, ("pendulums", "visits"): 1.12,
           ("pendulum", "library"): 4.0, ("pendulums", "library"): 2.75}

@@ -1,4 +1,4 @@
-// The two tables of docs/ladders.md.
+// The two tables of docs/evidence/ladders.md.
 #include "page.hpp"
 
 #include "../rows.hpp"

@@ -1,4 +1,4 @@
-/// Brings docs/ladders.md up to date with a comparison.
+/// Brings docs/evidence/ladders.md up to date with a comparison.
 #pragma once
 
 #include "../peer_figures.hpp"

@@ -1,5 +1,5 @@
 /// What a comparison adds up to: every figure as CSV, a line an engine and row, and the table of
-/// docs/ladders.md.
+/// docs/evidence/ladders.md.
 #pragma once
 
 #include "referee.hpp"

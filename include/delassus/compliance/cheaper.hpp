@@ -29,7 +29,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   static constexpr int pools = Rows::pool_count;
 
   /// An item is crowded if more rows than these act on its bodies, its own counted once a body: those of
-  /// eight contacts. H y takes as long as about so many blocks (docs/performance.md).
+  /// eight contacts. H y takes as long as about so many blocks (docs/evidence/performance.md).
   static constexpr Index most_rows = 24;
 
   void build(const auto& world, Rows& rows) {

@@ -45,7 +45,7 @@ consteval bool law_solves() {
   static_assert(!has_old,
                 "delassus: a constraint law needs Vec<rows> solve_local(item, W, b) const in the place of "
                 "project(item, local); see "
-                "docs/migration.md");
+                "docs/project/migration.md");
   static_assert(does || has_old,
                 "delassus: a constraint law needs Vec<rows, T> solve_local(const Item&, const Mat<rows, "
                 "rows, T>& W, const Vec<rows, "

@@ -14,7 +14,7 @@ namespace delassus {
 /// y ← y + α (x − y), α = 1 − exp(−2π f T), then |y| brought down to the limit, its direction kept.
 ///
 /// A filter delays by about 1/(2π f): the stiffness that stays passive falls from 2 b/T to 2 b/(T + 1/(π f)), see
-/// docs/haptics.md. It is off by default. A force that is not finite becomes zero, and the filter starts anew.
+/// docs/theory/haptics.md. It is off by default. A force that is not finite becomes zero, and the filter starts anew.
 struct ForceOutput {
   double cutoff = std::numeric_limits<double>::infinity();      ///< f, Hz
   double period = 1e-3;                                         ///< T of a tick, s

@@ -29,7 +29,7 @@ namespace delassus {
 ///   F = −λ_coupling / h.
 ///
 /// A wall that the snapshot knows is thus felt at the tick's rate, not at the loop's, and F is a map of the device's
-/// position of slope ≤ k between two snapshots, however old they are: docs/haptics.md says what follows from that.
+/// position of slope ≤ k between two snapshots, however old they are: docs/theory/haptics.md says what follows from that.
 ///
 ///     auto& haptics = loop.channel<HapticChannel>();
 ///     haptics.connect(coupling);                                     // before the threads start

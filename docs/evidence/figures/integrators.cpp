@@ -1,10 +1,10 @@
 // Takes a folder, and names of figures if not all are meant. Draws
-// docs/figures/{euler_top,pendulum,pendulum_2000, double_pendulum,double_pendulum_energy,squeezer}.svg and
+// docs/evidence/figures/{euler_top,pendulum,pendulum_2000, double_pendulum,double_pendulum_energy,squeezer}.svg and
 // writes their .csv: error against processor time, one colour an integrator, the step halved from mark to
 // mark. The scenes are those of the tests. From the root of the tree:
 //
-//   g++ -std=c++20 -O3 -DNDEBUG -Iinclude -Itests -isystem /usr/include/eigen3 docs/figures/integrators.cpp
-//   -o integrators && ./integrators docs/figures
+//   g++ -std=c++20 -O3 -DNDEBUG -Iinclude -Itests -isystem /usr/include/eigen3 docs/evidence/figures/integrators.cpp
+//   -o integrators && ./integrators docs/evidence/figures
 #include "loop/chains.hpp"
 #include "loop/smooth_scenes.hpp"
 #include "loop/squeezer.hpp"

@@ -1,5 +1,5 @@
-// What substeps, friction laws, scalar types and numbers of bodies cost: four diagrams of docs/study.md.
-// Takes a folder, docs/study say.
+// What substeps, friction laws, scalar types and numbers of bodies cost: four diagrams of docs/evidence/study.md.
+// Takes a folder, docs/evidence/study say.
 #include <delassus/adapters/posix.hpp>
 #include <delassus/constraints/contact/pyramid.hpp>
 #include <delassus/delassus.hpp>
