@@ -92,7 +92,7 @@ def table(eigen, rows, version):
         "Written by `scripts/compile_budget.py`. E is the CPU time of `#include <Eigen/Dense>`, least of two runs like the others; it needs",
         "196 MB. MB is the compiler's peak, functions are those in the object (`nm`): these two no load changes, and a test keeps",
         "them from growing. *Compiled once*: the same file with `delassus/compiled.hpp`, which leaves to `delassus::compiled` what files of",
-        "a program share ([guide](guide.md#programs-of-many-files)).", "",
+        "a program share ([how to](../how_to/keep_a_loop_in_a_class.md)).", "",
         "| program | E | MB | functions | E, compiled once | MB | functions |",
         "|---|--:|--:|--:|--:|--:|--:|",
     ]

@@ -1,18 +1,25 @@
 #!/usr/bin/env python3
-"""Writes the table of docs/README.md that says what holds, out of the one of docs/evidence/ladders.md.
+"""Makes what the front page of docs/ shows of the evidence: two pictures and a table.
 
-    scripts/front_page.py            writes it
-    scripts/front_page.py --check    exit code 1 if it is not what would be written; a test of the tree
+    scripts/front_page.py            writes docs/pictures/hard_cases.svg, docs/pictures/effects.svg and the table of docs/evidence/what_holds.md
+    scripts/front_page.py --check    exit code 1 if they are not what would be written; a test of the tree
 
-Of each hard case on which another engine was measured: how far the parts that get furthest get.
+The pictures are of docs/evidence/ladders/peers.csv and of the table of docs/evidence/effects.md, the table is of docs/evidence/ladders.md.
 """
+import csv
+import html
 import re
 import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 MARKS = re.compile(r"(<!-- what holds -->\n).*?(<!-- end of what holds -->)", re.DOTALL)
+ENGINES = ["delassus", "MuJoCo", "DART", "ODE", "Bullet"]
+ALL, SOME, NONE = "#2c7fb8", "#a6cfe3", "#f2ab7c"
+TEXT = 'font-family="sans-serif" fill="#333"'
 
+
+# --- the table ------------------------------------------------------------------------------------------------------------
 
 def rows(page):
     """The rows of the ladders' table, each a dictionary."""
@@ -30,6 +37,7 @@ def rungs(cell):
 
 
 def table(page):
+    """Of each hard case on which another engine was measured: how far the parts that get furthest get."""
     cases = {}
     for row in rows(page):
         if row["best peer"] == "not measured" or row["best peer"].startswith("–"):
@@ -44,20 +52,83 @@ def table(page):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    page = DOCS / "README.md"
-    old = page.read_text(encoding="utf-8")
-    text = table((DOCS / "ladders.md").read_text(encoding="utf-8"))
-    new, found = MARKS.subn(lambda m: m[1] + text + m[2], old)
+# --- the pictures ----------------------------------------------------------------------------------------------------------
+
+def picture(width, height, parts):
+    return "\n".join([f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}">',
+                      f'<rect width="{width}" height="{height}" fill="white"/>', *parts, "</svg>"]) + "\n"
+
+
+def word(x, y, text, size=13, anchor="start"):
+    return f'<text x="{x}" y="{y}" font-size="{size}" text-anchor="{anchor}" {TEXT}>{html.escape(text)}</text>'
+
+
+def hard_cases(results):
+    """A square for each case and engine: silver on all rungs, on some, on none, by the engine's setting that got furthest. Cases on which no
+    other engine ran are left out; an engine that did not run has no square."""
+    shares, titles = {}, {}
+    for row in results:
+        engine = next(e for e in ENGINES if row["engine"].startswith(e))
+        if not row["silver"]:
+            continue
+        titles[row["case"], row["title"]] = True
+        key = (row["case"], row["title"], engine)
+        shares[key] = max(shares.get(key, 0), int(row["silver"]) / int(row["rungs"]))
+    cases = [c for c in titles if any((*c, e) in shares for e in ENGINES[1:])]
+    wide, left, side, top = 110, 380, 18, 70
+    parts = [word(left + wide * (k + 0.5), top - 10, engine, 14, "middle") for k, engine in enumerate(ENGINES)]
+    for k, (colour, text) in enumerate(((ALL, "good on every rung"), (SOME, "on some"), (NONE, "on none"))):
+        parts += [f'<rect x="{10 + 190 * k}" y="10" width="{side}" height="{side}" fill="{colour}"/>', word(34 + 190 * k, 24, text, 14)]
+    for line, case in enumerate(cases):
+        y = top + line * (side + 3)
+        parts.append(word(left - 12, y + 13, f"{case[0]} {case[1]}", 12, "end"))
+        for k, engine in enumerate(ENGINES):
+            share = shares.get((*case, engine))
+            if share is not None:
+                colour = ALL if share == 1 else SOME if share > 0 else NONE
+                parts.append(f'<rect x="{left + wide * k + 8}" y="{y}" width="{wide - 16}" height="{side}" rx="3" fill="{colour}"/>')
+    return picture(left + wide * len(ENGINES) + 10, top + len(cases) * (side + 3) + 10, parts)
+
+
+def effects(page):
+    """A bar for each effect: instructions of a step of ten boxes with it, as a multiple of those without, apart from each other."""
+    text = page.split("<!-- effects -->\n")[1].split("<!-- end of effects -->")[0].splitlines()[2:]
+    cells = [[c.strip() for c in line.strip("|").split("|")] for line in text]
+    counts = {name: int(apart.replace(" ", "")) for name, _, apart, *_ in cells}
+    bars = [(name, base, counts[name] / counts[base]) for name, base, *_ in cells if base]
+    left, step, top, scale = 480, 24, 44, 34
+    parts = [word(10, 24, "Instructions of a step, as a multiple of the step without the effect (ten boxes apart)", 14)]
+    for line, (name, base, ratio) in enumerate(bars):
+        y = top + line * step
+        parts += [word(left - 10, y + 14, f"{name.replace('`', '')}, on top of: {base}" if base != "Coulomb friction" else name.replace("`", ""), 12, "end"),
+                  f'<rect x="{left}" y="{y}" width="{max(ratio, 0.02) * scale:.0f}" height="18" rx="3" fill="{ALL if ratio <= 1.1 else SOME if ratio <= 2 else NONE}"/>',
+                  word(left + max(ratio, 1) * scale + 8, y + 14, f"{ratio:.2f} ×", 12)]
+    parts.append(f'<line x1="{left + scale}" x2="{left + scale}" y1="{top - 6}" y2="{top + len(bars) * step}" stroke="#333" stroke-dasharray="3 3"/>')
+    return picture(left + 420, top + len(bars) * step + 12, parts)
+
+
+def made():
+    """Path -> text of all that this writes."""
+    held = DOCS / "evidence/what_holds.md"
+    text, found = MARKS.subn(lambda m: m[1] + table((DOCS / "evidence/ladders.md").read_text(encoding="utf-8")) + m[2], held.read_text(encoding="utf-8"))
     if found != 1:
-        print(f"{page.name} has no marks for the table of what holds")
-        return 1
-    if "--check" not in sys.argv:
-        page.write_text(new, encoding="utf-8")
-    elif new != old:
-        print("docs/README.md does not say what docs/evidence/ladders.md says; scripts/front_page.py brings it up to date")
-        return 1
-    return 0
+        sys.exit(f"{held.name} has no marks for the table of what holds")
+    with open(DOCS / "evidence/ladders/peers.csv", encoding="utf-8", newline="") as results:
+        cases = hard_cases(list(csv.DictReader(results)))
+    return {held: text, DOCS / "pictures/hard_cases.svg": cases,
+            DOCS / "pictures/effects.svg": effects((DOCS / "evidence/effects.md").read_text(encoding="utf-8"))}
+
+
+def main():
+    is_old = False
+    for path, text in made().items():
+        if "--check" not in sys.argv:
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        elif not path.exists() or path.read_text(encoding="utf-8") != text:
+            print(f"{path.relative_to(DOCS.parent)} is not of the evidence; scripts/front_page.py brings it up to date")
+            is_old = True
+    return 1 if is_old else 0
 
 
 if __name__ == "__main__":

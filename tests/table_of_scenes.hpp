@@ -1,4 +1,4 @@
-/// Scenes of the table of acceptance that every collision backend must pass in a loop: docs/theory/collision.md
+/// Scenes of the table of acceptance that every collision backend must pass in a loop: docs/evidence/collision.md
 /// lists them.
 #pragma once
 

@@ -3,9 +3,14 @@
 
 namespace delassus {
 
+/// A release of the library.
 struct Version {
-  int major, minor, patch;
+  /// @var major
+  /// The first number.
+  /// @var minor
+  /// The second one.
+  int major, minor, patch;  ///< the third one
 };
-inline constexpr Version version{0, 1, 0};
+inline constexpr Version version{0, 1, 0};  ///< of these headers
 
 }  // namespace delassus

@@ -1,4 +1,4 @@
-/// Rows of the table of acceptance about distances and normals, for every backend: docs/theory/collision.md lists
+/// Rows of the table of acceptance about distances and normals, for every backend: docs/evidence/collision.md lists
 /// them.
 #pragma once
 

@@ -1,5 +1,5 @@
 /// Rows of the table of acceptance about contacts, pairs and fast bodies, for every backend:
-/// docs/theory/collision.md lists them.
+/// docs/evidence/collision.md lists them.
 #pragma once
 
 #include "collision/boxes.hpp"

@@ -1,5 +1,5 @@
 // The wall and the pile of the demonstration at steps of theirs, solved by Gauss-Seidel to 1e-10, against the
-// reference. docs/guide.md says at which steps neither gets there.
+// reference. docs/reference/limits.md says at which steps neither gets there.
 #include "reference_tests.hpp"
 
 #include "../examples/demonstration/pile_of_shapes.hpp"

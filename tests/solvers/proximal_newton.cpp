@@ -58,6 +58,7 @@ TEST_CASE("cold stacks and mass ratios take a few factorizations and no sweep") 
     CHECK(r.measure.residual <= c.tolerance);
     CHECK(r.factorizations <= c.most);
     CHECK(r.sweeps == 0);
+    CHECK(r.ended_by == std::string("newton"));
   }
 }
 

@@ -18,7 +18,7 @@ class SwitchedOff;
 /// off or fixed have no rows.
 struct HandPicked {
   using plays = role::Activity;
-  static constexpr bool switches_bodies = true;
+  static constexpr bool switches_bodies = true;  ///< read by the loop, which then has switch_off and switch_on
 
   template <class Base>
   using stages = inner::DormantStages<Base>;
@@ -31,8 +31,10 @@ struct HandPicked {
 template <class World, class Laws>
 class SwitchedOff {
  public:
+  /// Who is off.
   const Dormant<World, Laws>& dormant() const { return dormant_; }
 
+  /// Switches everybody on.
   void wake_all(World& world, Laws& laws) {
     while (!dormant_.bodies().empty()) wake(world, laws, dormant_.bodies().back().set, dormant_.bodies().back().block);
   }
@@ -75,6 +77,7 @@ class SwitchedOff {
       else dormant_.wake(world, laws, [&](Index g) { return g == body.group; });
     }
   }
+  /// Bodies that are off are obstacles to those who are on; always true.
   bool add_obstacles(const World& world, ContactCache& book) const {
     for (const auto& body : dormant_.bodies())
       world.visit(body.set, [&](const auto& set, auto s) {
@@ -82,9 +85,13 @@ class SwitchedOff {
       });
     return true;
   }
+  /// Contacts switch nobody on: false.
   bool wake_touched(const auto&...) const { return false; }
+  /// Keeps every contact point.
   void drop_points(const auto&...) const {}
+  /// Who is off does not depend on speeds.
   void watch(const auto&...) const {}
+  /// Nobody is switched off by a step.
   void settle(const auto&...) const {}
 
   void memory(auto& archive) { archive(dormant_, velocity_); }

@@ -24,16 +24,16 @@ namespace delassus {
 template <class World, class Laws>
 class Sleepers;
 
-/// An island falls asleep when for `after` seconds on end each of its bodies was slower than `speed` and `angular_speed`
-/// and was not in free fall, its solve met the tolerance, and no moving kinematic body touched it. Asleep it has no rows, no
-/// pairs and no velocity, and its contacts are not listed; its joints keep their last impulse. It wakes
+/// An island falls asleep when for `after` seconds on end each of its bodies was slower than `speed` and `angular_speed` and
+/// was not in free fall. In that time its solve met the tolerance, and no moving kinematic body touched it. Asleep it has no
+/// rows, no pairs and no velocity, and its contacts are not listed; its joints keep their last impulse. It wakes:
 ///
-///   when an awake body touches it or will within the step, in time for that step;
-///   when the host gives one of its bodies a force, a velocity or another place, or changes the gravity;
-///   when a body it lies on or near, fixed or kinematic, is moved, added or taken out;
-///   when one of its own bodies or joints is taken out, or gets a new joint.
+///   1. When an awake body touches it or will within the step, in time for that step.
+///   2. When the host gives one of its bodies a force, a velocity or another place, or changes the gravity.
+///   3. When a body it lies on or near, fixed or kinematic, is moved, added or taken out.
+///   4. When one of its own bodies or joints is taken out, or gets a new joint.
 ///
-/// An edit of a law's own numbers or of materials wakes nobody: call `loop.wake_all()`.
+/// An edit of a law's own numbers or of materials wakes nobody: Call `loop.wake_all()`.
 struct Sleeping {
   using plays = role::Activity;
   double speed = 5e-3;          ///< m/s
@@ -59,11 +59,14 @@ class Sleepers {
   using Supports = inner::Supports<World, Laws>;
 
  public:
+  /// Who sleeps, in the groups that fell asleep together.
   const Dormant<World, Laws>& dormant() const { return dormant_; }
 
+  /// Wakes everybody.
   void wake_all(World& world, Laws& laws) {
     dormant_.wake(world, laws, [](Index) { return true; });
   }
+  /// Wakes the group of block `block` of set `set`; nothing for one that is awake.
   void wake(World& world, Laws& laws, Index set, Index block) {
     const Index group = dormant_.group_of(set, block);
     if (group >= 0) dormant_.wake(world, laws, [&](Index g) { return g == group; });

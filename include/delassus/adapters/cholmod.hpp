@@ -19,6 +19,7 @@ namespace delassus {
 template <int w>
 class CholmodFactor {
  public:
+  /// The entries between two nodes.
   using Block = Mat<w, w>;
 
   CholmodFactor() {
@@ -71,7 +72,9 @@ class CholmodFactor {
                     "CholmodFactor: CHOLMOD could not analyse the pattern; is there memory for it?");
   }
 
+  /// Nodes of the pattern; −1 before `analyse`.
   Index blocks() const { return Index(first_.size()) - 1; }
+  /// A = 0, with the same pattern.
   void set_zero() { std::fill(A_.begin(), A_.end(), 0.); }
   /// A_ii += block.
   void add_diagonal(Index i, const Block& block) {

@@ -12,6 +12,7 @@ namespace delassus {
 /// a reject. A warm step allocates nothing of ours; FCL itself allocates in `collide` (its list of contact
 /// points).
 using FclCollision = NativeDetection<FclKernel, FclTree>;
+/// What its refusals begin with.
 template <>
 inline constexpr const char* name_of_backend<FclKernel> = "FclCollision";
 

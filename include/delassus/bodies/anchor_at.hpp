@@ -8,8 +8,8 @@
 
 namespace delassus {
 
-/// The material point of a body that is at `point` (world, m) now, with a joint frame that is turned like
-/// `frame` (world) now: the two ends of a joint from one place.
+/// The material point of a body that is at `point` (world, m) now. Its joint frame is turned like `frame` (world)
+/// now. Called for both bodies it gives the two ends of a joint from one place.
 template <BodySet S>
 Anchor anchor_at(const S& set, typename S::Handle body, const Vec3& point,
                  const Quat& frame = Quat::Identity()) {
@@ -23,9 +23,9 @@ Anchor anchor_at(const S& set, typename S::Handle body, const Vec3& point,
 
 /// The turn that takes z to `axis`, for the frame of a hinge or a slider. Any length but zero. With e the unit vector,
 ///
-///   q = (1 + e_z, z × e) normalised, 1 + e_z = (e_x² + e_y²)/(1 − e_z) where e points down, and (0, x) where rounding cannot tell e from −z.
+///   q = (1 + e_z, z × e) normalised, 1 + e_z = (e_x² + e_y²)/(1 − e_z) where e points down.
 ///
-/// Eigen's FromTwoVectors would bring its singular value decomposition: 250 MB of compiler memory.
+/// It is (0, x) where rounding cannot tell e from −z.
 template <class Scalar = double>
 Quat frame_along(const std::type_identity_t<Vec<3, Scalar>>& axis) {
   DELASSUS_EXPECT(is_finite(axis) && norm(axis) > 0, "frame_along: the axis must be finite and not zero");

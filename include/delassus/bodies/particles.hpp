@@ -19,14 +19,14 @@ namespace delassus {
 
 /// A particle as it is added. SI units. `radius` > 0 (m) makes it a sphere for collision, without rotation.
 struct Particle {
-  Vec3 position = zero<Vec3>();
-  Vec3 velocity = zero<Vec3>();
-  std::optional<double> mass{};
-  double radius = 0;
-  bool is_fixed = false;
-  Index material = 0;
-  std::uint32_t group = 1;
-  std::uint32_t collides_with = ~0u;
+  Vec3 position = zero<Vec3>();       ///< world, m
+  Vec3 velocity = zero<Vec3>();       ///< world, m/s; zero of a fixed one
+  std::optional<double> mass{};       ///< kg, > 0; may be left out of a fixed one, which has none
+  double radius = 0;                  ///< m; 0: it meets nothing
+  bool is_fixed = false;              ///< it never moves, whatever acts on it
+  Index material = 0;  ///< a number that `Materials` gave; 0: the law's own friction and restitution
+  std::uint32_t group = 1;            ///< a bit for every group it is in
+  std::uint32_t collides_with = ~0u;  ///< the groups it meets; two bodies meet where both masks say so
 };
 
 /// q = x, v = ẋ. f = m g + loads + springs; A = mass M + damping D + stiffness K of the springs (`Springs`).
@@ -35,10 +35,10 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   using PointStorage = inner::PointStorage<BasicParticles, T>;
 
  public:
-  using Body = Particle;
+  using Body = Particle;  ///< what `add` takes
   using typename PointStorage::Handle, typename PointStorage::Velocity;
   using PointStorage::gravity, PointStorage::moves, PointStorage::v_free, PointStorage::v_next, PointStorage::who;
-  static constexpr const char* kind = "particle";
+  static constexpr const char* kind = "particle";  ///< its word in messages, as in "particle #3"
 
   BasicParticles() = default;
   /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
@@ -73,12 +73,14 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
     springs_.add({i, -1, point, stiffness, damping, rest.value_or(now)}, who(i));
   }
 
+  /// World, m/s. Refuses a fixed particle, and numbers that are not finite.
   void set_velocity(Handle particle, const Vec3& velocity) {
     const Index b = checked(particle);
     check_velocity(velocity, b);
     DELASSUS_EXPECT(mass_[b] > T(0), who(b) + ": a fixed particle has no velocity");
     v_[b] = converted<T>(velocity);
   }
+  /// Puts it elsewhere at once (world, m), its velocity unchanged.
   void place(Handle particle, const Vec3& position) {
     const Index b = checked(particle);
     check_position(position, b);
@@ -87,6 +89,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
 
   // --- reading -------------------------------------------------------------------------------------------------
 
+  /// Σ k (l − L)²/2 over all springs, J.
   double spring_energy() const { return springs_.energy(x_); }
 
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
@@ -123,6 +126,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
     return springs_.solve_mass(b, x);
   }
+  /// A_b⁻¹ x for each column of x, a spring to the world included.
   template <int C>
   Mat<3, C, T> solve_block(Index b, const Mat<3, C, T>& x) const {
     return springs_.solve_block(b, x);
@@ -131,7 +135,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   int anchor_blocks(const Anchor& a) const { return moves(a.block) ? 1 : 0; }
   Index anchor_block(const Anchor& a, int) const { return a.block; }
   Velocity along(const Anchor&, int, const Vec3&, const Vec3& direction) const { return converted<T>(direction); }
-  Vec3 point(const Anchor& a) const { return converted<double>(x_[a.block]); }
+  Vec3 point(const Anchor& a) const { return converted<double>(x_[a.block]); }  ///< world, m
 
   /// x₊ = x + h v_next. A particle whose x₊ is not finite stays where it is.
   void advance(double h) { advance_with(h, T(0)); }
@@ -140,15 +144,22 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
 
   /// One particle at a time, springs aside. The addresses are fetched once, so that no store makes a loop fetch them anew.
   struct Blocks {
-    Velocity *x, *v, *load;
-    const T *mass, *inverse_mass;
-    Velocity gravity;
-    T inverse_scale;
-    inner::QuarantineRecord* record;
+    /// @var x
+    /// World, m, by block.
+    /// @var v
+    /// World, m/s, at the start of the step.
+    Velocity *x, *v, *load;  ///< N; taken when the particle has moved
+    /// kg; 0 of a fixed one.
+    const T *mass, *inverse_mass;  ///< 1/kg; 0 of what does not move
+    Velocity gravity;                 ///< m/s²
+    T inverse_scale;                  ///< 1 / `SystemScale::mass`
+    inner::QuarantineRecord* record;  ///< notes who was left where it was
 
     bool moves(Index b) const { return inverse_mass[b] > T(0); }
-    const Velocity& velocity(Index b) const { return v[b]; }
+    const Velocity& velocity(Index b) const { return v[b]; }  ///< m/s, at the start of the step
+    /// p += load + m g, N.
     void add_force(Index b, Velocity& p) const { p += load[b] + mass[b] * gravity; }
+    /// p += s m v, kg·m/s where s is 1.
     void add_mass_times_velocity(Index b, Velocity& p, double s) const { p += T(s) * mass[b] * v[b]; }
     Velocity solve(Index b, const Velocity& p) const { return (inverse_scale * inverse_mass[b]) * p; }
     /// x and v from v_next; `old_share` of the old velocity in the mean that moves x.
@@ -161,6 +172,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
       set_zero(load[b]);
     }
   };
+  /// Opens the set for one pass over its blocks, and forgets who was left before.
   Blocks by_block(SystemScale scale = {}) {
     quarantine_ = {};
     return {.x = x_.data(),
@@ -177,7 +189,8 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
 
   /// What a scheme that finds x and v of the end itself does with each particle; it leaves x there, and v_next.
   using Path = inner::ParticlePath<T>;
-  auto& state() { return x_; }
+  auto& state() { return x_; }  ///< places, m: what `Path` works on
+  /// v ← v_next of what moves, whose x is there already; loads are taken.
   void finish_step(double) {
     quarantine_ = {};
     for (const Index b : slots_.active()) {
@@ -212,8 +225,8 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   Springs<T> springs_;
 };
 
-using Particles = BasicParticles<double>;
-using ParticlesF = BasicParticles<float>;
+using Particles = BasicParticles<double>;  ///< in double
+using ParticlesF = BasicParticles<float>;  ///< in float
 
 template <class T>
 typename BasicParticles<T>::Handle BasicParticles<T>::add(const Particle& particle) {

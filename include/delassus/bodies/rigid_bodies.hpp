@@ -26,17 +26,17 @@ namespace delassus {
 ///
 ///   A = mass · diag(m 1, R I Rᵀ),   f = (m g + forces, torques about the centre of mass).
 ///
-/// The gyroscopic term is not in f: a step kicks at fixed R, so that impulses enter P and L exactly, then drifts
-/// by free rotation by the midpoint rule (`midpoint_rate`), which keeps L and the energy of each body.
+/// The gyroscopic term is not in f. A step kicks at fixed R, so that impulses enter P and L exactly. Then bodies turn
+/// freely by the midpoint rule (`midpoint_rate`), which keeps L and the energy of each body.
 template <class T>
 class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   using BodyStorage = inner::BodyStorage<BasicRigidBodies, T, 6>;
 
  public:
-  using Body = RigidBody;
+  using Body = RigidBody;  ///< what `add` takes
   using typename BodyStorage::Handle, typename BodyStorage::Velocity;
   using BodyStorage::gravity, BodyStorage::v_free, BodyStorage::v_next, BodyStorage::who;
-  static constexpr const char* kind = "rigid body";
+  static constexpr const char* kind = "rigid body";  ///< its word in messages, as in "rigid body #3"
 
   BasicRigidBodies() = default;
   /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
@@ -70,6 +70,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     const Vec3 arm = point - position_of(b);
     load_[b] += twist<T>(converted<T>(force), converted<T>(cross(arm, force)));
   }
+  /// The same at the centre of mass: no torque.
   void apply_force(Handle body, const Vec3& force) {
     load_[checked(body)] += twist<T>(converted<T>(force), zero<Vec<3, T>>());
   }
@@ -78,6 +79,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     load_[checked(body)] += twist<T>(zero<Vec<3, T>>(), converted<T>(torque));
   }
 
+  /// Of the centre of mass (m/s) and of the turn (rad/s), world. Refuses a fixed body.
   void set_velocity(Handle body, const Vec3& velocity, const Vec3& angular_velocity = zero<Vec3>()) {
     const Index b = checked(body);
     check_velocity(velocity, angular_velocity, b);
@@ -101,14 +103,19 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
+  /// Of the centre of mass, world, m.
   Vec3 position(Handle body) const { return position_of(checked(body)); }
+  /// Body to world, unit.
   Quat orientation(Handle body) const { return converted<double>(state_.q[checked(body)]); }
   using BodyStorage::velocity;
+  /// Of the centre of mass, world, m/s.
   Vec3 velocity(Handle body) const { return converted<double>(linear_part(v_[checked(body)])); }
+  /// World, rad/s.
   Vec3 angular_velocity(Handle body) const { return converted<double>(angular_part(v_[checked(body)])); }
-  double mass(Handle body) const { return state_.mass[checked(body)]; }
+  double mass(Handle body) const { return state_.mass[checked(body)]; }  ///< kg; 0 of one that is not dynamic
+  /// About the centre of mass, in the axes of the body, kg·m²; zero of one that is not dynamic.
   const Mat<3, 3, T>& inertia(Index b) const { return state_.inertia[b]; }
-  T mass(Index b) const { return state_.mass[b]; }
+  T mass(Index b) const { return state_.mass[b]; }  ///< kg, of a block
 
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------------
 
@@ -118,13 +125,14 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     if (is_held) state_.inverse_mass[b] = T(0), set_all(state_.inverse_inertia_world[b], T(0));
     else set_mass(b);
   }
-  Motion motion(Index b) const { return motion_[b]; }
+  Motion motion(Index b) const { return motion_[b]; }  ///< as it was added; fixed once it is removed
 
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }
 
   void add_forces(inner::Slice<Velocity> p) const {
     for (const Index b : slots_.active()) add_force(b, p[b]);
   }
+  /// The same of block b: p += loads + m g, N and N·m, without the gyroscopic term.
   void add_force(Index b, Velocity& p) const {
     p += load_[b];
     const Vec<3, T> weight = state_.mass[b] * Vec<3, T>(converted<T>(gravity));
@@ -135,6 +143,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   void add_mass_times_velocity(inner::Slice<Velocity> p, double s) const {
     for (const Index b : slots_.active()) add_mass_times_velocity(b, p[b], s);
   }
+  /// The same of block b; nothing where it does not move.
   void add_mass_times_velocity(Index b, Velocity& p, double s) const {
     if (moves(b)) p += state_.momentum(b, v_[b], T(s));
   }
@@ -145,10 +154,11 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     return state_.solve(b, x, inverse_scale_);
   }
 
-  /// What A⁻¹ is made of, mass scale aside: 1/m, and R I⁻¹ Rᵀ about `centre`.
+  /// 1/kg, mass scale aside; 0 of what does not move.
   T inverse_mass(Index b) const { return state_.inverse_mass[b]; }
+  /// R I⁻¹ Rᵀ about `centre`, in the axes of the world, 1/(kg·m²); zero of what does not move.
   const Mat<3, 3, T>& inverse_inertia(Index b) const { return state_.inverse_inertia_world[b]; }
-  const Vec3& centre(Index b) const { return state_.x[b]; }
+  const Vec3& centre(Index b) const { return state_.x[b]; }  ///< of mass, world, m
 
   /// A fixed body answers to nothing and does not move: it has no block in any row.
   int anchor_blocks(const Anchor& a) const { return motion_[a.block] == Motion::fixed ? 0 : 1; }
@@ -161,11 +171,14 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   Velocity about(const Anchor&, int, const Vec3& axis) const {
     return twist<T>(zero<Vec<3, T>>(), converted<T>(axis));
   }
+  /// World, m.
   Vec3 point(const Anchor& a) const {
     return state_.x[a.block] +
            converted<double>(Vec<3, T>(state_.R[a.block] * converted<T>(a.local)));
   }
+  /// Of a joint on it, to the world.
   Quat frame(const Anchor& a) const { return converted<double>(state_.q[a.block]) * a.frame; }
+  /// The same as a matrix whose columns are the axes.
   Mat3 axes(const Anchor& a) const { return converted<double>(state_.R[a.block]) * a.frame.toRotationMatrix(); }
 
   /// Kick and drift: x₊ = x + h v_next, and free rotation from ω_next. A body whose state after it is not finite stays
@@ -178,15 +191,19 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
 
   /// One body at a time.
   struct Blocks {
-    BasicRigidBodies& set;
+    BasicRigidBodies& set;  ///< whose bodies these are
 
     bool moves(Index b) const { return set.moves(b); }
+    /// m/s and rad/s, at the start of the step.
     const Velocity& velocity(Index b) const { return set.v_[b]; }
+    /// p += loads + m g, N and N·m.
     void add_force(Index b, Velocity& p) const { set.add_force(b, p); }
+    /// p += s M v; nothing where the body does not move.
     void add_mass_times_velocity(Index b, Velocity& p, double s) const { set.add_mass_times_velocity(b, p, s); }
     Velocity solve(Index b, const Velocity& p) const { return set.template solve_block<1>(b, p); }
     void advance(Index b, const Velocity& next, double h, auto share) const { set.advance_block(b, next, h, share); }
   };
+  /// Opens the set for one pass over its blocks, and forgets who was left before.
   Blocks by_block(SystemScale scale) {
     factor(scale);
     quarantine_ = {};
@@ -209,13 +226,15 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     for (const Index b : slots_.active())
       if (motion_[b] != Motion::fixed) state_.displace(b, T(h) * linear_part(v_[b]), T(h) * angular_part(v_[b]));
   }
+  /// Back to the poses that `shift` set aside.
   void restore() { state_.restore_poses(slots_.active()); }
 
   /// What a midpoint rule that is solved by Newton's method does with each body.
   using Midpoint = inner::RigidMidpoint<T>;
-  auto& state() { return state_; }
+  auto& state() { return state_; }  ///< poses, masses and inertias: what `Midpoint` and `Path` work on
   /// What a scheme that finds q and v of the end itself does with each body; it leaves q there, and v_next.
   using Path = inner::RigidPath<T>;
+  /// v ← v_next of dynamic bodies, whose q is there already; moves kinematic ones by h (s).
   void finish_step(double h) {
     quarantine_ = {};
     for (const Index b : slots_.active()) {
@@ -228,11 +247,12 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
       set_all(load_[b], T(0));
     }
   }
-  auto& targets() { return targets_; }
+  auto& targets() { return targets_; }  ///< of `move_to`, for a scheme that does a step in parts
 
   /// What collision detection needs of each body.
   bool has_collider(Index b) const { return this->is_alive(b) && shapes_.kind(b) != ShapeKind::none; }
-  Shape shape(Index b) const { return shapes_.of(b); }
+  Shape shape(Index b) const { return shapes_.of(b); }  ///< a hull has its centre of volume at the origin
+  /// Centre of mass (m) and axes, to the world.
   Pose pose(Index b) const { return {position_of(b), converted<double>(state_.R[b])}; }
 
   /// What outlives a step, shapes included; handles of the set that wrote it stay with that set.
@@ -283,8 +303,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   inner::Shapes shapes_;
 };
 
-using RigidBodies = BasicRigidBodies<double>;
-using RigidBodiesF = BasicRigidBodies<float>;
+using RigidBodies = BasicRigidBodies<double>;  ///< in double
+using RigidBodiesF = BasicRigidBodies<float>;  ///< in float
 
 template <class T>
 typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) {

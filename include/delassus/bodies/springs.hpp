@@ -15,25 +15,31 @@ namespace delassus {
 
 /// Between blocks `a` and `b`, or `a` and `point` of the world when b < 0. N/m, N·s/m, m.
 struct Spring {
-  Index a = -1, b = -1;
-  Vec3 point = zero<Vec3>();
-  double stiffness = 0, damping = 0, rest = 0;
+  /// A block of the set.
+  Index a = -1, b = -1;  ///< another block, or −1
+  Vec3 point = zero<Vec3>();  ///< world, m; read where b < 0
+  /// @var stiffness
+  /// N/m, ≥ 0.
+  /// @var damping
+  /// N·s/m, ≥ 0.
+  double stiffness = 0, damping = 0, rest = 0;  ///< length without a force, m, from 0 to 1e20
 };
 
 /// f_a = −(k (l − L) + c ė) e with e the unit vector from b to a, l the length, and for A
 ///
 ///   K = k [(1 − L/l)₊ (1 − e eᵀ) + e eᵀ],   D = c e eᵀ.
 ///
-/// The first term of K is negative while a spring is pressed (l < L); it is cut at zero there, so that A stays
-/// positive definite: the step is then implicit in the spring's direction only.
+/// The first term of K is negative while a spring is pressed (l < L). It is cut at zero there, so that A stays
+/// positive definite. The step is then implicit in the spring's direction only.
 template <class T>
 class Springs {
  public:
-  using Block = Mat<3, 3, T>;
-  using Velocity = Vec<3, T>;
-  using Vec3 = Vec<3, DoubleIn<T>>;
-  using Mat3 = Mat<3, 3, DoubleIn<T>>;
+  using Block = Mat<3, 3, T>;           ///< of A
+  using Velocity = Vec<3, T>;           ///< also of places and forces
+  using Vec3 = Vec<3, DoubleIn<T>>;     ///< in double, whatever T is
+  using Mat3 = Mat<3, 3, DoubleIn<T>>;  ///< in double, whatever T is
 
+  /// Refuses numbers that are negative or not finite, and a spring of one end; `who` begins the message.
   void add(const Spring& spring, const std::string& who) {
     inner::expect_not_negative(who + ": spring stiffness", spring.stiffness, "N/m");
     inner::expect_not_negative(who + ": spring damping", spring.damping, "N·s/m");
@@ -46,12 +52,14 @@ class Springs {
     springs_.push_back(spring);
     analysed_blocks_ = -1;
   }
+  /// Takes out every spring that holds this block.
   void remove_of(Index block) {
     erase_if(springs_, [&](const Spring& s) { return s.a == block || s.b == block; });
     analysed_blocks_ = -1;
   }
 
-  bool is_empty() const { return springs_.empty(); }
+  bool is_empty() const { return springs_.empty(); }  ///< no spring at all
+  /// Whether the last `factor` met a spring between two blocks that move.
   bool is_coupled() const { return is_coupled_; }
   /// f(a, b) for blocks that A couples.
   void each_tie(auto&& f) const {
@@ -59,6 +67,7 @@ class Springs {
     for (const auto& [a, b] : pairs_) f(a, b);
   }
 
+  /// Σ k (l − L)²/2 at the places x (m), J.
   double energy(std::span<const Velocity> x) const {
     double sum = 0;
     for (const Spring& s : springs_) {
@@ -114,11 +123,12 @@ class Springs {
         inverse_[b] = inverse_mass[b] > 0 ? Block(inverse_[b].inverse()) : Block(zero<Block>());
   }
 
-  /// (scale.mass · m_b)⁻¹ x: as if no spring were there.
+  /// (mass scale · m_b)⁻¹ x: as if no spring were there.
   template <int C>
   Mat<3, C, T> solve_mass(Index b, const Mat<3, C, T>& x) const {
     return (inverse_scale_ * inverse_mass_[b]) * x;
   }
+  /// A_b⁻¹ x for each column of x: right where A does not couple b to another block.
   template <int C>
   Mat<3, C, T> solve_block(Index b, const Mat<3, C, T>& x) const {
     if (inverse_.empty()) return (inverse_scale_ * inverse_mass_[b]) * x;

@@ -47,7 +47,7 @@ template <class... Sets>
 class World {
  public:
   using plays = role::World;
-  static constexpr int set_count = int(sizeof...(Sets));
+  static constexpr int set_count = int(sizeof...(Sets));  ///< how many types `Sets` names
   /// Velocities of a block of set s; 0 for the world, s < 0.
   template <int s>
   static constexpr int width_of =
@@ -60,20 +60,25 @@ class World {
   World()
     requires(set_count > 0)
   = default;
+  /// Takes the sets over, in their order.
   explicit World(Sets... sets) : sets_{{static_cast<Sets&&>(sets)}...} {}
 
+  /// Number s of the list of types, from 0.
   template <int s>
   auto& set() {
     return inner::part<s>(sets_);
   }
+  /// The same, to read.
   template <int s>
   const auto& set() const {
     return inner::part<s>(sets_);
   }
+  /// The only set of this type; with none, or with two, it does not compile.
   template <class Set>
   Set& get() {
     return the<Set>(sets_);
   }
+  /// The same, to read.
   template <class Set>
   const Set& get() const {
     return the<Set>(sets_);
@@ -84,6 +89,7 @@ class World {
   [[gnu::always_inline]] void each(F&& f) {
     each_of(*this, f, std::make_integer_sequence<int, set_count>{});
   }
+  /// The same, to read.
   template <class F>
   [[gnu::always_inline]] void each(F&& f) const {
     each_of(*this, f, std::make_integer_sequence<int, set_count>{});
@@ -208,11 +214,13 @@ template <class S, class... Sets>
 S& bodies(World<Sets...>& world) {
   return world.template get<S>();
 }
+/// The same, to read.
 template <class S, class... Sets>
 const S& bodies(const World<Sets...>& world) {
   return world.template get<S>();
 }
 
+/// double or float: that of all its sets.
 template <class World>
 using scalar_t = typename World::Scalar;
 

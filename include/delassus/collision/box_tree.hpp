@@ -199,5 +199,6 @@ class BasicBoxTree {
   Tree trees_[2];  ///< of what does not move, of what does
 };
 
+/// Fattens by doubles: the one that backends have.
 using BoxTree = BasicBoxTree<double>;
 }  // namespace delassus

@@ -12,11 +12,11 @@ namespace delassus {
 
 /// Accepts an answer whose normal n is a unit vector and whose distance is what n proves,
 ///
-///   | h(n) + distance | ≤ 1e-3 max(|distance|, 1e-3 L),   h(n) = n · (s_A(n) − s_B(−n)),
+///   | h(n) + distance | ≤ 1e-3 max(|distance|, 1e-3 L),   h(n) = n · (s_A(n) − s_B(−n)).
 ///
-/// or, for `far`, one with −h(n) > margin. h is an upper bound of the depth, so an accepted normal always
-/// separates. On acceptance the witnesses are rebuilt: heights along n from the support points, so that b − a
-/// = −h(n) n exactly.
+/// Of `far` ones, it accepts those with −h(n) > margin. An upper bound of the depth is h, so an accepted normal always
+/// separates. On acceptance the witnesses are rebuilt: Heights along n from the support points, so that b − a = −h(n) n
+/// exactly.
 template <std::same_as<SignedPair> Pair>
 bool certify(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, double scale, Pair& r) {
   if (r.status == PairStatus::failed || !is_finite(r.normal) || !std::isfinite(r.distance)) return false;

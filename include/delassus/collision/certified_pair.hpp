@@ -32,10 +32,9 @@ concept GivesLeastDepth = requires {
   requires Kernel::gives_least_depth;
 };
 
-/// True when an answer that holds deserves a second opinion all the same: of bodies apart, when the normal
-/// proves less than 1 − 1e-6 of the `claimed` distance, which is a lean of 0.08°, or the gap is below 1e-5 of
-/// the scale, where tolerances of others end; of an overlap always, since the way out that portals find may
-/// be the least of its neighbourhood only.
+/// True when an answer that holds deserves a second opinion all the same. Of bodies apart, when the normal proves less than
+/// 1 − 1e-6 of the `claimed` distance, which is a lean of 0.08°, or the gap is below 1e-5 of the scale, where tolerances of
+/// others end. Of an overlap always, since the way out that portals find may be the least of its neighbourhood only.
 inline bool is_doubtful(double scale, double claimed, const SignedPair& r) {
   return r.status == PairStatus::near && !(r.distance >= std::max(1e-5 * scale, (1 - 1e-6) * claimed));
 }

@@ -15,17 +15,18 @@ namespace delassus {
 
 /// Which pairs may collide, besides their groups: `NoFilter` says all.
 struct NoFilter {
+  /// Asked with the `pair_key` of two colliders: true for each.
   constexpr bool lets(std::uint64_t) const { return true; }
 };
 
 /// A posed, moving shape. m, m/s, rad/s, world frame.
 struct Collider {
-  Shape shape{};
-  Pose pose{};
-  Vec3 velocity = zero<Vec3>();
-  Vec3 angular_velocity = zero<Vec3>();
+  Shape shape{};  ///< without one nothing is touched
+  Pose pose{};  ///< from the axes of the shape to the world's
+  Vec3 velocity = zero<Vec3>();  ///< of the origin of the pose, m/s
+  Vec3 angular_velocity = zero<Vec3>();  ///< rad/s, axes of the world
   bool is_movable = true;  ///< two colliders that neither move are never paired
-  std::uint32_t group = 1;
+  std::uint32_t group = 1;  ///< bits that the other one's `collides_with` is asked for
   std::uint32_t collides_with = ~0u;  ///< pairs when each one's group meets the other's mask
   std::uint32_t key = 0;              ///< names this collider from step to step; unique
 
@@ -48,7 +49,9 @@ constexpr std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
 
 /// One contact. `a` and `b` index the colliders of this call, key of a < key of b. World frame.
 struct ContactPoint {
-  Index a = -1, b = -1;
+  /// Places among the colliders of the call: of the smaller key.
+  Index a = -1, b = -1;  ///< and of the larger key
+  /// Witness on A, m.
   Vec3 point_a = zero<Vec3>(), point_b = zero<Vec3>();  ///< point_b − point_a = gap · normal
   Vec3 normal = unit_axis(2);                           ///< unit, from A to B
   double gap = 0;                                       ///< m, negative when the bodies overlap
@@ -66,7 +69,7 @@ struct ContactPoint {
 /// Counts of one call: pairs the broad phase offered, pairs whose distance was computed, answers of the
 /// kernel that the certificate refused (the native kernel answered instead), contact points.
 struct CollisionReport {
-  Index pairs = 0, queries = 0, rejects = 0, points = 0;
+  Index pairs = 0 /**< offered by the broad phase */, queries = 0 /**< distances computed */, rejects = 0 /**< refused answers */, points = 0;  ///< contacts
 };
 
 /// Answers with the contact points of this step, sorted by pair and feature.

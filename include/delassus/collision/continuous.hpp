@@ -22,21 +22,21 @@
 
 namespace delassus {
 
-/// `Continuous{NativeCollision{}}` in the place of the backend: a pair that would come to touch within the
-/// step, from farther than the backend's margin, gets contacts now, with the way left to go as their gap.
-/// They hold the bodies at the place of impact, whatever the speed; the next step finds them there.
-/// `WithCompounds`, `WithFilter` go around it.
+/// `Continuous{NativeCollision{}}` in the place of the backend: A pair that would come to touch within the step, from farther
+/// than the backend's margin, gets contacts now, with the way left to go as their gap. They hold the bodies at the place of
+/// impact, whatever the speed; the next step finds them there. `WithCompounds`, `WithFilter` go around it. Convex shapes and
+/// half-spaces only.
 ///
-/// t is the time of impact, n the normal and r the arms of the points that meet then, with the velocities of
-/// the start of the step. Where the motion is mostly a turn, the points themselves are held,
+/// Let t be the time of impact, n the normal and r the arms of the points that meet then, with the velocities of the start of
+/// the step. Where the motion is mostly a turn, the points themselves are held,
 ///
-///   gap = t n · (v_A + ω_A × r_A − v_B − ω_B × r_B);
+///   gap = t n · (v_A + ω_A × r_A − v_B − ω_B × r_B).
 ///
-/// where it is mostly a flight, the middle of the body that flies is, gap = t n · (v_A − v_B): an impulse
-/// beside the middle would turn it and let it fly on. A body that turns while it flies is held by both. For
-/// the same reason a ball within a fast body is held by its middle, also when the body touches already: then
-/// at once, and the next point that its turn would bring through the plane of that contact is held as well.
-/// Convex shapes and half-spaces only.
+/// Where it is mostly a flight, the middle of the body that flies is, gap = t n · (v_A − v_B). An impulse beside the middle
+/// would turn it and let it fly on. A body that turns while it flies is held by both.
+///
+/// For the same reason a ball within a fast body is held by its middle, also when the body touches already. Then it is held at
+/// once, and so is the next point that its turn would bring through the plane of that contact.
 template <class Backend = inner::Absent>
 struct Continuous {
   using plays = role::Collision;
@@ -44,9 +44,10 @@ struct Continuous {
   /// Around what is no backend, or in another order; the loop's checks say so.
   static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::continuous>;
 
-  Backend backend{};
+  Backend backend{};  ///< finds what touches now
 
   Continuous() = default;
+  /// Around this backend.
   explicit Continuous(Backend b) : backend(std::move(b)) {}
 
   void check() const { inner::check_if_it_can(backend); }
@@ -106,9 +107,8 @@ struct Continuous {
            is_finite(c.pose.position) && is_finite(c.pose.rotation);
   }
 
-  /// Whoever moves further in a step than half the margin that the backend gives any pair here, since two
-  /// that do not are seen; or than the ball of half its size, since what is thin is then seen on its far
-  /// side.
+  /// Whoever moves further in a step than half the margin that the backend gives any pair here, since two that do not are seen.
+  /// Also who moves further than the ball of half its size, since what is thin is then seen on its far side.
   void find_fast(inner::Slice<const Collider> colliders, double h) {
     const CollisionSettings s = inner::settings_of(backend);
     double way = 0.5 * s.margin;

@@ -28,8 +28,8 @@ inline constexpr double cone_slack = 0.02;
 
 /// Whether and where the point x touches the triangle.
 ///
-///   over the triangle, or beside it by 1e-5 L or 0.02 rad:  n = the triangle's, the gap is the height
-///   in front of it, beside it:                              n = (x − foot) / |x − foot|, the foot nearest
+/// Over the triangle, or beside it by 1e-5 L or 0.02 rad, n is the triangle's and the gap is the height.
+/// In front of it, beside it, n = (x − foot) / |x − foot|, the foot nearest.
 ///
 /// Behind a hollow edge the plane goes on, to 5e-3 L. Beside an edge n must be in its cone
 /// (`Triangle::lean`).

@@ -22,7 +22,7 @@ struct GjkResult {
 ///   v·w/|v| = −h(n) ≤ distance ≤ |v|.
 ///
 /// Ends when the bounds meet to 1e-10, when −h exceeds `margin`, or when the origin lies within 1e-10 of the
-/// size of the difference: then the direction of v holds no digits, and EPA goes on from the simplex. Source:
+/// size of the difference. Then the direction of v holds no digits, and EPA goes on from the simplex. Source:
 /// [GilbertJohnsonKeerthi1988]; the stopping bound is that of [VanDenBergen2003].
 template <class D>
 GjkResult gjk(const D& difference, Vec3 direction, double margin) {

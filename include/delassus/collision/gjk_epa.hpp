@@ -10,8 +10,10 @@ namespace delassus {
 /// Exact to 1e-9 of the size for any convex pair, apart, touching or deep. Scale free: no absolute length
 /// enters.
 struct GjkEpa {
-  static constexpr bool gives_least_depth = true;
+  static constexpr bool gives_least_depth = true;  ///< read by the certificate, which then asks for no second opinion
 
+  /// Distance of two shapes, in the frame of A; `far` beyond `margin` (m).
+  /// The search begins along `cache.guess`, where it is not zero.
   template <class Cache>
   SignedPair pair(const Shape& a, const Shape& b, const Pose& b_in_a, double margin, Cache& cache) const noexcept {
     SignedPair r;

@@ -54,9 +54,8 @@ inline bool is_cap(const Shape& s, const Face& face) {
   return (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone) && face.count >= 8;
 }
 
-/// Of two round caps, gives the other one corners where the first has its own: the caps have none, and equal
-/// caps one on the other shall overlap in all of them, however they are turned. The origins of the bodies lie
-/// on their axes.
+/// Of two round caps, gives the other one corners where the first has its own. The caps have none, and equal caps one on the
+/// other shall overlap in all of them, however they are turned.
 inline void align_octagons(const Face& cap, const Vec3& origin, Face& other, const Vec3& other_origin) {
   const auto centre = [](const Face& f, const Vec3& on_axis) {
     return Vec3(on_axis + f.normal * dot(f.normal, f.point[0] - on_axis));
@@ -139,9 +138,9 @@ inline void add_witness(const PatchPoint& witness, double scale, Patch& patch) {
 
 }  // namespace inner
 
-/// The patch in the frame of A, for the certified answer `r`: all corners with a gap up to `margin`, and the
-/// witness when they miss its depth by more than 5e-5 of the scale (a round rim between two corners, a
-/// vertex, crossing edges).
+/// The patch in the frame of A, for the certified answer `r`. It has all corners with a gap up to `margin`, and the witness
+/// when they miss its depth by more than 5e-5 of the scale. (They do for a round rim between two corners, a vertex, crossing
+/// edges.)
 inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, const SignedPair& r,
                           double margin, double scale, Patch& patch) {
   const Vec3& n = r.normal;

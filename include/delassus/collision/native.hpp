@@ -36,7 +36,7 @@ struct NativeDetection {
   double margin = -1;  ///< contacts up to this gap, m; negative: by size and speed (CollisionSettings)
   double contact_distance = 0;  ///< thickness between the bodies, m
   int max_points = 4;           ///< of one pair
-  inner::OnDemand<CollisionEngine<Kernel, Broad>> engine{};
+  inner::OnDemand<CollisionEngine<Kernel, Broad>> engine{};  ///< made by the first detection
 
   void check() const;
   /// What outlives a step.

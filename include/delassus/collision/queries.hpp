@@ -17,8 +17,8 @@ namespace delassus {
 
 /// A point on a body. `anchor` names it as joints do, so that it can be held from here on.
 struct SurfacePoint {
-  bool is_found = false;
-  Anchor anchor{};
+  bool is_found = false;  ///< false: nothing within reach
+  Anchor anchor{};  ///< by the body's own coordinates
   Vec3 point = zero<Vec3>();   ///< on the surface, world frame, m
   Vec3 normal = zero<Vec3>();  ///< unit, out of the body
   double distance = 0;         ///< m: along the ray, or from the point asked for, negative inside
@@ -27,8 +27,8 @@ struct SurfacePoint {
 
 /// The shortest way between two bodies, or out of each other. World frame, m; b − a = distance · normal.
 struct Separation {
-  double distance = 0;
-  Vec3 normal = zero<Vec3>(), point_a = zero<Vec3>(), point_b = zero<Vec3>();
+  double distance = 0;  ///< negative: how deep they overlap
+  Vec3 normal = zero<Vec3>() /**< unit, from a to b */, point_a = zero<Vec3>() /**< on a */, point_b = zero<Vec3>();  ///< on b
 };
 
 namespace inner {
@@ -110,8 +110,8 @@ struct PassKept {
   void operator()(const auto&...) const {}
 };
 
-/// f(set, s, b, shape, pose) for body b of set s when it has a shape and its group meets the mask, `kept` of the same
-/// when a backend keeps that; a body that is not finite has none.
+/// f(set, s, b, shape, pose) for body b of set s when it has a shape and its group meets the mask. When a backend keeps the
+/// shape, `kept` is called with the same. A body that is not finite has none.
 template <class Set, class F, class Kept>
 void ask(const Set& set, Index s, Index b, std::uint32_t groups, const Kept& kept, const F& f) {
   if (!set.has_collider(b) || (set.group(b) & groups) == 0) return;

@@ -18,13 +18,12 @@
 
 namespace delassus {
 
-/// `Seamless{NativeCollision{}}` in the place of the backend: a body that slides over tiles does not hit the edges of the next
-/// one. WithMeshes, Continuous, WithCompounds and WithFilter go around it. Its rule, for a body A that touches B by the normal n
-/// (from A) at the point p of B:
+/// `Seamless{NativeCollision{}}` in the place of the backend: A body that slides over tiles does not hit the edges of the next
+/// one. WithMeshes, Continuous, WithCompounds and WithFilter go around it.
 ///
-///   another body C that begins at the plane of that contact, |min n·C − n·p| ≤ `level`, is no obstacle to A in another direction
-///   than n, as long as A lies on B: their contacts are left out, but where they bear, which is where they overlap and
-///   their normal is within 30° of n.
+/// Its rule is for a body A that touches B by the normal n (from A) at the point p of B. Another body C that begins at the plane
+/// of that contact, |min n·C − n·p| ≤ `level`, is no obstacle to A in another direction than n, as long as A lies on B. Their
+/// contacts are left out, but where they bear. They bear where they overlap and their normal is within 30° of n.
 ///
 /// A lip lower than `level` is passed, and closed as an overlap where it is stood on. Source: none; the idea of
 /// leaving out features that lie in the plane of another contact is common in games' engines.
@@ -35,10 +34,11 @@ struct Seamless {
   /// Around what is no backend, or in another order; the loop's checks say so.
   static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::seamless>;
 
-  Backend backend{};
+  Backend backend{};  ///< finds the contacts, seams included
   double level = 1e-3;  ///< m
 
   Seamless() = default;
+  /// Around this backend; `largest_step` becomes `level`.
   explicit Seamless(Backend b, double largest_step = 1e-3) : backend(std::move(b)), level(largest_step) {}
 
   void check() const {

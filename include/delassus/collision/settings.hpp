@@ -12,8 +12,8 @@ namespace delassus {
 /// with L the smaller size of the pair. `contact_distance`: thickness of every pair, m; the gap is what is
 /// left beyond it.
 struct CollisionSettings {
-  double margin = -1;
-  double contact_distance = 0;
+  double margin = -1;  ///< m; negative: automatic
+  double contact_distance = 0;  ///< m, at least 0
   int max_points = 4;  ///< of one pair, at most 8
 
   void check(const char* who) const {

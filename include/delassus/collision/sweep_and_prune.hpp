@@ -14,6 +14,7 @@ namespace delassus {
 /// the one along which the centres of the boxes spread most.
 class SweepAndPrune {
  public:
+  /// Appends the pairs of places whose boxes intersect, the lower place first. An empty box is in none.
   void find(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
     const int axis = widest_axis(boxes);
     if (boxes.size() != order_.size() || axis != axis_) restart(boxes, axis);

@@ -41,8 +41,8 @@ struct Rim {
   }
 };
 
-/// The internal edges of a surface are no edges to touch: a normal may lean out over an edge as far as the
-/// surface bends away there, and not at all where it is flat or hollow.
+/// The internal edges of a surface are no edges to touch. A normal may lean out over an edge as far as the surface bends away
+/// there, and not at all where it is flat or hollow.
 inline bool is_allowed(const Triangle& t, const Rim& rim, const Vec3& n) {
   if (rim.count == 3) return true;
   if (dot(n, t.normal) < -1e-6) return false;
@@ -88,15 +88,13 @@ inline Face face_of(const Triangle& t, const Rim& rim) {
 /// Whether a triangle has contacts, and whether they hold without a look at its neighbours.
 enum class PatchTrust : std::uint8_t { none, sure, doubtful };
 
-/// Contacts of the shape, posed in the frame of the triangle (A), up to the gap `margin` (m), in `patch`;
-/// `normal` is that of all of them, unit, from the triangle to the shape. A shape whose middle is behind the
-/// triangle does not meet it.
+/// Contacts of the shape, posed in the frame of the triangle (A), up to the gap `margin` (m), in `patch`. Their `normal` is
+/// one for all, unit, from the triangle to the shape. A shape whose middle is behind the triangle does not meet it.
 ///
-///   1. the shape's lowest point over the triangle and above it: the normal is the triangle's;
-///   2. else the shortest way apart, by GJK and EPA of the cores, a closed form for spheres;
-///   3. a normal within 0.02 rad and 1e-5 L as good, or one that the rim does not allow, becomes the
-///      triangle's; in the latter case the answer is `doubtful`: it holds on a plain and not at the rim of a
-///      cliff.
+///   1. The shape's lowest point over the triangle and above it. The normal is the triangle's.
+///   2. Else the shortest way apart, by GJK and EPA of the cores, a closed form for spheres.
+///   3. A normal within 0.02 rad and 1e-5 L as good, or one that the rim does not allow, becomes the triangle's. In the
+///      latter case the answer is `doubtful`: It holds on a plain and not at the rim of a cliff.
 inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& pose, double margin,
                                  double scale, Patch& patch, Vec3& normal) {
   patch.count = 0;

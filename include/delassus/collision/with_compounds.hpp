@@ -27,9 +27,10 @@ struct WithCompounds {
   /// Around what is no backend, or in another order; the loop's checks say so.
   static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::compounds>;
 
-  Backend backend{};
+  Backend backend{};  ///< is given bodies and parts alike as convex shapes
 
   WithCompounds() = default;
+  /// Around this backend.
   explicit WithCompounds(Backend b) : backend(std::move(b)) {}
 
   /// Keeps a compound; the shape it returns is for bodies of the loop that has this backend, as many as

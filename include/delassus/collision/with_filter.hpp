@@ -29,10 +29,11 @@ struct WithFilter {
   static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::filter>;
   static constexpr bool asks_for_joints = true;  ///< the loop calls refresh before each detect
 
-  Backend backend{};
+  Backend backend{};  ///< asks `lets` before it computes a distance, if it can
   bool joined = true;  ///< bodies with a joint between them pass through each other
 
   WithFilter() = default;
+  /// Around this backend; `lets_joined_pass` becomes `joined`.
   explicit WithFilter(Backend b, bool lets_joined_pass = true)
       : backend(std::move(b)), joined(lets_joined_pass) {}
 
@@ -78,6 +79,7 @@ struct WithFilter {
     }
   }
 
+  /// Whether two may collide, by their `pair_key`; of joints as at the last `refresh`.
   bool lets(std::uint64_t pair) const { return !inner::is_listed(pairs_, pair); }
 
   void memory(auto& archive) {

@@ -20,10 +20,10 @@
 
 namespace delassus {
 
-/// `WithMeshes{NativeCollision{}}` in the place of the backend: convex pairs are the backend's, and bodies
-/// with a shape that `add` returned meet convex ones and half-spaces by their triangles, and each other by
-/// their vertices, edges and triangles. The solid is behind the triangles, so a convex body whose middle is
-/// behind one does not meet it; a mesh wholly inside a closed one is pushed out. `WithFilter` goes around it.
+/// `WithMeshes{NativeCollision{}}` in the place of the backend: Convex pairs are the backend's. Bodies with a shape that `add`
+/// returned meet convex ones and half-spaces by their triangles, and each other by their vertices, edges and triangles. The
+/// solid is behind the triangles, so a convex body whose middle is behind one does not meet it. A mesh wholly inside a closed
+/// one is pushed out. `WithFilter` goes around it.
 template <class Backend = inner::Absent>
 struct WithMeshes {
   using plays = role::Collision;
@@ -31,9 +31,10 @@ struct WithMeshes {
   /// Around what is no backend, or in another order; the loop's checks say so.
   static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::meshes>;
 
-  Backend backend{};
+  Backend backend{};  ///< meets all but the surfaces
 
   WithMeshes() = default;
+  /// Around this backend.
   explicit WithMeshes(Backend b) : backend(std::move(b)) {}
 
   /// Keeps a surface; the shape it returns is for bodies of the loop that has this backend, as many as
@@ -44,6 +45,7 @@ struct WithMeshes {
     meshes_.push_back(std::move(mesh));
     return kept(false, Index(meshes_.size()) - 1, bounds);
   }
+  /// The same for a height field; throws where it has no point.
   Shape add(HeightField field) {
     DELASSUS_EXPECT(field.triangle_count() > 0, "this height field has no point; give it some");
     const inner::Bounds bounds = field.bounds();

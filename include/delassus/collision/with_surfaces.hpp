@@ -29,10 +29,11 @@ struct WithSurfaces {
   /// Around what is no backend, or in another order; the loop's checks say so.
   static constexpr bool is_hollow = !inner::Detects<Backend, inner::layer::surfaces>;
 
-  Backend backend{};
-  bool self_contact = true;
+  Backend backend{};  ///< meets nodes as spheres
+  bool self_contact = true;  ///< one body's triangles and edges meet each other
 
   WithSurfaces() = default;
+  /// Around this backend; `meets_itself` becomes `self_contact`.
   explicit WithSurfaces(Backend b, bool meets_itself = true)
       : backend(std::move(b)), self_contact(meets_itself) {}
 

@@ -19,13 +19,14 @@ namespace delassus {
 /// the arrays of an operator.
 template <class List, class Blocks>
 struct BlockRows {
-  List &start, &column;
-  Blocks block;
+  /// The first block of each row; one number more than there are rows.
+  List &start, &column;  ///< of each block
+  Blocks block;  ///< rows of i × rows of j numbers each, 1/kg
 };
 
 /// Where A couples the blocks of a set, W takes A⁻¹ whole.
 struct WholeInverse {
-  static constexpr bool is_whole = true;
+  static constexpr bool is_whole = true;  ///< read by `BasicAssembledCompliance`
 };
 
 /// W = Σ H A⁻¹ Hᵀ over the bodies: two constraints meet in W where they act on one body. W is kept in
@@ -37,15 +38,16 @@ struct BasicAssembledCompliance {
   template <class Rows>
   class Operator;
 };
-using AssembledCompliance = BasicAssembledCompliance<>;
+using AssembledCompliance = BasicAssembledCompliance<>;  ///< what a loop takes where none is named
 
+/// W of one loop, as blocks; what its functions do stands at `Compliance`.
 template <class Inverse>
 template <class T, int... w, int... R>
 class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
-  using Rows = RowSystem<T, Widths<w...>, R...>;
-  static constexpr int pools = int(sizeof...(R));
-  using Built = inner::AssembledRows<T>;
+  using Rows = RowSystem<T, Widths<w...>, R...>;   ///< H, d, λ of one step
+  static constexpr int pools = int(sizeof...(R));  ///< one for each law
+  using Built = inner::AssembledRows<T>;           ///< what makes the blocks
 
   Operator() { own_.resize(pools, Rows::set_count); }
 
@@ -117,7 +119,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     view.form = view.block_rows == 1 && out->columns == R_of<p> ? FormOfW::square_blocks : FormOfW::blocks;
   }
 
-  static constexpr bool commit_is_free = true;
+  static constexpr bool commit_is_free = true;  ///< see `Compliance`
   template <int p>
   void commit(const Rows&, Index, const Vec<Rows::template rows_of<p>, T>&) {}
 

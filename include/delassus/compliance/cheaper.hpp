@@ -11,7 +11,7 @@
 namespace delassus {
 
 /// Σ_j W_ij λ_j over the blocks of a row that has few; H y with y = A⁻¹ Hᵀ λ for a row that would have many,
-/// and W does without it: what a visit costs is bounded, whatever else acts on its bodies. Which form a row
+/// which W does without. So what a visit costs is bounded, whatever else acts on its bodies. Which form a row
 /// takes is decided by its own bodies. Where A couples bodies (springs under an implicit integrator, soft
 /// bodies) all rows are W's.
 struct CheaperCompliance {
@@ -21,12 +21,13 @@ struct CheaperCompliance {
   class Operator;
 };
 
+/// W of one loop, in both forms; what its functions do stands at `Compliance`.
 template <class T, int... w, int... R>
 class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
-  using Rows = RowSystem<T, Widths<w...>, R...>;
-  using Sum = double;
-  static constexpr int pools = Rows::pool_count;
+  using Rows = RowSystem<T, Widths<w...>, R...>;  ///< H, d, λ of one step
+  using Sum = double;                             ///< in which rows are summed
+  static constexpr int pools = Rows::pool_count;  ///< one for each law
 
   /// An item is crowded if more rows than these act on its bodies, its own counted once a body: those of
   /// eight contacts. H y takes as long as about so many blocks (docs/evidence/performance.md).
@@ -63,6 +64,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     view.crowded = kinds_[p].data();
   }
 
+  /// (d + W λ)_i, by the form of item i.
   template <int p>
   [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     return is_crowded<p>(i) ? bodies_.template residual<p>(rows, i) : matrix_.template residual<p>(rows, i);
@@ -82,6 +84,7 @@ class CheaperCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     if (!is_whole_ && kinds_[p][i].meets_crowded) bodies_.template commit<p>(rows, i, change);
   }
 
+  /// Whether item i of pool p is answered by its bodies, without blocks.
   template <int p>
   bool is_crowded(Index i) const {
     return !is_whole_ && kinds_[p][i].is_crowded;

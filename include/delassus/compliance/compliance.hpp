@@ -7,13 +7,13 @@
 
 namespace delassus {
 
-/// A compliance builder is a policy whose `Operator<Rows>` holds the workspace of one loop:
+/// A compliance builder is a policy whose `Operator<Rows>` holds the workspace of one loop.
 ///
 ///   build(world, rows)          from H and A⁻¹, once a step; also writes G = A⁻¹ Hᵀ where A is block-diagonal
 ///   reset(rows)                 λ is what rows.lambda says now
 ///   diagonal<p>(i)              own block W_ii of item i of pool p, R × R, compliance included, 1/kg
 ///   residual<p>(rows, i)        u_i + bias_i = (d + W λ)_i at the present λ
-///   commit<p>(rows, i, δ)       λ_i has been changed by δ; `commit_is_free` says that this does nothing
+///   commit<p>(rows, i, δ)       λ_i has been changed by δ. `commit_is_free` says that this does nothing
 ///   show<p>(rows, view, sets, blocks)   if it has arrays that a solver can read: fills a `RowView` with them, docs/project/core.md
 template <class C>
 concept Compliance = Plays<C, role::Compliance>;

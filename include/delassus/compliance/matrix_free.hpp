@@ -20,11 +20,12 @@ struct MatrixFreeCompliance {
   class Operator;
 };
 
+/// y of one loop, one a block; what its functions do stands at `Compliance`.
 template <class T, int... w, int... R>
 class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
  public:
-  using Rows = RowSystem<T, Widths<w...>, R...>;
-  using Sum = double;
+  using Rows = RowSystem<T, Widths<w...>, R...>;  ///< H, d, λ of one step
+  using Sum = double;                             ///< of y and of the sums of a row
 
   void build(const auto& world, Rows& rows) {
     world.each([&](const auto& set, auto s) {
@@ -58,6 +59,7 @@ class MatrixFreeCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     std::apply([&](auto&... y) { ((sets++->y = y.numbers.data()), ...); }, y_);
   }
 
+  /// (d + H y)_i with the row's own compliance.
   template <int p>
   [[gnu::always_inline]] Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     const auto& pool = rows.template pool<p>();

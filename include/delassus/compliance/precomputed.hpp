@@ -48,9 +48,9 @@ class FactorAtRest {
 
 /// As `BasicLazyCompliance`, with the factor of A at rest, which is kept for good, and the compliance of all
 /// nodes of the surface made in the first step: 9 s² numbers of S for s nodes. For soft bodies that turn as
-/// they like and bend little. With a `file` that is there, the numbers are read from it, and the first step
-/// refuses one of another mesh, material, step, damping or other fixed nodes; with one that is not there,
-/// they are written to it. The k-th body of a set has the file `file`.k, the first one `file` itself.
+/// they like and bend little. With a `file` that is there, the numbers are read from it. The first step then
+/// refuses one of another mesh, material, step, damping or other fixed nodes. With one that is not there, they
+/// are written to it. The k-th body of a set has the file `file`.k, the first one `file` itself.
 template <class S>
 struct BasicPrecomputedCompliance {
   using plays = role::Compliance;
@@ -59,8 +59,8 @@ struct BasicPrecomputedCompliance {
   using stages = inner::RefinedStages<Base>;
   double violation = 1e-5;  ///< m, rad
   double tolerance = 1e-6;  ///< |p − A Δv| ≤ tolerance |p|
-  int max_passes = 30;
-  std::string file{};
+  int max_passes = 30;      ///< solves of the rows after the first; then the status is max_iterations
+  std::string file{};       ///< a path; empty: nothing is read or written
   ComplianceReport report{};  ///< of the last step
 
   void check() const {
@@ -69,11 +69,12 @@ struct BasicPrecomputedCompliance {
                          "must lie in (0, 1)");
     DELASSUS_EXPECT(max_passes >= 0, "PrecomputedCompliance: max_passes must be >= 0");
   }
+  /// For its operator; a factor is never too old.
   inner::RotatedLimits limits() const { return {violation, tolerance, 1, 0, max_passes}; }
 
   template <class Rows>
   class Operator : public inner::RotatedOperator<S, Rows, inner::FactorAtRest> {};
 };
-using PrecomputedCompliance = BasicPrecomputedCompliance<float>;
+using PrecomputedCompliance = BasicPrecomputedCompliance<float>;  ///< with its numbers in float
 
 }  // namespace delassus

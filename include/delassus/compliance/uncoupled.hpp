@@ -7,7 +7,7 @@ namespace delassus {
 
 /// Where A couples the blocks of a set, W takes each block's mass alone.
 struct MassAlone {
-  static constexpr bool is_whole = false;
+  static constexpr bool is_whole = false;  ///< read by `BasicAssembledCompliance`
 };
 
 /// W̃ = Σ H M⁻¹ Hᵀ for particles coupled by springs under an implicit integrator; W itself where nothing couples. The

@@ -12,22 +12,25 @@
 
 namespace delassus {
 
-/// A law has `rows` and `Item`, a type of its own by which the loop finds the law; linearize(item, world, row) writes H and φ; and
+/// A law has `rows` and `Item`, a type of its own by which the loop finds the law. It has linearize(item, world, row),
+/// which writes H and φ, and
 ///
-///   Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b) const
+///   Vec<rows, T> solve_local(const Item&, const Mat<rows, rows, T>& W, const Vec<rows, T>& b) const.
 ///
-/// returns the impulse λ (N·s) that meets the law of the item alone: W is its own block of H A⁻¹ Hᵀ (1/kg), b = u − W λ what its rows
-/// would do without it (m/s), so that their velocity becomes u = W λ + b. The present λ is no argument.
+/// That returns the impulse λ (N·s) that meets the law of the item alone. W is its own block of H A⁻¹ Hᵀ (1/kg). What its
+/// rows would do without it is b = u − W λ (m/s), so that their velocity becomes u = W λ + b. The present λ is no argument.
 ///
 /// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then it is
-/// solve_local(item, W, b, Memory<T>&). `bilateral` says that all rows are equalities, `kinds` one RowKind a row. What else a law has
-/// it declares in `refines`: see `constraints/refinements.hpp`.
+/// solve_local(item, W, b, Memory<T>&). With `bilateral` all rows are equalities, `kinds` says one RowKind a row. What else
+/// a law has it declares in `refines`: see `constraints/refinements.hpp`.
 ///
-/// tangent(item, local), for Newton's method, is `solve_local` for a W that is diagonal, friction rows alike: it replaces
-/// local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element of the generalised derivative
-/// will do where there are several. An island with a law that has none is swept. A law whose cap on the impulse is in its memory has
-/// tangent(item, local, memory). convex_tangent(item, local, slip) is `tangent` with the slip |u_t| of its friction rows given, which
-/// makes the law the projection on a convex set. A law without friction needs none.
+/// For Newton's method, tangent(item, local) is `solve_local` for a W that is diagonal, friction rows alike. It replaces
+/// local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element of the generalised
+/// derivative will do where there are several. An island with a law that has none is swept. A law whose cap on the impulse
+/// is in its memory has tangent(item, local, memory).
+///
+/// With the slip |u_t| of its friction rows given, `tangent` is convex_tangent(item, local, slip), which makes the law the
+/// projection on a convex set. A law without friction needs none.
 template <class L>
 concept ConstraintLaw = requires {
   typename L::Item;                                   // what the user adds, or collision detection fills

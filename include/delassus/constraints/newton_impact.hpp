@@ -14,9 +14,9 @@
 #include <utility>
 
 namespace delassus {
-/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step with u⁻ < 0 gets the stronger of e u⁻ and the push-out speed, never their sum.
-/// Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy that symplectic Euler itself
-/// keeps. `bounce` takes what this added to the bias, by pool and row.
+/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step with u⁻ < 0 gets the stronger of e u⁻ and
+/// the push-out speed, never their sum. Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy
+/// that symplectic Euler itself keeps. `bounce` takes what this added to the bias, by pool and row.
 template <class Laws, class Rows, class T>
 void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* const* v, double h, OwningArray<Array<T>>& bounce) {
   bounce.resize(rows.size());
@@ -55,9 +55,9 @@ void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* cons
 template <class T>
 class Island;
 
-/// Newton's restitution on several contacts with friction can add energy. Where it did, λ becomes λ_c + s (λ_N − λ_c):
-/// λ_N the solution with restitution, λ_c the one without, s the largest number in [0, 1] for which the impulses add no
-/// more energy than those of λ_c do. Both lie in the cone, which is convex, so λ does.
+/// Newton's restitution on several contacts with friction can add energy. Where it did, λ becomes λ_c + s (λ_N − λ_c).
+/// With restitution the solution is λ_N, without λ_c. Of s in [0, 1] it is the largest for which the impulses add no more
+/// energy than those of λ_c do. Both lie in the cone, which is convex, so λ does.
 template <class T>
 class EnergyGuard {
  public:

@@ -13,6 +13,7 @@ namespace delassus {
 /// Memory<T> may have it as a last argument where that stands in brackets.
 namespace refine {
 
+/// One bit a function.
 enum Refinement : unsigned {
   prepare = 1 << 0,           ///< void prepare(const Mat<R, R, T>& W, Memory<T>&), or prepare(item, W, h, Memory<T>&): once a step and W
   clamp = 1 << 1,             ///< void clamp(item, Vec<R, T>& λ [, const Memory<T>&]): into its cone; in a contact without memory

@@ -18,8 +18,8 @@ struct SizeOfMatrix<Matrix<T, R, C, more...>> {
   static constexpr std::size_t count = std::size_t(R) * std::size_t(C);
 };
 
-/// What Array<M> is, for a matrix M of fixed size: its numbers lie by columns in an `Array` of scalars, which plain code reads
-/// without knowing M, and which all sizes of M share in a program.
+/// What Array<M> is, for a matrix M of fixed size. Its numbers lie by columns in an `Array` of scalars, which plain code reads
+/// without knowing M. All sizes of M share that type in a program.
 template <class M>
 class BlockArray {
   using T = typename SizeOfMatrix<M>::Scalar;

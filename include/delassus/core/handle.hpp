@@ -12,9 +12,9 @@ namespace delassus {
 /// Names one body of a set. `owner` is the set's own number; `generation` counts how often the place was reused.
 template <class Set>
 struct Handle {
-  Index index = -1;
-  std::uint32_t generation = 0;
-  std::uint32_t owner = 0;
+  Index index = -1;              ///< of its block in the set; −1: none
+  std::uint32_t generation = 0;  ///< of the block when the body was added
+  std::uint32_t owner = 0;       ///< 0: never assigned
 
   friend bool operator==(const Handle&, const Handle&) = default;
 };

@@ -8,7 +8,7 @@
 namespace delassus {
 
 /// Each element stands by itself and never moves. What is taken out, by `clear` or a smaller `resize`, stays made and is
-/// used again, so that a list of lists that is filled anew each step allocates nothing once it is warm: an element comes
+/// used again. So a list of lists that is filled anew each step allocates nothing once it is warm. An element comes
 /// back empty, by its `clear()` where it has one and as T() where not.
 template <class T>
 class OwningArray {

@@ -18,6 +18,7 @@ enum class Status : std::uint8_t {
   quarantined,        ///< a non-finite number appeared: that island was left where it was
 };
 
+/// The later one in the order of severity.
 constexpr Status worse(Status a, Status b) { return std::max(a, b); }
 
 namespace inner {
@@ -30,6 +31,7 @@ constexpr const char* name_in(const char* const (&names)[count], Enum value) {
 
 }  // namespace inner
 
+/// As the enumerator is written, for messages and tables.
 constexpr const char* name(Status status) {
   constexpr const char* names[] = {"converged", "stalled", "max_iterations", "deadline",
                                    "infeasible", "unclaimed_contact", "quarantined"};

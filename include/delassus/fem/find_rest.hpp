@@ -11,13 +11,16 @@
 
 namespace delassus {
 
+/// When `find_rest` has arrived, and when it gives up.
 struct RestOptions {
   double tolerance = 1e-10;  ///< of the last move: m, and rad of nodes that turn
   int max_iterations = 100;  ///< factorizations
 };
+/// How far `find_rest` came.
 struct RestReport {
+  /// Or max_iterations; quarantined where K has no factor or a number is none.
   Status status = Status::converged;
-  int factorizations = 0;
+  int factorizations = 0;  ///< one for each iteration
   double move = 0;  ///< the largest of the last iteration, m or rad
 };
 

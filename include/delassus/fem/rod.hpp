@@ -16,24 +16,25 @@ namespace delassus {
 
 /// A rod as it is added: a line of nodes at rest, straight between them, put in its place. SI units.
 ///
-/// A node's frame has x along the segment after it (the last one: before it) and y towards `up`, as far as x
-/// allows; the frames of a bent line turn about it no more than they must. `up` matters where the section has
+/// A node's frame has x along the segment after it (the last one: before it), and y towards `up` as far as x
+/// allows. The frames of a bent line turn about it no more than they must. `up` matters where the section has
 /// two different second moments, and is any direction where it is zero.
 /// `contact_radius` > 0 (m) makes every segment a capsule for collision; at 0 nothing collides. Segments are
 /// in a group of their own and leave it out, so that neighbours do not meet.
 struct Rod {
-  std::vector<Vec3> points{};
-  RodSection section = round_section(1e-3);
+  std::vector<Vec3> points{};  ///< of its nodes at rest, m, in its own axes; two at least
+  RodSection section = round_section(1e-3);  ///< a full circle of 1 mm radius
   double young = 1e9;     ///< Pa
   double poisson = 0.3;   ///< G = E/(2(1 + ν))
   double density = 1000;  ///< kg/m³
-  Vec3 position = Vec3::Zero();
-  Quat orientation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero();
-  double contact_radius = 0;
-  Vec3 up = Vec3::Zero();
-  Index material = 0;
-  std::uint32_t group = 4;
+  Vec3 position = Vec3::Zero();  ///< of the origin of its axes, world, m
+  Quat orientation = Quat::Identity();  ///< its axes to the world, unit
+  Vec3 velocity = Vec3::Zero();  ///< of every node, world, m/s
+  double contact_radius = 0;  ///< m, ≥ 0
+  Vec3 up = Vec3::Zero();  ///< in its own axes, of any length
+  Index material = 0;  ///< a number that `Materials` gave
+  std::uint32_t group = 4;  ///< a bit for every group it is in
+  /// The groups it meets; its own is refused where it has a contact_radius.
   std::uint32_t collides_with = ~4u;
 };
 

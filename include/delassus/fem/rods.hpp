@@ -33,7 +33,7 @@ class BasicRods
  public:
   using Nodes::gravity, Nodes::name, Nodes::v_free, Nodes::v_next;
   using typename Nodes::BodyHandle, typename Nodes::Handle, typename Nodes::Velocity;
-  static constexpr const char* body_kind = "rod";
+  static constexpr const char* body_kind = "rod";  ///< its word in messages, as in "rod #3"
 
   BasicRods() = default;
   /// `auto set = bodies<...>(loop.world());` is a copy of which its loop knows nothing.
@@ -47,13 +47,15 @@ class BasicRods
   /// Adds a rod; throws InvalidArgument when it cannot be one.
   BodyHandle add(const Rod& rod);
 
-  /// Adds a force (N) or a moment (N·m) that acts on a node during the next step only.
+  /// Adds a force (world, N) that acts on a node during the next step only.
   void apply_force(Handle node, const Vec3& force) {
     load_[checked(node)] += twist<T>(converted<T>(force), Vec<3, T>::Zero());
   }
+  /// The same with a moment about the node, world, N·m.
   void apply_torque(Handle node, const Vec3& torque) {
     load_[checked(node)] += twist<T>(Vec<3, T>::Zero(), converted<T>(torque));
   }
+  /// World, m/s and rad/s. Refuses a fixed node, and numbers that are not finite.
   void set_velocity(Handle node, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero()) {
     const Index b = checked(node);
     DELASSUS_EXPECT(inner::fits<T>(velocity),
@@ -75,10 +77,13 @@ class BasicRods
 
   // --- reading -------------------------------------------------------------------------------------------
 
-  Vec3 position(Handle node) const { return position_of(checked(node)); }
+  Vec3 position(Handle node) const { return position_of(checked(node)); }  ///< world, m
+  /// Node to world, unit.
   Quat orientation(Handle node) const { return converted<double>(state_.q[checked(node)]); }
   using Nodes::velocity;
+  /// World, m/s.
   Vec3 velocity(Handle node) const { return converted<double>(linear_part(v_[checked(node)])); }
+  /// World, rad/s.
   Vec3 angular_velocity(Handle node) const {
     return converted<double>(angular_part(v_[checked(node)]));
   }
@@ -100,6 +105,7 @@ class BasicRods
   // --- what the loop asks: the BodySet concept -----------------------------------------------------------
 
   bool moves(Index b) const { return state_.inverse_mass[b] > T(0); }
+  /// Takes a node's answer to impulses away, or gives it back where the user has not fixed it.
   void set_fixed(Index b, bool is_held) {
     state_.inverse_mass[b] = is_held || is_fixed_[b] ? T(0) : T(1) / state_.mass[b];
   }
@@ -121,10 +127,12 @@ class BasicRods
       }
     });
   }
+  /// p += s M v.
   void add_mass_times_velocity(std::span<Velocity> p, double s) const {
     for (const Index b : slots_.active()) p[b] += state_.momentum(b, v_[b], T(s));
   }
 
+  /// The mass alone: M_b⁻¹ x / mass scale for each column of x.
   template <int C>
   Mat<6, C, T> solve_block(Index b, const Mat<6, C, T>& x) const {
     if (!moves(b)) return Mat<6, C, T>::Zero();
@@ -144,26 +152,32 @@ class BasicRods
     const double share = a.element < 0 ? 0 : a.local[0];
     return twist<T>(Vec<3, T>::Zero(), converted<T>((k == 0 ? 1 - share : share) * axis));
   }
+  /// World, m.
   Vec3 point(const Anchor& a) const {
     if (a.element >= 0) return on_segment(a.block, a.local[0]);
     return position_of(a.block) + converted<double>(state_.R[a.block]) * a.local;
   }
+  /// Of a joint on it, to the world.
   Quat frame(const Anchor& a) const { return converted<double>(state_.q[a.block]) * a.frame; }
 
-  void begin_step(double) {}
+  void begin_step(double) {}  ///< no node moves by itself
   void advance(double h) { advance_with(h, T(0)); }
-  void advance_midpoint(double h) { advance_with(h, T(0.5)); }
+  void advance_midpoint(double h) { advance_with(h, T(0.5)); }  ///< x₊ = x + h (v + v_next)/2, turns likewise
+  /// By m and rad, the velocity unchanged.
   void displace(Index b, const Velocity& by) { state_.displace(b, linear_part(by), angular_part(by)); }
+  /// Sets the poses aside and moves q to q ⊕ h v.
   void shift(double h) {
     state_.keep_poses();
     for (const Index b : slots_.active())
       if (moves(b)) displace(b, Velocity(T(h) * v_[b]));
   }
-  void restore() { state_.restore_poses(slots_.active()); }
+  void restore() { state_.restore_poses(slots_.active()); }  ///< back to the poses that `shift` set aside
 
   /// The collider of a block is the segment after its node.
   bool has_collider(Index b) const { return slots_.is_alive(b) && radius_[b] > 0 && next_[b] >= 0; }
+  /// By either end of the segment.
   bool collider_moves(Index b) const { return moves(b) || moves(next_[b]); }
+  /// As long as the segment is now.
   Shape shape(Index b) const { return Capsule{radius_[b], chord(b).norm()}; }
   /// Of the segment, z along it; of the last node, its own.
   Pose pose(Index b) const;
@@ -215,8 +229,8 @@ class BasicRods
   Array<Index> next_;  ///< the block of the next node of the rod; −1 at its end
 };
 
-using Rods = BasicRods<double>;
-using RodsF = BasicRods<float>;
+using Rods = BasicRods<double>;  ///< in double
+using RodsF = BasicRods<float>;  ///< in float
 
 template <class T>
 Pose BasicRods<T>::pose(Index b) const {

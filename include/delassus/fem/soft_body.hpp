@@ -20,15 +20,16 @@ namespace delassus {
 /// other.
 template <ElasticMaterial M, class Mesh = TetrahedralMesh>
 struct SoftBody {
-  Mesh mesh{};
-  M elasticity{};
+  Mesh mesh{};  ///< at rest, m, in its own axes
+  M elasticity{};  ///< one material for the whole body
   double density = 1000;  ///< kg/m³
-  Vec3 position = Vec3::Zero();
-  Quat orientation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero();
-  double contact_radius = 0;
-  Index material = 0;
-  std::uint32_t group = 2;
+  Vec3 position = Vec3::Zero();  ///< of the origin of its axes, world, m
+  Quat orientation = Quat::Identity();  ///< its axes to the world, unit
+  Vec3 velocity = Vec3::Zero();  ///< of every node, world, m/s
+  double contact_radius = 0;  ///< m, ≥ 0
+  Index material = 0;  ///< of its contacts: a number that `Materials` gave
+  std::uint32_t group = 2;  ///< a bit for every group it is in
+  /// The groups it meets; its own is refused where it has a contact_radius.
   std::uint32_t collides_with = ~2u;
 };
 

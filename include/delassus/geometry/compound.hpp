@@ -14,10 +14,10 @@ namespace delassus {
 
 /// A shape, where it stands in the compound (m) and what it is made of (kg/m³).
 struct CompoundPart {
-  Shape shape{};
-  Vec3 position = zero<Vec3>();
-  Quat orientation = Quat::Identity();
-  double density = 1000;
+  Shape shape{};                        ///< one with a volume
+  Vec3 position = zero<Vec3>();         ///< of its origin, m
+  Quat orientation = Quat::Identity();  ///< of any length but zero
+  double density = 1000;                ///< kg/m³, > 0
 };
 
 /// Its frame is moved to the common centre of mass: add the body at the given frame's position + `centre()`.
@@ -27,6 +27,7 @@ struct CompoundPart {
 class Compound {
  public:
   Compound() = default;  ///< no part, until `memory` reads one
+  /// Refuses no part at all, a part without volume, and numbers that are not finite or not > 0. Copies hulls.
   explicit Compound(std::span<const CompoundPart> parts) {
     DELASSUS_EXPECT(!parts.empty(), "a compound needs at least one part");
     std::vector<MassProperties> masses;
@@ -45,14 +46,14 @@ class Compound {
     for (Pose& pose : poses_) pose.position -= centre_;
   }
 
-  Index part_count() const { return Index(shapes_.size()); }
-  /// A part's shape, good as long as the compound, and its pose in the frame of the body.
+  Index part_count() const { return Index(shapes_.size()); }  ///< how many shapes there are
+  /// Of part i; a hull in it is good as long as the compound.
   Shape shape(Index i) const {
     Shape s = shapes_[i];
     if (hull_of_[i] >= 0) s.hull = &hulls_[hull_of_[i]];
     return s;
   }
-  const Pose& pose(Index i) const { return poses_[i]; }
+  const Pose& pose(Index i) const { return poses_[i]; }  ///< of part i, in the frame of the body
 
   double mass() const { return mass_; }             ///< kg
   const Vec3& centre() const { return centre_; }    ///< of mass, in the frame the parts were given in, m
@@ -68,6 +69,7 @@ class Compound {
     return reach;
   }
 
+  /// All of it, for checkpoints.
   void memory(auto& archive) { archive(shapes_, poses_, hull_of_, hulls_, mass_, centre_, inertia_); }
 
  private:

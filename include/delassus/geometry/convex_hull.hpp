@@ -24,11 +24,12 @@ namespace delassus {
 template <class Scalar>
 class BasicConvexHull {
  public:
-  using Vector = Vec<3, Scalar>;
-  using Matrix = Mat<3, 3, Scalar>;
+  using Vector = Vec<3, Scalar>;     ///< also of points, m
+  using Matrix = Mat<3, 3, Scalar>;  ///< of second moments
 
-  /// Pre: at least four finite points that do not lie in one plane (thickness > 1e-6 of the extent).
   BasicConvexHull() = default;  ///< nothing yet: a checkpoint fills it
+  /// Refuses less than four points, points that are not finite, and a cloud in one plane (thickness ≤ 1e-6 of its
+  /// extent).
   explicit BasicConvexHull(std::span<const Vector> points) {
     const Scalar extent = check_points(points);
     OwningArray<inner::HullTriangle> triangles;
@@ -47,24 +48,24 @@ class BasicConvexHull {
     put_in_blocks();
   }
 
-  std::span<const Vector> vertices() const { return vertices_; }
+  std::span<const Vector> vertices() const { return vertices_; }  ///< the corners alone, m
   /// The vertices once more, as many at a time as there are lanes: their x, their y, their z; the last vertex
   /// fills its block.
   std::span<const Scalar> blocks() const { return blocks_; }
-  Index face_count() const { return Index(normals_.size()); }
-  /// Vertex indices of a face, counter-clockwise from outside, and its outward unit normal.
+  Index face_count() const { return Index(normals_.size()); }  ///< of polygons, not triangles
+  /// Vertex indices of a face, counter-clockwise from outside.
   std::span<const Index> face(Index f) const { return slice(face_loop_, face_start_, f); }
-  const Vector& normal(Index f) const { return normals_[f]; }
+  const Vector& normal(Index f) const { return normals_[f]; }  ///< of face f, unit, outward
   /// The faces that meet in a vertex, ascending.
   std::span<const Index> faces_around(Index v) const { return slice(around_, around_start_, v); }
 
-  /// ∫ dV, m³ · the centre of volume c, m · ∫ (x − c)(x − c)ᵀ dV, m⁵.
+  /// ∫ dV, m³.
   Scalar volume() const { return volume_; }
-  const Vector& centroid() const { return centroid_; }
-  const Matrix& second_moment() const { return second_moment_; }
-  /// Radius of the ball about c that touches the nearest face, and of the one that holds all vertices, m.
+  const Vector& centroid() const { return centroid_; }  ///< the centre of volume c, m
+  const Matrix& second_moment() const { return second_moment_; }  ///< ∫ (x − c)(x − c)ᵀ dV, m⁵
+  /// Of the ball about c that touches the nearest face, m.
   Scalar inner_radius() const { return inner_radius_; }
-  Scalar outer_radius() const { return outer_radius_; }
+  Scalar outer_radius() const { return outer_radius_; }  ///< of the ball about c that holds all vertices, m
 
   /// A number for all its vertices: another for every other hull, but for one chance in 2⁶⁴.
   std::uint64_t fingerprint() const { return fingerprint_; }
@@ -116,7 +117,7 @@ class BasicConvexHull {
   std::uint64_t fingerprint_ = 0;
 };
 
-using ConvexHull = BasicConvexHull<double>;
+using ConvexHull = BasicConvexHull<double>;  ///< in double
 
 /// The longest edge of the cloud's box, m.
 template <class Scalar>
@@ -151,9 +152,10 @@ void BasicConvexHull<Scalar>::find_neighbours() {
     for (const Index v : face(f)) around_[next[v]++] = f;
 }
 
-/// Sums tetrahedra from the mean vertex m to the triangles of each face: with edges a, b, c from m,
-/// V = det(a, b, c)/6, ∫ y = V (a + b + c)/4 and ∫ y yᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c, y
-/// = x − m.
+/// Sums tetrahedra from the mean vertex m to the triangles of each face. With edges a, b, c from m, s their sum and
+/// y = x − m:
+///
+///   V = det(a, b, c)/6,   ∫ y = V s/4,   ∫ y yᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ).
 template <class Scalar>
 void BasicConvexHull<Scalar>::find_moments() {
   Vector mean = zero<Vector>(), first = zero<Vector>();

@@ -9,8 +9,8 @@
 namespace delassus {
 
 /// Up to 16 corners in order around the face; 2 for an edge, 0 when the shape only offers a point. Body
-/// frame, m. `corner` names each corner: the same material point keeps its name in every face it belongs to,
-/// and the lowest point of a rim, which moves on the body as that leans, has a name of its own.
+/// frame, m. `corner` names each corner: the same material point keeps its name in every face it belongs to.
+/// The lowest point of a rim, which moves on the body as that leans, has a name of its own.
 struct Face {
   static constexpr int capacity = 16;
   static constexpr int lowest_of_rim = 0x8000;
@@ -58,7 +58,7 @@ inline constexpr double flat_slope = 2e-3;
 inline constexpr double level_slope = 1e-6;
 
 /// The disc of radius r at height z as an octagon, counter-clockwise seen from `side`, and the farthest point
-/// of its rim along d: what rolls touches there, not at a corner nearby. The octagon is turned with the body
+/// of its rim along d. What rolls touches there, not at a corner nearby. The octagon is turned with the body
 /// where the disc lies flat across d, else so that this point is its first corner, for corners beside it
 /// would catch a rim that rolls. Of two within 1e-3 r of each other the corner goes.
 inline void octagon(double r, double z, const Vec3& d, int side, int name, Face& face) {

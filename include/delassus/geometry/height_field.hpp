@@ -19,6 +19,8 @@ namespace delassus {
 class HeightField {
  public:
   HeightField() = default;  ///< no point, until `memory` reads one
+  /// Refuses less than 2 × 2 points, a wrong number of heights, and spacings that are not > 0. Refuses heights that
+  /// are not finite, or so steep that a triangle is flatter than 1e-6 of its longest edge.
   HeightField(Index columns, Index rows, double dx, double dy, std::span<const double> heights)
       : columns_(columns), rows_(rows), dx_(dx), dy_(dy), heights_(heights.begin(), heights.end()) {
     DELASSUS_EXPECT(columns >= 2 && rows >= 2, "a height field of " + std::to_string(columns) + " x " +
@@ -39,13 +41,15 @@ class HeightField {
     tree_.build(cell_count(), [&](Index c) { return cell_bounds(c); });
   }
 
-  Index triangle_count() const { return 2 * cell_count(); }
-  inner::Bounds bounds() const { return tree_.bounds(); }
+  Index triangle_count() const { return 2 * cell_count(); }  ///< two for each cell
+  inner::Bounds bounds() const { return tree_.bounds(); }  ///< of all points, m
+  /// Column along x, row along y; m.
   Vec3 point(Index column, Index row) const {
     return {(column - 0.5 * (columns_ - 1)) * dx_, (row - 0.5 * (rows_ - 1)) * dy_,
             heights_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)]};
   }
 
+  /// Triangles 2c and 2c + 1 lie in cell c; cells are counted along x, then along y.
   Triangle triangle(Index t) const {
     Triangle out{.point = points_of(t), .normal = normal(t)};
     const auto grid = corners(t);
@@ -57,27 +61,32 @@ class HeightField {
   // --- what another surface asks, as of a TriangleMesh; vertex row * columns + column
   // -----------------------
 
-  static constexpr Index triangles_per_item = 2;
-  const inner::FlatTree& tree() const { return tree_; }
-  Vec3 vertex(Index v) const { return point(v % columns_, v / columns_); }
+  static constexpr Index triangles_per_item = 2;  ///< an item of `tree` is a cell
+  const inner::FlatTree& tree() const { return tree_; }  ///< of the boxes of the cells
+  Vec3 vertex(Index v) const { return point(v % columns_, v / columns_); }  ///< by its number, m
+  /// The corners of triangle t, counter-clockwise seen from above, m.
   std::array<Vec3, 3> points_of(Index t) const {
     const auto [a, b, c] = corners(t);
     return {point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1])};
   }
+  /// Of triangle t, unit, upward.
   Vec3 normal(Index t) const {
     const auto [a, b, c] = points_of(t);
     return inner::triangle_normal(a, b, c);
   }
+  /// Whether corner k is counted with triangle t: of those around a vertex one owns it.
   bool owns_corner(Index t, int k) const {
     const auto [i, j] = corners(t)[k];
     const Index before = (j - 1) * (columns_ - 1);
     if (j > 0) return t == (i > 0 ? 2 * (before + i - 1) : 2 * before + 1);
     return t == (i > 0 ? 2 * (i - 1) : 0);
   }
+  /// Whether edge k is counted with triangle t: of the two beside it the one of lower number owns it.
   bool owns_edge(Index t, int k) const {
     const Index other = neighbour(t, k);
     return other < 0 || t < other;
   }
+  /// f(u) for every vertex u that an edge joins to vertex v.
   template <class F>
   void each_around(Index v, const F& f) const {
     constexpr Index step[6][2]{{1, 0}, {0, 1}, {1, 1}, {-1, 0}, {0, -1}, {-1, -1}};

@@ -21,12 +21,12 @@ namespace delassus {
 /// Points (m) and hexahedra of eight points each, in the order of Gmsh and VTK: four around the bottom,
 /// counter-clockwise seen from the top, then the four above them.
 struct HexahedralMesh {
-  std::vector<Vec3> points;
-  std::vector<std::array<Index, 8>> hexahedra;
+  std::vector<Vec3> points;                     ///< m
+  std::vector<std::array<Index, 8>> hexahedra;  ///< by numbers of points
 
-  static constexpr const char* cell = "hexahedron";
-  const auto& cells() const { return hexahedra; }
-  auto& cells() { return hexahedra; }
+  static constexpr const char* cell = "hexahedron";  ///< its word for an element in messages
+  const auto& cells() const { return hexahedra; }  ///< by the name that all meshes share
+  auto& cells() { return hexahedra; }  ///< the same, to change
 };
 
 namespace inner {
@@ -104,9 +104,9 @@ inline double least_volume(const HexahedralMesh& mesh, Index e) {
   return least;
 }
 
-/// Refuses a mesh that is no body: points that are not finite or in no hexahedron, numbers of points that are
-/// not there, hexahedra that are flat or folded (det J below 1e-9 of the size at a corner or at a Gauss
-/// point), inside out or there twice.
+/// Refuses a mesh that is no body: points that are not finite or in no hexahedron, and numbers of points that are
+/// not there. Refuses hexahedra that are inside out, there twice, flat or folded: det J below 1e-9 of the size at
+/// a corner or at a Gauss point.
 inline void check_mesh(const HexahedralMesh& mesh, const std::string& who) {
   inner::check_points(mesh, who);
   for (Index e = 0; e < Index(mesh.hexahedra.size()); ++e) {

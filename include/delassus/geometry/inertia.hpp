@@ -10,11 +10,11 @@
 
 namespace delassus {
 
-/// kg · body frame, m · kg·m² about the centre, axes of the body frame.
+/// What a rigid body takes of a solid.
 struct MassProperties {
-  double mass = 0;
-  Vec3 centre = zero<Vec3>();
-  Mat3 inertia = zero<Mat3>();
+  double mass = 0;              ///< kg
+  Vec3 centre = zero<Vec3>();   ///< of mass, body frame, m
+  Mat3 inertia = zero<Mat3>();  ///< about the centre, axes of the body frame, kg·m²
 };
 
 namespace inner {

@@ -14,17 +14,16 @@
 
 namespace delassus {
 
-/// Points (m) and tetrahedra of ten points each, in the order of VTK: four corners as those of a
-/// `TetrahedralMesh`, then the nodes on the edges (0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3). Edges may
-/// be bent.
+/// Points (m) and tetrahedra of ten points each, in the order of VTK. Four corners as those of a `TetrahedralMesh`
+/// come first. The nodes on the edges (0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3) follow. Edges may be bent.
 struct QuadraticTetrahedralMesh {
-  std::vector<Vec3> points;
-  std::vector<std::array<Index, 10>> tetrahedra;
+  std::vector<Vec3> points;                       ///< m
+  std::vector<std::array<Index, 10>> tetrahedra;  ///< by numbers of points
 
-  static constexpr const char* cell = "tetrahedron";
-  static constexpr bool has_shares = true;
-  const auto& cells() const { return tetrahedra; }
-  auto& cells() { return tetrahedra; }
+  static constexpr const char* cell = "tetrahedron";  ///< its word for an element in messages
+  static constexpr bool has_shares = true;  ///< places in an element are the shares of its corners 1, 2, 3
+  const auto& cells() const { return tetrahedra; }  ///< by the name that all meshes share
+  auto& cells() { return tetrahedra; }  ///< the same, to change
 };
 
 namespace inner {
@@ -115,8 +114,8 @@ inline double least_volume(const QuadraticTetrahedralMesh& mesh, Index e) {
   return least;
 }
 
-/// Refuses a mesh that is no body: what `check_mesh` refuses of the tetrahedra of its corners, points on
-/// edges that are not there or belong to nothing, edges so bent that an element folds, and an edge with two
+/// Refuses a mesh that is no body: what `check_mesh` refuses of the tetrahedra of its corners, and points on edges
+/// that are not there or belong to nothing. Refuses edges so bent that an element folds, and an edge with two
 /// nodes.
 inline void check_mesh(const QuadraticTetrahedralMesh& mesh, const std::string& who) {
   inner::check_points(mesh, who);

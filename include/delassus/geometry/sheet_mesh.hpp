@@ -24,13 +24,13 @@ namespace delassus {
 /// Points (m) of the middle surface and triangles of three points each, all turned to the same side; at most
 /// two have an edge. It may be open, and need not be flat.
 struct SheetMesh {
-  std::vector<Vec3> points;
-  std::vector<std::array<Index, 3>> triangles;
+  std::vector<Vec3> points;                     ///< of the middle surface, m
+  std::vector<std::array<Index, 3>> triangles;  ///< by numbers of points
   double thickness = 1e-3;  ///< m
 
-  static constexpr const char* cell = "triangle";
-  const auto& cells() const { return triangles; }
-  auto& cells() { return triangles; }
+  static constexpr const char* cell = "triangle";  ///< its word for an element in messages
+  const auto& cells() const { return triangles; }  ///< by the name that all meshes share
+  auto& cells() { return triangles; }  ///< the same, to change
 };
 
 /// m².
@@ -42,9 +42,9 @@ inline double area(const SheetMesh& mesh, Index e) {
 /// Of triangle e, m³.
 inline double volume(const SheetMesh& mesh, Index e) { return mesh.thickness * area(mesh, e); }
 
-/// Refuses a mesh that is no sheet: a thickness that is none, points that are not finite or in no triangle,
-/// numbers of points that are not there, triangles without area (height below 1e-6 of the longest edge), two
-/// triangles of the same points, edges of three triangles or of two that are turned to different sides.
+/// Refuses a mesh that is no sheet: a thickness that is none, points that are not finite or in no triangle, and
+/// numbers of points that are not there. Refuses triangles without area (height below 1e-6 of the longest edge),
+/// two triangles of the same points, and edges of three triangles or of two that are turned to different sides.
 inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
   inner::check_points(mesh, who);
   inner::expect_positive(who + ": the thickness", mesh.thickness, "m");
@@ -79,6 +79,7 @@ inline void check_mesh(const SheetMesh& mesh, const std::string& who) {
 /// Where corner k is in the coordinates by which an element weighs its corners.
 inline Vec3 place_of_corner(const SheetMesh&, int k) { return k > 0 ? unit_axis(k - 1) : Vec3(zero<Vec3>()); }
 
+/// Its own triangles, one side of them.
 inline const std::vector<std::array<Index, 3>>& surface(const SheetMesh& mesh) { return mesh.triangles; }
 /// Both sides: all triangles as they are, then all of them from behind.
 inline std::vector<OuterFace> outer_faces(const SheetMesh& mesh) {

@@ -19,13 +19,13 @@ namespace delassus {
 
 /// Points (m) and tetrahedra of four points each, ordered so that (x₁ − x₀) · ((x₂ − x₀) × (x₃ − x₀)) > 0.
 struct TetrahedralMesh {
-  std::vector<Vec3> points;
-  std::vector<std::array<Index, 4>> tetrahedra;
+  std::vector<Vec3> points;                      ///< m
+  std::vector<std::array<Index, 4>> tetrahedra;  ///< by numbers of points
 
-  static constexpr const char* cell = "tetrahedron";
+  static constexpr const char* cell = "tetrahedron";  ///< its word for an element in messages
   static constexpr bool has_shares = true;  ///< places in an element are the shares of its corners 1, 2, 3
-  const auto& cells() const { return tetrahedra; }
-  auto& cells() { return tetrahedra; }
+  const auto& cells() const { return tetrahedra; }  ///< by the name that all meshes share
+  auto& cells() { return tetrahedra; }  ///< the same, to change
 };
 
 /// Of tetrahedron e, m³; negative where its points are ordered inside out.
@@ -43,8 +43,8 @@ inline constexpr int tetrahedron_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, 
 
 }  // namespace inner
 
-/// Refuses a mesh that is no body: points that are not finite or in no tetrahedron, numbers of points that
-/// are not there, tetrahedra that are flat (height below 1e-9 of the size), inside out or there twice.
+/// Refuses a mesh that is no body: points that are not finite or in no tetrahedron, and numbers of points that
+/// are not there. Refuses tetrahedra that are flat (height below 1e-9 of the size), inside out or there twice.
 inline void check_mesh(const TetrahedralMesh& mesh, const std::string& who) {
   inner::check_points(mesh, who);
   for (Index e = 0; e < Index(mesh.tetrahedra.size()); ++e) {

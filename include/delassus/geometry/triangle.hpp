@@ -11,7 +11,7 @@ namespace delassus {
 
 /// Counter-clockwise seen from outside; the solid is behind it. Edge k runs from point k to the next. m.
 struct Triangle {
-  std::array<Vec3, 3> point;
+  std::array<Vec3, 3> point;  ///< its corners, m
   std::array<Index, 3> corner{};  ///< names of the points, the same in every triangle they belong to
   Vec3 normal = zero<Vec3>();     ///< unit, outward
   /// Sine of the angle up to which a contact normal at edge k may lean outward over it: 0 where the neighbour
@@ -24,6 +24,7 @@ struct Triangle {
     const Vec3 out = cross(edge, normal);
     return out / norm(out);
   }
+  /// Above its plane, m; < 0 behind it.
   double height(const Vec3& x) const { return dot(normal, x - point[0]); }
 };
 
@@ -37,7 +38,7 @@ inline Vec3 core_support(const Triangle& t, const Vec3& d) {
   }
   return t.point[best];
 }
-inline double core_radius(const Triangle&) { return 0; }
+inline double core_radius(const Triangle&) { return 0; }  ///< no rounding, 0 m
 
 namespace inner {
 

@@ -13,12 +13,13 @@
 namespace delassus {
 
 /// Triangles over shared vertices, in its own frame, m. Each is counter-clockwise seen from outside, and the
-/// solid is behind it; the surface may be open. Refused, by the number of the element: vertices that are not
-/// finite, indices out of range, triangles flatter than 1e-6 of their longest edge, edges that more than two
-/// triangles share or that two run through in one direction.
+/// solid is behind it; the surface may be open.
 class TriangleMesh : public inner::TriangleSurface {
  public:
   TriangleMesh() = default;  ///< no triangle, until `memory` reads one
+  /// Refuses, by the number of the element: vertices that are not finite, indices out of range, triangles flatter than
+  /// 1e-6 of their longest edge. Refuses edges that more than two triangles share or that two run through in one
+  /// direction, and no triangle at all.
   TriangleMesh(std::span<const Vec3> vertices, std::span<const std::array<Index, 3>> triangles) {
     vertices_.assign(vertices.begin(), vertices.end());
     corners_.assign(triangles.begin(), triangles.end());

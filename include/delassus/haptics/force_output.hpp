@@ -28,6 +28,7 @@ struct ForceOutput {
     inner::expect_at_least_zero("ForceOutput: max_torque", max_torque, "N·m");
   }
 
+  /// α; 1 without a filter.
   double share() const { return std::isinf(cutoff) ? 1 : -std::expm1(-2 * std::numbers::pi * cutoff * period); }
 
   /// One tick of one vector: `filtered` is the filter's memory.

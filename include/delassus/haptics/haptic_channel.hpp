@@ -23,20 +23,20 @@
 namespace delassus {
 
 /// The tool is a body of the loop, tied by a `VirtualCoupling` to a kinematic body that stands for the device. After each
-/// solve the loop's thread publishes the whole problem; in the device's thread a tick moves the device's end of the
-/// coupling to where the device is (`ToolRows`), solves the tool's island from the last impulses, and answers
+/// solve the loop's thread publishes the whole problem. In the device's thread a tick moves the device's end of the coupling
+/// to where the device is (`ToolRows`), solves the tool's island from the last impulses, and answers
 ///
 ///   F = −λ_coupling / h.
 ///
-/// A wall that the snapshot knows is thus felt at the tick's rate, not at the loop's, and F is a map of the device's
-/// position of slope ≤ k between two snapshots, however old they are: docs/theory/haptics.md says what follows from that.
+/// A wall that the snapshot knows is thus felt at the tick's rate, not at the loop's. Between two snapshots, however old they
+/// are, F is a map of the device's position of slope ≤ k. What follows from that is in docs/theory/haptics.md.
 ///
 ///     auto& haptics = loop.channel<HapticChannel>();
 ///     haptics.connect(coupling);                                     // before the threads start
 ///     const HapticForce f = haptics.tick(device_state);              // the device's thread
 ///     rigid.move_to(proxy, haptics.device().position); loop.step(h); // the loop's thread
 ///
-/// A tick never waits and allocates nothing: everything it needs is made ready by the loop's thread.
+/// A tick never waits and allocates nothing: Everything it needs is made ready by the loop's thread.
 template <class Solver = AcceleratedGaussSeidel, Clock C = SteadyClock>
 struct BasicHapticChannel {
   using plays = role::Listener;
@@ -44,8 +44,8 @@ struct BasicHapticChannel {
 
   Solver solver{.tolerance = 1e-4, .max_iterations = 100};  ///< of a tick
   double budget = 80e-6;                                    ///< s a tick may solve, looked at after each sweep
-  C clock{};
-  ForceOutput output{};
+  C clock{};  ///< of the budget
+  ForceOutput output{};  ///< between the solve and the motors
   std::size_t reserve = 0;  ///< elements of an array of a snapshot, as in `DoubleBuffer`; 0: as it comes
 
   void check() const {
@@ -54,15 +54,18 @@ struct BasicHapticChannel {
     inner::expect_at_least_zero("HapticChannel: budget", budget, "s");
   }
 
+  /// What `loop.channel<HapticChannel>()` returns, for both threads.
   template <class Problem>
   class Channel;
 
+  /// Asked by the checks: says what the loop lacks, W as a matrix or a VirtualCoupling.
   template <class Problem>
   static consteval bool can_publish();
 
   void after(stage::Solve, const auto& loop) const { loop.template channel<BasicHapticChannel>().publish(loop); }
 };
 
+/// The state of both threads; each calls its own functions only.
 template <class Solver, Clock C>
 template <class Problem>
 class BasicHapticChannel<Solver, C>::Channel : inner::Room {
@@ -193,6 +196,7 @@ consteval bool BasicHapticChannel<Solver, C>::can_publish() {
   }
 }
 
+/// With the default solver and the steady clock.
 using HapticChannel = BasicHapticChannel<>;
 
 }  // namespace delassus

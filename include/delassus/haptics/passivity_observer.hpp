@@ -19,9 +19,11 @@ class PassivityObserver {
     least_ = std::min(least_, energy_);
   }
 
+  /// E now, J.
   double energy() const { return energy_; }
   /// The smallest E so far; 0 if it was never below.
   double least() const { return least_; }
+  /// E ≥ 0 now; `least` tells of the time before.
   bool is_passive() const { return energy_ >= 0; }
 
  private:

@@ -8,12 +8,12 @@
 
 namespace delassus {
 
-/// m ẍ = F − b ẋ + K (x_h − x) + B (ẋ_h − ẋ): F what the motors exert, held for the time of a tick, b the friction of the
+/// m ẍ = F − b ẋ + K (x_h − x) + B (ẋ_h − ẋ). What the motors exert is F, held for the time of a tick, b the friction of the
 /// device, K and B the hand, which wants to be at x_h. The orientation is fixed.
 ///
-/// Advanced by the implicit midpoint rule, which keeps its energy balance to rounding for any step,
-///   Δ(½ m v² + ½ K (x_h − x)²) = F·Δx − b v̄² dt − B …,  v̄ = Δx/dt, for a hand that holds still,
-/// so that energy that appears in a closed loop does not come from here.
+/// Advanced by the implicit midpoint rule, which keeps its energy balance to rounding for any step. For a hand that holds still,
+///   Δ(½ m v² + ½ K (x_h − x)²) = F·Δx − b v̄² dt − B …,  v̄ = Δx/dt.
+/// Energy that appears in a closed loop therefore does not come from here.
 struct SimulatedDevice {
   double mass = 0.1;             ///< m, kg
   double friction = 1;           ///< b, N·s/m
@@ -22,7 +22,7 @@ struct SimulatedDevice {
   Vec3 position = zero<Vec3>();  ///< x, m
   Vec3 velocity = zero<Vec3>();  ///< m/s
   Vec3 hand = zero<Vec3>();      ///< x_h, m
-  Vec3 hand_velocity = zero<Vec3>();
+  Vec3 hand_velocity = zero<Vec3>();  ///< ẋ_h, m/s
 
   void check() const {
     inner::expect_positive("SimulatedDevice: mass", mass, "kg");
@@ -30,6 +30,7 @@ struct SimulatedDevice {
                     "SimulatedDevice: friction and the hand's stiffness and damping must be >= 0");
   }
 
+  /// What a driver would tell.
   DeviceState state() const { return {.position = position, .velocity = velocity}; }
 
   /// `seconds` under a constant force, in `steps` steps. x_h moves with its velocity.

@@ -41,20 +41,20 @@ struct CoupledRows<RowSystem<T, Widths, R...>> {
   using type = std::tuple<std::vector<CoupledRow<R, T>>...>;
 };
 
-/// The step solved λ_c = −h (K (φ + h u) + C u) with u = u_tool − v_b: at its end the device was to be at x_b + h v_b with
-/// velocity v_b. With the device at x and v instead, its end of the spring lies
+/// The step solved λ_c = −h (K (φ + h u) + C u) with u = u_tool − v_b. At its end the device was to be at x_b + h v_b with
+/// velocity v_b. With the device at x and v instead, its end of the spring lies further on by
 ///
-///   Δ = x − (x_b + h v_b),  Δv = v − v_b   further on, so that   λ_c = −h (K (φ + h u − Δ) + C (u − Δv)),
+///   Δ = x − (x_b + h v_b),  Δv = v − v_b,   so that   λ_c = −h (K (φ + h u − Δ) + C (u − Δv)).
 ///
-/// which is the same soft row, of the same W and compliance, with   d_c ← d_c − (K Δ + C Δv)/(h K + C).
+/// That is the same soft row, of the same W and compliance, with   d_c ← d_c − (K Δ + C Δv)/(h K + C).
 /// Orientation likewise, with Δ = log(q q_b⁻¹) − h ω_b. The rows act at the middle of the two ends, half a stretch r off the
-/// device's: a turn moves it there by Δ × r, and the force has the moment r × F.
+/// device's. A turn moves it there by Δ × r, and the force has the moment r × F.
 ///
-/// Against a light tool the coupling is slow to sweep, and it has no bounds: so it is eliminated, once a snapshot.
+/// Against a light tool the coupling is slow to sweep, and it has no bounds. So it is eliminated, once a snapshot.
 ///
 ///   λ_c = −W_cc⁻¹ (d_c + Σ_j W_cj λ_j),   W_ij ← W_ij − Z_i W_cj,   d_i ← d_i − Z_i d_c,   Z_i = W_ic W_cc⁻¹.
 ///
-/// No block is added: constraints that meet the coupling do so on the tool, and meet each other there. What is left of row c
+/// No block is added: Constraints that meet the coupling do so on the tool, and meet each other there. What is left of row c
 /// is λ_c = 0 by itself.
 template <class Problem>
 class ToolRows {

@@ -7,7 +7,7 @@
 
 namespace delassus {
 
-/// (M + h D + h² K) (v⁺ − v) = h (f − h K v),  q⁺ = q ⊕ h v⁺, with D + α M + β K in place of D. First order, damps.
+/// (M + h D + h² K) (v⁺ − v) = h (f − h K v),  q⁺ = q ⊕ h v⁺. First order, damps. D + α M + β K stands for D.
 /// f and K are taken at the start of the step; exact for linear forces.
 struct ImplicitEuler {
   using plays = role::Integrator;
@@ -22,6 +22,7 @@ struct ImplicitEuler {
   SystemScale scale(double h) const {
     return {.mass = 1 + h * rayleigh_mass, .damping = h, .stiffness = h * (h + rayleigh_stiffness)};
   }
+  /// p ← h (f − (h + β) K v − α M v), N·s.
   void impulse(const auto& set, auto& p, double h) const {
     set.add_forces(p);
     if constexpr (requires { set.add_stiffness_times_velocity(p, h); })

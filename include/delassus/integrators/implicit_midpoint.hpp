@@ -13,7 +13,7 @@ namespace delassus {
 struct ImplicitMidpoint {
   using plays = role::Integrator;
   using each_block_alone = ImplicitMidpoint;
-  static constexpr double theta = 0.5;
+  static constexpr double theta = 0.5;  ///< share of v⁺ in the velocity that moves q
   template <class Base>
   using stages = inner::MidpointStages<Base>;
   template <class P>
@@ -21,6 +21,7 @@ struct ImplicitMidpoint {
   using State = inner::MidpointState<P>;
 
   SystemScale scale(double h) const { return {.mass = 1, .damping = h / 2, .stiffness = h * h / 4}; }
+  /// p ← h (f − h/2 K v), N·s.
   void impulse(const auto& set, auto& p, double h) const {
     set.add_forces(p);
     if constexpr (requires { set.add_stiffness_times_velocity(p, h); }) set.add_stiffness_times_velocity(p, h / 2);

@@ -12,18 +12,19 @@
 
 namespace delassus {
 
-/// The least a body set can be, to check integrators against without naming a real one.
+/// The least a body set can be, to check integrators against without naming a real one. Nothing of it is defined.
 struct SetProbe {
   using Scalar = double;
-  using Velocity = Vec<3>;
-  static constexpr int width = 3;
-  Array<Velocity> v_free, v_next;
-  Array<Velocity>& velocity();
+  using Velocity = Vec<3>;         ///< of a point
+  static constexpr int width = 3;  ///< velocities a block
+  /// After the free motion, m/s.
+  Array<Velocity> v_free, v_next;  ///< of the end, m/s
+  Array<Velocity>& velocity();  ///< of the start, m/s
   void add_forces(std::span<Velocity>) const;
-  void add_stiffness_times_velocity(std::span<Velocity>, double) const;
-  void add_mass_times_velocity(std::span<Velocity>, double) const;
+  void add_stiffness_times_velocity(std::span<Velocity>, double) const;  ///< p −= s K v
+  void add_mass_times_velocity(std::span<Velocity>, double) const;  ///< p += s M v
   void advance(double);
-  void advance_midpoint(double);
+  void advance_midpoint(double);  ///< q by the mean of v and v_next
 };
 
 /// scale(h) mixes A; impulse(set, p, h) makes A (v_free − v) = p; advance(set, h) moves q and v from v_next.

@@ -12,7 +12,7 @@ struct SymplecticEuler {
   static constexpr bool takes_masses_alone = true;  ///< A = M
 
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }  ///< p ← h f, N·s
   void advance(auto& set, double h) const { set.advance(h); }
 };
 static_assert(Integrator<SymplecticEuler>);

@@ -24,6 +24,7 @@ inline void append_field(std::string& out, const std::string& text) {
 
 }  // namespace inner
 
+/// The names of the columns, then the rows. Throws where a row has more or fewer cells than there are columns.
 inline std::string csv_text(const Table& table) {
   std::string out;
   const auto append_row = [&](const auto& fields, const auto& text_of) {
@@ -65,6 +66,7 @@ inline std::string csv_text(const RecordedSteps& steps) {
 inline void write_csv(const std::string& path, const Table& table) {
   inner::write_file(path, csv_text(table));
 }
+/// The same for the series of a recording.
 inline void write_csv(const std::string& path, const RecordedSteps& steps) {
   inner::write_file(path, csv_text(steps));
 }

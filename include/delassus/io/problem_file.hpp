@@ -84,6 +84,7 @@ inline std::vector<Vec3> parse_impulses(std::string_view text, const std::string
 inline FrictionProblem read_problem(const std::string& path) {
   return parse_problem(inner::read_text(path), path);
 }
+/// 3 · `contacts` impulses from a file. Throws as `read_problem`.
 inline std::vector<Vec3> read_impulses(const std::string& path, Index contacts) {
   return parse_impulses(inner::read_text(path), path, contacts);
 }
@@ -153,6 +154,7 @@ inline std::string problem_text(const FrictionProblem& p) {
   return out + blocks;
 }
 
+/// N·s, one number a line, to the last bit.
 inline std::string impulses_text(std::span<const Vec3> lambda) {
   std::string out;
   for (const Vec3& impulse : lambda)
@@ -160,9 +162,11 @@ inline std::string impulses_text(std::span<const Vec3> lambda) {
   return out;
 }
 
+/// Throws InvalidArgument naming `path` when it cannot be written.
 inline void write_problem(const std::string& path, const FrictionProblem& p) {
   inner::write_file(path, problem_text(p));
 }
+/// The same for impulses, N·s.
 inline void write_impulses(const std::string& path, std::span<const Vec3> lambda) {
   inner::write_file(path, impulses_text(lambda));
 }

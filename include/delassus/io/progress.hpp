@@ -14,6 +14,7 @@ namespace delassus {
 /// Rewrites one line of stderr ten times a second, and only where stderr is a terminal. Gone when destroyed.
 class Progress {
  public:
+  /// `label` stands before the bar.
   explicit Progress(std::string label) : label_(std::move(label)) {
     std::error_code missing;
     is_shown_ = std::filesystem::is_character_file("/dev/stderr", missing);
@@ -37,6 +38,7 @@ class Progress {
     std::fflush(stderr);
   }
 
+  /// s of wall-clock time since it was made.
   double elapsed() const { return seconds(Clock::now() - start_); }
 
  private:

@@ -41,13 +41,16 @@ class Recorder {
   using listens = Listens<stage::Step>;
 
   Recorder() = default;
+  /// What the page calls the scene, a sentence under that, and the most frames a simulated second.
   Recorder(std::string name, std::string caption, double frames_per_second = 30) {
     recording_.name = std::move(name);
     recording_.caption = std::move(caption);
     recording_.frames_per_second = frames_per_second;
   }
 
+  /// What it has so far.
   const Recording& recording() const { return recording_; }
+  /// The same, to be changed or moved away.
   Recording& recording() { return recording_; }
 
   void after(stage::Step, const auto& loop) {

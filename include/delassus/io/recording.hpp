@@ -17,7 +17,7 @@ namespace delassus {
 /// How one body looks. Made by `recorded_body` or `recorded_particle`, so that a hull is copied and not
 /// pointed at.
 struct RecordedBody {
-  Shape shape;
+  Shape shape;  ///< without its hull, which `vertices` and `faces` are
   std::vector<Vec3> vertices{};             ///< of a convex hull, m
   std::vector<std::vector<Index>> faces{};  ///< of a convex hull, counter-clockwise from outside
   bool is_static = false;                 ///< drawn where the first frame has it
@@ -41,37 +41,40 @@ inline RecordedBody recorded_particle(double radius) {
   return {.shape = Sphere{radius}, .is_particle = true};
 }
 
+/// Of one body in one frame.
 struct RecordedPose {
-  Vec3 position = Vec3::Zero();
-  Quat rotation = Quat::Identity();
+  Vec3 position = Vec3::Zero();  ///< m, world
+  Quat rotation = Quat::Identity();  ///< from the axes of the body to the world's
 };
 
-enum class RecordedState : std::uint8_t { open, sliding, sticking };
+/// What a contact does.
+enum class RecordedState : std::uint8_t { open /**< it has no impulse */, sliding /**< λ is on the cone */, sticking /**< λ is within the cone */ };
 
 /// One contact. `impulse` is the one on the body that is to be drawn pushed, N·s over the step of the frame.
 struct RecordedContact {
-  Vec3 point = Vec3::Zero();
-  Vec3 impulse = Vec3::Zero();
-  RecordedState state = RecordedState::sticking;
+  Vec3 point = Vec3::Zero();  ///< m, world
+  Vec3 impulse = Vec3::Zero();  ///< world axes
+  RecordedState state = RecordedState::sticking;  ///< drawn in its own way
 };
 
 /// A joint: a line between two points, a dot where they coincide.
 struct RecordedLine {
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+  /// One end, m, world.
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< the other, m, world
 };
 
 /// One picture. `poses` has one entry per body, in the order of `Recording::bodies`.
 struct RecordedFrame {
-  double time = 0;
-  std::vector<RecordedPose> poses;
-  std::vector<RecordedContact> contacts;
-  std::vector<RecordedLine> lines;
+  double time = 0;  ///< s, simulated
+  std::vector<RecordedPose> poses;  ///< by body
+  std::vector<RecordedContact> contacts;  ///< those that shall be drawn
+  std::vector<RecordedLine> lines;  ///< joints, and edges of soft bodies
 };
 
 /// Milliseconds of one stage, one per step.
 struct RecordedStage {
-  std::string name;
-  std::vector<double> milliseconds;
+  std::string name;  ///< for the legend
+  std::vector<double> milliseconds;  ///< by step
 };
 
 /// The series, one entry per step each. A series that nobody measured stays empty and is not drawn.
@@ -80,7 +83,7 @@ struct RecordedSteps {
   std::vector<double> energy;    ///< J
   std::vector<double> residual;  ///< relative, ≥ 0, drawn on a logarithmic axis
   std::vector<double> sweeps;    ///< iterations of the solver
-  std::vector<RecordedStage> stages;
+  std::vector<RecordedStage> stages;  ///< drawn one above the other
   double tolerance = 0;  ///< drawn as a line across the residual; 0: none
 
   /// Throws InvalidArgument when a series is neither empty nor as long as `time`.
@@ -102,11 +105,11 @@ struct RecordedSteps {
 
 /// One scene of the replay.
 struct Recording {
-  std::string name;
+  std::string name;  ///< of the scene
   std::string caption;  ///< one sentence under the name
-  std::vector<RecordedBody> bodies;
-  std::vector<RecordedFrame> frames;
-  RecordedSteps steps;
+  std::vector<RecordedBody> bodies;  ///< in the order of the poses of a frame
+  std::vector<RecordedFrame> frames;  ///< ascending in time
+  RecordedSteps steps;  ///< the series
   Vec3 up = Vec3::UnitZ();        ///< against gravity, for the camera
   double frames_per_second = 30;  ///< at most
 

@@ -18,7 +18,7 @@ namespace delassus {
 
 /// What a page may cost, and a sentence or two under its title.
 struct ReplayOptions {
-  std::string introduction;
+  std::string introduction;  ///< plain text under the title
   std::size_t max_bytes = 5'000'000;  ///< contacts, then frames, are thinned until the page fits, if it can
 };
 

@@ -14,28 +14,33 @@ namespace delassus {
 /// One entry of a table, made from a word or a number. Numbers keep `digits` significant digits and stand to
 /// the right.
 struct Cell {
-  std::string text;
-  bool is_number = false;
+  std::string text;  ///< as printed
+  bool is_number = false;  ///< stands to the right
 
+  /// A word.
   Cell(const char* word) : text(word) {}
+  /// The same.
   Cell(std::string word) : text(std::move(word)) {}
+  /// With so many significant digits.
   Cell(double number, int digits = 3) : text(inner::number_text(number, digits)), is_number(true) {}
+  /// With every digit.
   Cell(std::integral auto count) : text(std::to_string(count)), is_number(true) {}
   Cell(bool) = delete;
 };
 
 /// Columns carry their unit in their name: "time per step (µs)". Every row has one cell per column.
 struct Table {
-  std::string title;
-  std::string caption;
-  std::vector<std::string> columns;
-  std::vector<std::vector<Cell>> rows;
+  std::string title{};  ///< a line above; empty: none
+  std::string caption{};  ///< a line below; empty: none
+  std::vector<std::string> columns{};  ///< their names, with units
+  std::vector<std::vector<Cell>> rows{};  ///< each as long as `columns`
 
   /// Adds a row; throws InvalidArgument when it is longer or shorter than the list of columns.
   void add(std::vector<Cell> row) {
     rows.push_back(std::move(row));
     check_row(rows.size() - 1);
   }
+  /// Throws InvalidArgument where this row has more or fewer cells than there are columns.
   void check_row(std::size_t row) const {
     DELASSUS_EXPECT(rows[row].size() == columns.size(), "table '" + title + "': row #" + std::to_string(row) +
                                                             " has " + std::to_string(rows[row].size()) +
@@ -90,6 +95,7 @@ inline std::string aligned_text(const Table& table) {
   return out;
 }
 
+/// `aligned_text` to a stream.
 inline void print(const Table& table, std::FILE* stream = stdout) {
   std::fputs(aligned_text(table).c_str(), stream);
 }

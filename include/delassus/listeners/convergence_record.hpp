@@ -17,45 +17,52 @@ class BasicConvergenceRecord {
  public:
   using plays = role::Listener;
   using listens = Listens<stage::Begin, stage::Solve>;
-  static constexpr bool every_sweep = true;
+  static constexpr bool every_sweep = true;  ///< read by the loop: the solver measures after each sweep
 
+  /// The error after one sweep of one island.
   struct Sweep {
-    Index island;
+    Index island;  ///< its number in the step
     int sweep;  ///< 0: before the first
-    Measure measure;
+    Measure measure;  ///< of the whole island
   };
   /// One row of the last step. `force` is λ/h, N or N·m.
   struct Row {
-    int pool;
-    Index item;
-    int row;
-    Real force;
+    int pool;  ///< place of its law in Constraints{...}
+    Index item;  ///< number among the items of that law in this step
+    int row;  ///< of the item, from 0
+    Real force;  ///< λ/h
   };
   /// |F_i| of one constraint in velocity units, m/s: its share of the residual before the division.
   struct Constraint {
-    int pool;
-    Index item;
-    Real error;
+    int pool;  ///< place of its law in Constraints{...}
+    Index item;  ///< number among the items of that law in this step
+    Real error;  ///< |F_i|
   };
 
   /// One row after one sweep.
   struct Force {
-    Index island;
-    int sweep;
-    Row row;
+    Index island;  ///< its number in the step
+    int sweep;  ///< 0: before the first
+    Row row;  ///< with the force after that sweep
   };
 
   /// With `every_force` the force of each row is kept after every sweep, too.
   explicit BasicConvergenceRecord(bool every_force = false) : every_force_(every_force) {}
 
+  /// Of the last step, one island after the other.
   const std::vector<Sweep>& sweeps() const { return sweeps_; }
+  /// Of the last step; empty without `every_force`.
   const std::vector<Force>& forces() const { return forces_; }
-  const std::vector<Row>& rows() const { return rows_; }
+  const std::vector<Row>& rows() const { return rows_; }  ///< at the end of the last step's solve
+  /// At the end of the last step's solve.
   const std::vector<Constraint>& constraints() const { return constraints_; }
 
+  /// Called by the step: what follows is of this island.
   void begin_island(Index island) { island_ = island; }
   void operator()(int sweep, const Measure& m) { sweeps_.push_back({island_, sweep, m}); }
+  /// Asked by the solver: `every_force`.
   bool wants_forces() const { return every_force_; }
+  /// Called by the solver after a sweep, with the impulses of one item.
   void force(int sweep, int pool, Index item, const auto& lambda, double h) {
     for (int k = 0; k < int(lambda.size()); ++k) forces_.push_back({island_, sweep, {pool, item, k, double(lambda[k]) / h}});
   }
@@ -82,6 +89,7 @@ class BasicConvergenceRecord {
   std::vector<Constraint> constraints_;
 };
 
+/// Keeps doubles.
 using ConvergenceRecord = BasicConvergenceRecord<double>;
 
 }  // namespace delassus

@@ -18,10 +18,10 @@ namespace delassus {
 /// A constraint problem as it was when a step had solved it: W, d, λ, the rows and the typed items.
 template <class Problem>
 struct Snapshot {
-  Problem problem;
+  Problem problem;  ///< a copy that is whole without the bodies
   std::uint64_t sequence = 0;  ///< 1 for the first; one that is passed over leaves a gap
   double time = 0;             ///< s, simulated, at the start of the step
-  Status status = Status::converged;
+  Status status = Status::converged;  ///< of the step's report when it was solved
 };
 
 namespace inner {
@@ -83,9 +83,10 @@ void take_snapshot(const Loop& loop, std::uint64_t sequence, Snapshot<Problem>& 
 ///     auto& channel = loop.channel<DoubleBuffer>();     // before the threads start
 ///     if (channel.fetch()) look_at(channel.front());    // in the reader's thread, whenever it likes
 ///
-/// What the front holds is the reader's own until it fetches again: it may change λ and d there and solve anew. With
-/// `DoubleBuffer{.reserve = 4096}` each array of a snapshot has room for so many elements from the start, and publishing
-/// allocates nothing, ever: a problem that is larger is passed over, and counted in `skipped`. Without, arrays grow and keep
+/// What the front holds is the reader's own until it fetches again. It may change λ and d there and solve anew.
+///
+/// With `DoubleBuffer{.reserve = 4096}` each array of a snapshot has room for so many elements from the start, and publishing
+/// allocates nothing, ever. A problem that is larger is passed over, and counted in `skipped`. Without, arrays grow and keep
 /// their capacity.
 /// (Two slots would do only if one thread could wait for the other.)
 struct DoubleBuffer {
@@ -93,9 +94,11 @@ struct DoubleBuffer {
   using listens = Listens<stage::Solve>;
   std::size_t reserve = 0;  ///< elements of an array; the longest are the blocks of W between two laws. 0: as it comes
 
+  /// What `loop.channel<DoubleBuffer>()` returns, for both threads.
   template <class Problem>
   class Channel : inner::Room {
    public:
+    /// Takes the room that `parameters` ask for.
     explicit Channel(const DoubleBuffer& parameters) : Room(parameters.reserve) {
       snapshots_.each([&](auto& snapshot) { this->make_in(snapshot.problem); });
     }
@@ -104,6 +107,7 @@ struct DoubleBuffer {
 
     /// The reader: takes the newest snapshot, true if it was not taken before.
     bool fetch() { return snapshots_.fetch(); }
+    /// The reader: what was taken last.
     Snapshot<Problem>& front() { return snapshots_.front(); }
 
     /// The loop's thread.
@@ -119,6 +123,7 @@ struct DoubleBuffer {
     std::uint64_t sequence_ = 0;
   };
 
+  /// Asked by the checks: says what the loop lacks, constraints or W as a matrix.
   template <class Problem>
   static consteval bool can_publish() {
     if constexpr (std::is_void_v<Problem>) {

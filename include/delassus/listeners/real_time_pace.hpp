@@ -25,6 +25,7 @@ concept PatientClock = Clock<C> && requires(const C clock, double t) {
 
 /// The steady clock, which lets the thread sleep. The system wakes it some tens of microseconds late.
 struct SleepingClock : SteadyClock {
+  /// `t` in s on this clock.
   void sleep_until(double t) const {
     const double left = t - now();
     if (left > 0) std::this_thread::sleep_for(std::chrono::duration<double>(left));
@@ -44,11 +45,12 @@ class BasicRealTimePace {
   using plays = role::Listener;
   using listens = Listens<stage::Begin, stage::Step>;
 
+  /// Of all steps so far.
   struct Statistics {
-    long steps = 0;
+    long steps = 0;  ///< that have ended
     long overruns = 0;     ///< steps whose own work took longer than h
     long late = 0;         ///< steps that ended after their t_n
-    double p50 = 0, p99 = 0, max = 0;  ///< work of a step, s: median and 99 % of the latest ones, largest of all
+    double p50 = 0 /**< s, median work of the latest steps */, p99 = 0 /**< s, 99 % of them work no longer */, max = 0;  ///< s, of all steps
     double worst_lateness = 0;  ///< s
     double dropped = 0;         ///< s by which the schedule was moved back in all
     double mean_period = 0;     ///< s from end to end of a step, sleep included
@@ -62,6 +64,7 @@ class BasicRealTimePace {
     keep_ = keep;
   }
 
+  /// Sorts what is kept: not for every step.
   Statistics statistics() const {
     Statistics s = sums_;
     std::vector<double> sorted = work_;
@@ -113,6 +116,7 @@ class BasicRealTimePace {
   double first_ = 0, began_ = 0, due_ = 0, ended_ = 0;  ///< s on the clock
 };
 
+/// On the clock that lets the thread sleep.
 using RealTimePace = BasicRealTimePace<>;
 
 }  // namespace delassus

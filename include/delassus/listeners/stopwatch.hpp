@@ -20,6 +20,7 @@ class BasicStopwatch {
  public:
   using plays = role::Listener;
   using listens = ListensToAll;
+  /// Of the stages that are timed, in their order.
   static constexpr std::array names{"detect", "linearize", "free motion", "islands", "bias",
                                     "build",  "solve",     "correct",     "advance"};
   static constexpr std::size_t stages = names.size();
@@ -27,9 +28,12 @@ class BasicStopwatch {
   /// Milliseconds of each stage of one step, in the order of `names`.
   using Times = std::array<Real, stages>;
 
+  /// Keeps the times of so many steps at most.
   explicit BasicStopwatch(std::size_t keep = 100000) : keep_(keep) { laps_.reserve(keep < 1024 ? keep : 1024); }
 
+  /// One entry a step, of the first `keep` steps.
   const std::vector<Times>& laps() const { return laps_; }
+  /// Of the newest step.
   const Times& last() const { return now_; }
 
   /// ms, mean over all steps so far.
@@ -99,6 +103,7 @@ class BasicStopwatch {
   long steps_ = 0;
 };
 
+/// Counts in doubles.
 using Stopwatch = BasicStopwatch<double>;
 
 }  // namespace delassus

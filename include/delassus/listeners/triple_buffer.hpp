@@ -10,15 +10,15 @@ namespace delassus {
 /// At each moment one slot is the writer's, one the reader's, and one lies between them. The atomic byte `middle_` names
 /// the one between, and says whether it is newer than the reader's.
 ///
-///   publish: the writer's slot goes to the middle, the middle's to the writer;
-///   fetch:   if the middle is newer, it goes to the reader, and the reader's to the middle.
+///   Publish: The writer's slot goes to the middle, the middle's to the writer.
+///   Fetch:   If the middle is newer, it goes to the reader, and the reader's to the middle.
 ///
-/// Each is one atomic exchange, so a slot has one owner at all times: no read can be torn, and the reader gets the newest
+/// Each is one atomic exchange, so a slot has one owner at all times: No read can be torn, and the reader gets the newest
 /// that was published before it asked. What it did not ask for in time is overwritten, never queued.
 ///
 /// Memory order. The exchange releases the slot that is given away, with all that was written there, and acquires the one
 /// that is taken: `acq_rel` on both sides, since the reader may write in its slot too. The reader's first look is
-/// `relaxed`: it orders nothing, and what it decides to take it takes by the exchange.
+/// `relaxed`: It orders nothing, and what it decides to take it takes by the exchange.
 ///
 /// One thread calls back and publish, one calls front and fetch. Slots are built in place and never move.
 template <class T>

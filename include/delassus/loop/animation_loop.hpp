@@ -20,15 +20,18 @@ namespace delassus {
 template <class... Args>
 class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::type> {
  public:
-  using Data = StepData<typename inner::loop_policies<Args...>::type>;
+  using Data = StepData<typename inner::loop_policies<Args...>::type>;  ///< what stages and listeners get
   using typename Data::Laws, typename Data::Scalar, typename Data::WorldType;
   using Data::has, Data::has_constraints, Data::has_problem, Data::moves_freely;
   using Data::channel, Data::contacts, Data::copy_problem, Data::each_constraint, Data::each_impulse, Data::each_joint,
       Data::each_problem_part, Data::get, Data::island_reports, Data::policy, Data::problem, Data::report, Data::step_size,
       Data::time, Data::world;
+  /// Whether bodies may be left out of steps.
   static constexpr bool may_rest = Data::template has_state<role::Activity>;
+  /// By hand.
   static constexpr bool may_switch = requires { requires Data::Policies::Activity::switches_bodies; };
 
+  /// Takes the policies over. Throws InvalidArgument where a number of one of them is invalid.
   explicit AnimationLoop(Args... policies);
 
   /// Moves the scene by so many seconds. Throws InvalidArgument when they are not finite and > 0, a number of a policy was made
@@ -37,11 +40,12 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
 
   /// What a step reads and writes: for a host that calls the stages one by one, `stage::begin(loop.data(), h)` and so on.
   Data& data() { return *this; }
-  const Data& data() const { return *this; }
+  const Data& data() const { return *this; }  ///< the same, to read
 
   /// Adds a constraint: `loop.add(BallJoint::Item{...})`. Its law must be in Constraints{...}.
   template <class Item>
   auto add(Item item);
+  /// Takes a constraint out. `problem` and `each_constraint` are empty until the next step.
   template <class Law>
   void remove(ConstraintHandle<Law> constraint) {
     laws().template of<Law>().remove(constraint);
@@ -106,6 +110,7 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
   {
     inner::visit_body(world(), body, [&](auto&, Index s) { activity_state().wake(world(), laws(), s, body.index); });
   }
+  /// Wakes whoever sleeps, or switches on whoever is off: after an edit that wakes nobody by itself.
   void wake_all()
     requires(may_rest)
   {
@@ -119,6 +124,7 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
     inner::visit_body(world(), body,
                       [&](auto& set, Index s) { activity_state().put_to_sleep(world(), laws(), set, s, body.index); });
   }
+  /// Puts it back into the steps; nothing for one that is on.
   template <class Set>
   void switch_on(Handle<Set> body)
     requires(may_switch)

@@ -5,9 +5,9 @@
 
 namespace delassus {
 
-/// Mean over the step, N and N·m; b has the opposite of both.
+/// What end a received, as a mean over the step; b has the opposite of both.
 struct Reaction {
-  Vec3 force = zero<Vec3>();
+  Vec3 force = zero<Vec3>();   ///< N
   Vec3 moment = zero<Vec3>();  ///< about the joint's point, x_b
 };
 
@@ -24,8 +24,8 @@ Reaction reaction(const Vec<Law::rows>& lambda, double h) {
 
 }  // namespace inner
 
-/// The reaction of a joint in the axes of its frame on a, as they were where the step took its rows; of a
-/// `BallJoint` in the axes of the world. The moment z of a `Universal` is that about a_x × b_y.
+/// The reaction of a joint in the axes of its frame on a, as they were where the step took its rows. That of a
+/// `BallJoint` is in the axes of the world. The moment z of a `Universal` is that about a_x × b_y.
 template <class Loop, class Handle>
 Reaction reaction(const Loop& loop, Handle joint) {
   return inner::reaction<typename Handle::Law>(loop.impulse(joint), loop.step_size());

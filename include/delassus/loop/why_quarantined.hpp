@@ -20,8 +20,8 @@ std::string full_name(const Set& set, Index block) {
 }  // namespace inner
 
 /// Of the last step of a loop; empty when it left no body where it was. Names the first body whose force or torque was not
-/// finite, else a gravity that is not, else the first body that was left: then a number was too large (1e308 m/s), a law
-/// wrote one that is none, or no solution was found.
+/// finite, else a gravity that is not, else the first body that was left. In that case a number was too large (1e308 m/s), a
+/// law wrote one that is none, or no solution was found.
 template <class Loop>
 std::string why_quarantined(const Loop& loop) {
   const Index count = loop.report().quarantined;

@@ -15,7 +15,7 @@ namespace delassus {
 
 /// Coulomb's law on rows that somebody else has linearised: an item is a friction coefficient.
 struct GivenContact : Coulomb {
-  static constexpr bool is_contact = true;
+  static constexpr bool is_contact = true;  ///< it is a `ContactLaw`
 
   /// Coulomb's functions take it for its parameters.
   struct Item {
@@ -36,8 +36,9 @@ using FrictionProblem =
 
 /// One block of W: the velocity that contact `column`'s impulse gives contact `row`.
 struct GivenBlock {
-  Index row, column;
-  Mat3 block;
+  /// Of the contact that moves, from 0.
+  Index row, column;  ///< of the contact whose impulse it is
+  Mat3 block;  ///< 1/kg, axes n, t₁, t₂ of either contact
 };
 
 /// A friction problem from its parts. `blocks` in any order, one on every diagonal place and none twice; λ

@@ -19,21 +19,28 @@
 
 namespace delassus {
 
-/// One constraint in the loop's solution λ and in the reference λ*.
+/// One constraint in the loop's solution λ and in the reference λ*. What counts are the velocities u = d + W λ:
+/// impulses need not be unique. On four contacts under one box, or in a closed loop of joints, many λ give the same
+/// motion. A wrong impulse moves the neighbours too. So constraints are ranked by `energy`, the part of the kinetic
+/// energy of the difference that impulses of this constraint alone can make. Of one wrong impulse it is all, and less
+/// of any other, unless that can push the bodies in the same way, as contacts of one face do along the line between
+/// them.
 struct ReferenceDifference {
-  int pool = -1;
+  int pool = -1;        ///< number of its law; −1: there is no constraint
   Index item = -1;      ///< the item-th rows of the pool; −1: there is no constraint
   double velocity = 0;  ///< |u − u*|, u = d + W λ, m/s or rad/s
-  double impulse = 0;   ///< |λ − λ*|, N·s or N·m·s; not unique, see `check_against_reference`
-  double energy = 0;    ///< ½ (u − u*)ᵀ W_ii⁻¹ (u − u*), J: see `check_against_reference`
+  double impulse = 0;   ///< |λ − λ*|, N·s or N·m·s; not unique
+  double energy = 0;    ///< ½ (u − u*)ᵀ W_ii⁻¹ (u − u*), J
   double residual = 0;  ///< |F| of λ, m/s; see `Measure`
   double reference_residual = 0;  ///< |F| of λ*, m/s
 };
 
-/// Where `reached` is false the reference did not get to its tolerance: `reference.measure` says how far it
-/// got, and the differences are to be read with that.
+/// The reference shares no local solve with the sweeping solvers. Where `reached` is false it did not get to its
+/// tolerance. Then `reference.measure` says how far it got, and the differences are to be read with that. Two small
+/// residuals beside a large difference say that the reference found another solution. A step whose energy guard acted
+/// has no solution of its laws for λ.
 struct ReferenceCheck {
-  bool reached = true;
+  bool reached = true;                           ///< whether the reference converged
   SolveReport reference;                         ///< of the worst island
   double residual = 0;                           ///< of the loop's λ, the worst island's
   double velocity = 0;                           ///< the largest |u − u*|
@@ -86,22 +93,15 @@ inline constexpr bool all_differentiable<Constraints<Laws...>> = (refines<Laws>(
 }  // namespace inner
 
 /// Solves a problem anew from λ = 0 by `inner::ConvexNewton`, islands that resist by `PathNewton` without its
-/// sweeps; neither shares a local solve with the sweeping solvers. Compares constraint by constraint. With
-/// friction even the velocities can have more than one solution: the slips |u_t| of λ are where the first
-/// attempt begins, so that what it finds, if λ is one, is that one. The given slips make the law a convex
-/// problem with one u; that it is a solution of the law is then measured.
+/// sweeps. Compares constraint by constraint.
 ///
-/// What is compared are the velocities u = d + W λ: impulses need not be unique, since on four contacts under
-/// one box, or in a closed loop of joints, many λ give the same motion. A wrong impulse moves the neighbours
-/// too, so constraints are ranked by ½ Δuᵀ W_ii⁻¹ Δu, the part of the kinetic energy of the difference that
-/// impulses of this constraint alone can make: of one wrong impulse it is all, and less of any other, unless
-/// that can push the bodies in the same way (contacts of one face, along the line between them).
+/// With friction even the velocities can have more than one solution. The first attempt begins with the slips |u_t|
+/// of λ, so that it finds λ if λ is one. The given slips make the law a convex problem with one u; that it is a
+/// solution of the law is then measured.
 ///
-/// Two small residuals beside a large difference say that the reference found another solution. A step whose
-/// energy guard acted has no solution of its laws for λ. Islands of a set whose A couples blocks (springs and
-/// soft bodies under an implicit integrator) are solved with all of W, which is dense: with more than
-/// `inner::WholeSystem::most` constraints, or one of more rows than a block has unknowns, they are not treated,
-/// and `reached` is false.
+/// Where A couples blocks (springs and soft bodies under an implicit integrator), islands are solved with all of W,
+/// which is dense. They are left out, and `reached` is false, with more than `inner::WholeSystem::most` constraints,
+/// or with one of more rows than a block has unknowns.
 template <class Laws, class Rows, class Operator>
 ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& problem,
                                        double tolerance = 1e-10) {

@@ -13,15 +13,16 @@ namespace delassus {
 /// anchor without a set; its `local` is in world coordinates, so that `Anchor{}`, an end that was not given, is the
 /// world's origin.
 struct Anchor {
-  Index set = -1;
-  Index block = -1;
-  Vec3 local = zero<Vec3>();
-  Quat frame = Quat::Identity();
-  bool has_frame = true;
-  std::uint32_t generation = 0;
-  std::uint32_t owner = 0;
+  Index set = -1;                 ///< of the world, in its order; −1: the world itself, or not yet told
+  Index block = -1;               ///< of the set
+  Vec3 local = zero<Vec3>();      ///< place in the body or in the world, m
+  Quat frame = Quat::Identity();  ///< of a joint, in the body or in the world; unit
+  bool has_frame = true;          ///< false of a particle and of a point on an element
+  std::uint32_t generation = 0;   ///< that of the handle it was made of
+  std::uint32_t owner = 0;        ///< the number of its set; 0: the world, and of an end of a contact
   Index element = -1;  ///< of a body with elements: the one the point is in; `local` is its place there
 
+  /// Also true of an anchor of a body that no loop has seen: its `set` is not told before.
   bool is_world() const { return set < 0; }
 };
 

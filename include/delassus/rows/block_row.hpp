@@ -40,9 +40,9 @@ template <int R, class T>
 }
 
 #ifdef __AVX__
-/// Where four numbers fit in a register, a column of the block at a time: the fourth number of the first two
-/// is the next column's, and the third column is read from the entry before it, so that nothing outside of
-/// the block is touched.
+/// Where four numbers fit in a register, a column of the block at a time. The fourth number of the first two
+/// is the next column's. The third column is read from the entry before it, so that nothing outside of the block
+/// is touched.
 typedef double Four __attribute__((vector_size(4 * sizeof(double))));
 
 struct ColumnSums {

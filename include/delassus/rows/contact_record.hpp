@@ -10,13 +10,16 @@ namespace delassus {
 /// A pair of witnesses. `normal` points from A to B (unit, world); gap = normal · (point_b − point_a), m, negative
 /// when the bodies overlap. `pair` and `feature` name the contact from step to step.
 struct ContactRecord {
-  Anchor a, b;
-  Vec3 point_a = zero<Vec3>(), point_b = zero<Vec3>();
-  Vec3 normal = unit_axis(2);
-  double gap = 0;
-  std::uint64_t pair = 0;
-  std::uint32_t feature = 0;
-  Index material_a = 0, material_b = 0;
+  /// Of the body with the smaller key.
+  Anchor a{}, b{};  ///< of the other one
+  /// On A, world, m.
+  Vec3 point_a = zero<Vec3>(), point_b = zero<Vec3>();  ///< on B, world, m
+  Vec3 normal = unit_axis(2);  ///< unit, from A to B, world
+  double gap = 0;              ///< m, < 0 where they overlap
+  std::uint64_t pair = 0;      ///< key of A · 2³² + key of B
+  std::uint32_t feature = 0;   ///< the point within its pair, kept from step to step
+  /// A number that `Materials` gave; 0: none was given.
+  Index material_a = 0, material_b = 0;  ///< of B
 
   /// The one world point at which the impulse acts on both bodies, so that momentum is kept exactly.
   Vec3 point() const { return 0.5 * (point_a + point_b); }

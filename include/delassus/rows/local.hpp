@@ -5,13 +5,12 @@
 
 namespace delassus {
 
-/// W: own block of the Delassus operator, 1/kg. d: velocity of the rows plus their bias at the present impulse,
-/// its own share W λ included, m/s. lambda: the impulse, N·s, which the law replaces.
+/// Of one item with R rows. Units are those of rows that are forces.
 template <int R, class T = double>
 struct Local {
-  Mat<R, R, T> W;
-  Vec<R, T> d;
-  Vec<R, T> lambda;
+  Mat<R, R, T> W;    ///< own block of the Delassus operator, 1/kg
+  Vec<R, T> d;       ///< velocity of the rows with their bias, W λ of their own included, m/s
+  Vec<R, T> lambda;  ///< the impulse, N·s, which the law replaces
 
   /// What the rows would do without this constraint: d − W λ.
   Vec<R, T> free_velocity() const { return d - W * lambda; }

@@ -18,8 +18,8 @@ struct SetBlocksView {
   bool has_entries(Index i) const { return offset[i + 1] > offset[i]; }
 };
 
-/// W between a pool and another one, or itself without its diagonal: row i holds the blocks start[i] … start[i + 1] − 1,
-/// R × columns numbers by columns, which meet the impulses of the items that `column` names.
+/// W between a pool and another one, or itself without its diagonal. Row i holds the blocks start[i] … start[i + 1] − 1.
+/// They are R × columns numbers by columns, which meet the impulses of the items that `column` names.
 template <class T>
 struct BlockRowsView {
   const Index *start, *column;
@@ -32,8 +32,8 @@ struct CrowdedRow {
   bool is_crowded, meets_crowded;
 };
 
-/// How W is kept: as one `BlockRowsView` whose blocks are as wide as high, as any of them, as A⁻¹ Hᵀ λ of the bodies, row by row
-/// one or the other, or by functions of its own. What is no matrix must hear of changes of λ.
+/// How W is kept: as one `BlockRowsView` whose blocks are as wide as high, as any of them, or as A⁻¹ Hᵀ λ of the bodies. Else
+/// row by row one or the other, or by functions of its own. What is no matrix must hear of changes of λ.
 enum class FormOfW : char { square_blocks, blocks, bodies, mixed, functions };
 
 /// W by functions of its own: residual sets u = (d + W λ)_i, `changed` hears that λ_i was changed by δ.

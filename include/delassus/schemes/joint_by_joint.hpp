@@ -11,19 +11,18 @@
 
 namespace delassus {
 
-/// Each joint is linearised, solved and answered by its bodies in one visit, as sequential impulses do it;
-/// there is no W, no island and no list of rows. Where no two joints hold one moving body (pendulums, doors,
-/// a wheel on its axle) the visit is exact, the motion that of `PlainOrder` to rounding, and a ball joint
-/// costs less than the loop one writes by hand. Joints that share a body are visited `sweeps` times from the
-/// impulses of the last step, and what is left is measured: the status is `max_iterations` above the
-/// tolerance, as it is of chains and loops, whose solver is `DirectGaussSeidel`.
+/// Each joint is linearised, solved and answered by its bodies in one visit, as sequential impulses do it. There is no W, no
+/// island and no list of rows. Where no two joints hold one moving body (pendulums, doors, a wheel on its axle) the visit is
+/// exact, the motion that of `PlainOrder` to rounding. A ball joint then costs less than the loop one writes by hand.
 ///
-/// For rigid bodies and particles, SymplecticEuler or LiePoisson, and joints with two ends that hold exactly
-/// or by springs. Listeners hear FreeMotion, Solve, Correct and Advance; `island_reports` has one report of
-/// all.
+/// Joints that share a body are visited `sweeps` times from the impulses of the last step, and what is left is measured. Above
+/// the tolerance the status is `max_iterations`, as it is of chains and loops, whose solver is `DirectGaussSeidel`.
+///
+/// For rigid bodies and particles, SymplecticEuler or LiePoisson, and joints with two ends that hold exactly or by springs.
+/// Listeners hear FreeMotion, Solve, Correct and Advance; `island_reports` has one report of all.
 struct JointByJoint {
   using plays = role::Scheme;
-  static constexpr bool makes_problem = false;
+  static constexpr bool makes_problem = false;  ///< read by the loop: there are no rows, no islands and no W
   template <class P>
     requires(P::Laws::pool_count > 0)
   using State = JointVisits<typename P::World, typename P::Laws>;
@@ -34,8 +33,7 @@ struct JointByJoint {
     inner::expect_at_least_one("JointByJoint: sweeps", sweeps);
     inner::expect_at_least_zero("JointByJoint: tolerance", tolerance);
   }
-  /// One function of all that a joint and a body of a step take: calls between them cost a tenth of a
-  /// pendulum's step.
+  /// One function of all that a joint and a body of a step take: calls between them would weigh in so short a step.
   [[gnu::flatten]] void run(auto& step) const {
     if constexpr (std::remove_reference_t<decltype(step)>::has_constraints) {
       visit_joints(step);

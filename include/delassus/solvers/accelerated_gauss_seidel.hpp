@@ -37,31 +37,31 @@ struct SweepSpace {
 
 }  // namespace inner
 
-/// Stages, each begun from the best measured impulses when the one before has stalled by the measured error:
+/// Stages, each begun from the best measured impulses when the one before has stalled by the measured error.
 ///
-///   momentum    Nesterov over exact sweeps: ends nearly every solve;
-///   extrapolation where sweeps only drift along impulses that move nothing: to the end of that way, where a
-///               contact slips that had stuck, and momentum again;
-///   anderson    forty plain sweeps, then mixes the last five: breaks limit cycles, and ends the few slow
-///               directions that a warm start leaves;
-///   momentum    again, with three times the patience, unless it went in circles;
-///   projection  Nesterov over sweeps of one projection a visit: slower, without the exact law's cycles;
-///   patient     momentum again, with ten times the patience;
+///   Momentum:      Nesterov over exact sweeps. Ends nearly every solve.
+///   Extrapolation: Where sweeps only drift along impulses that move nothing. To the end of that way, where a contact
+///                  slips that had stuck, and momentum again.
+///   Anderson:      Forty plain sweeps, then mixes the last five. Breaks limit cycles, and ends the few slow directions
+///                  that a warm start leaves.
+///   Momentum:      Again, with three times the patience, unless it went in circles.
+///   Projection:    Nesterov over sweeps of one projection a visit. Slower, without the exact law's cycles.
+///   Patient:       Momentum again, with ten times the patience.
 ///
-/// and from the start again with twice the patience. In the midst of momentum, as soon as the sweeps have cost
-/// what it may, and now and then again,
+/// Then from the start again with twice the patience. In the midst of momentum, as soon as the sweeps have cost what it
+/// may, and now and then again, there is one more stage.
 ///
-///   newton      in the velocities of the bodies, `inner::NewtonStage`: ends what takes sweeps by the
-///               thousand, stacks and large ratios of masses.
+///   Newton:        In the velocities of the bodies, `inner::NewtonStage`. Ends what takes sweeps by the thousand, stacks
+///                  and large ratios of masses.
 ///
-/// That acts where every law of the island has a `tangent` and no springs under an implicit integrator couple
-/// its bodies; elsewhere, and where the problem has no bodies, there are sweeps alone, as there are with
-/// `SweepsAlone` in the place of `ThenNewton`. The best measured iterate is kept, and the report names the
-/// stage that ended the solve. A solve that soon ends is in the first stage alone.
+/// That acts where every law of the island has a `tangent` and no springs under an implicit integrator couple its bodies.
+/// Elsewhere, and where the problem has no bodies, there are sweeps alone. `SweepsAlone` in the place of `ThenNewton` has
+/// sweeps alone everywhere. The best measured iterate is kept, and the report names the stage that ended the solve. A solve
+/// that soon ends is in the first stage alone.
 ///
-/// Where λ runs away because the rows contradict each other, which `inner::Contradiction` proves when
-/// momentum has stalled, the status is `infeasible` and λ that of rows which yield by a tenth of their own W: a
-/// compromise, bounded, the same whatever came before.
+/// Rows that contradict each other let λ run away, which `inner::Contradiction` proves when momentum has stalled. The status
+/// is `infeasible` then, and λ that of rows which yield by a tenth of their own W. That is a compromise, bounded, the same
+/// whatever came before.
 template <class Newton>
 struct BasicAcceleratedGaussSeidel {
   using plays = role::Solver;
@@ -94,9 +94,8 @@ struct BasicAcceleratedGaussSeidel {
   SolveReport solve(Island<T>& problem, Space& work) const;
 
  private:
-  /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell: of
-  /// a rough start they tell nothing, and of six orders of OneObject-i100000-499's contacts mixing at once
-  /// ended none, after forty sweeps all.
+  /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell. Of a rough start
+  /// five changes tell nothing, and mixing at once may end none: therefore forty sweeps.
   static bool settle(auto& monitor, auto& problem, const SweepRule& rule) {
     for (int k = 0; k < 40; ++k)
       if (!monitor.goes_on(problem.sweep(rule))) return false;
@@ -144,7 +143,7 @@ SolveReport BasicAcceleratedGaussSeidel<Newton>::solve(Island<T>& problem, Space
   }
 }
 
-/// Sweeps alone: a tenth less compiler memory than with Newton's method, and the same for what soon ends.
+/// Sweeps alone: less compiler memory than with Newton's method, and the same for what soon ends.
 using AcceleratedSweeps = BasicAcceleratedGaussSeidel<SweepsAlone>;
 
 namespace inner {

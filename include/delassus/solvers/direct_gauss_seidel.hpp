@@ -38,20 +38,20 @@ struct DirectSpace {
 
 }  // namespace inner
 
-/// The constraints b of an island whose rows are all equalities are met exactly, W_bb δ = −(d + W λ)_b, by
-/// `inner::DirectSystem`: O(n) for chains, trees and loops of n joints, at any ratio of masses. The others c
-/// are swept on
+/// The constraints b of an island whose rows are all equalities are met exactly, W_bb δ = −(d + W λ)_b. `inner::DirectSystem`
+/// does it in O(n) for chains, trees and loops of n joints, at any ratio of masses. The others c are swept on
 ///
 ///   S = W_cc − W_cb W_bb⁻¹ W_bc,   u_c = d_c + W_cb λ_b + W_cc λ_c with λ_b such that the joints hold,
 ///
-/// by `AcceleratedGaussSeidel`; S is dense, and an island with more than `max_swept_rows` rows of them is
-/// swept whole, as is one whose A couples bodies by springs. Where contacts jam and sweeps do not end it,
-/// Newton's method acts on S, `inner::SweepsThenNewton`. Impulses of joints start from zero: where rows
-/// depend on each other they come out the smallest that do. Joints that contradict each other get a compromise,
-/// as springs of 1e-4 of their compliance would give: what the others ask for is hardly touched where a
-/// mechanism only stands at a dead centre. The status is `infeasible` where `inner::Contradiction` proves it.
-/// Contacts and limits that joints leave no way get the compromise of `AcceleratedGaussSeidel`. Cannot
-/// mend what an explicit constraint force does to a heavy chain: see docs/decisions/0009.
+/// by `AcceleratedGaussSeidel`. The matrix S is dense. An island with more than `max_swept_rows` rows of them is swept whole,
+/// as is one whose A couples bodies by springs. Where contacts jam and sweeps do not end it, Newton's method acts on S,
+/// `inner::SweepsThenNewton`. Impulses of joints start from zero: Where rows depend on each other they come out the smallest
+/// that do.
+///
+/// Joints that contradict each other get a compromise, as springs of 1e-4 of their compliance would give. What the others ask
+/// for is hardly touched where a mechanism only stands at a dead centre. The status is `infeasible` where
+/// `inner::Contradiction` proves it. Contacts and limits that joints leave no way get the compromise of
+/// `AcceleratedGaussSeidel`. Cannot mend what an explicit constraint force does to a heavy chain: see docs/decisions/0009.
 struct DirectGaussSeidel {
   using plays = role::Solver;
   double tolerance = 1e-8;       ///< of the criterion

@@ -65,8 +65,8 @@ class Island {
   /// Visits every constraint once, in order, and leaves each with an impulse that meets its law while the
   /// others stand still. Returns Σ w_i |Δλ_i|², w_i = tr(W_ii)/rows.
   ///
-  /// With `projects` it makes one step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint in
-  /// order: less than an exact answer, and a contraction where exact answers go round in circles.
+  /// With `projects` it makes one step of the projection λ_i ← P_K(λ_i − ũ_i/s), s = |W_ii| ≥ λ_max(W_ii), for every constraint
+  /// in order. That is less than an exact answer, and a contraction where exact answers go round in circles.
   double sweep(const SweepRule& rule = {}) { return sweep(rule, nullptr, nullptr); }
   /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
   double sweep(const SweepRule& rule, const T* x, double* curvature) {

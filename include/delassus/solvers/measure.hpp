@@ -7,22 +7,25 @@
 
 namespace delassus {
 
-/// With F_i(s) = s λ_i − P_K(s λ_i − ũ_i) and w_i = tr(W_ii)/rows,
+/// With F_i(s) = s λ_i − P_K(s λ_i − ũ_i) and w_i = tr(W_ii)/rows, two measures. In velocity units and free of scale,
 ///
-///   residual = √Σ|F_i(w_i)|² / max(|d|, |u|)          in velocity units, free of scale;
-///   siconos  = √Σ|F_i(1)|²  / max(|d|, |u|, |λ|)      the measure of Siconos, which mixes units.
+///   residual = √Σ|F_i(w_i)|² / max(|d|, |u|).
 ///
-/// Rows of different kinds are summed as they stand: in a law with rows in m/s and in rad/s, as a hinge has,
-/// both and w depend on the unit of length, and with them when a solve ends. Of contacts and ball joints
-/// nothing depends on units.
+/// That of Siconos, which mixes units, is
+///
+///   siconos  = √Σ|F_i(1)|²  / max(|d|, |u|, |λ|).
+///
+/// Rows of different kinds are summed as they stand. In a law with rows in m/s and in rad/s, as a hinge has, both measures
+/// and w depend on the unit of length. So does the moment when a solve ends. Of contacts and ball joints nothing depends on
+/// units.
 ///
 /// `worst` is the largest share of one constraint in `residual`. `floor` is what rounding leaves of it.
 /// Source: [AcaryBremondHuber2018] for the natural map; the normalisation by the maximum is Siconos'.
 struct Measure {
-  double residual = 0;
-  double siconos = 0;
-  double worst = 0;
-  double floor = 0;
+  double residual = 0;  ///< what tolerances mostly mean
+  double siconos = 0;  ///< for comparison
+  double worst = 0;  ///< without unit, as `residual`
+  double floor = 0;  ///< no solve comes below it
   /// Σ|h w_i Δλ_i| of the last sweep, m: the change expressed as displacement. Infinite where the criterion
   /// does not ask for it.
   double last_change = 0;
@@ -31,8 +34,25 @@ struct Measure {
 
 /// Sums that become a Measure: squares all of them, worst and reach the largest ones.
 struct MeasureSums {
-  double residual = 0, siconos = 0, d = 0, u = 0, lambda = 0, worst = 0, reach = 0;
+  /// @var siconos
+  /// Σ|F_i(1)|².
 
+  /// @var d
+  /// Σ|d|².
+
+  /// @var u
+  /// Σ|u|².
+
+  /// @var lambda
+  /// Σ|λ|².
+
+  /// @var worst
+  /// Largest |F_i(w_i)|².
+
+  /// Σ|F_i(w_i)|².
+  double residual = 0, siconos = 0, d = 0, u = 0, lambda = 0, worst = 0, reach = 0;  ///< largest share of rounding in it
+
+  /// `epsilon` is that of the scalar in which the rows are.
   Measure finish(double epsilon) const {
     const double velocity = std::sqrt(std::max(d, u));
     const double mixed = std::sqrt(std::max({d, u, lambda}));

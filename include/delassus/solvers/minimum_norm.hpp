@@ -57,23 +57,24 @@ double wanted_residual(const auto& solver) {
 
 }  // namespace inner
 
-/// `MinimumNorm{AcceleratedGaussSeidel{}}`: where constraints are redundant (a table on four legs, a door on
-/// three hinges, a contact found twice) λ is not unique, and which one sweeps find depends on their order and
-/// start. After a solve that converged this takes
+/// `MinimumNorm{AcceleratedGaussSeidel{}}`: Where constraints are redundant λ is not unique. (A table on four legs, a door
+/// on three hinges, a contact found twice.) Which one sweeps find depends on their order and start. After a solve that
+/// converged this takes
 ///
-///   λ = argmin Σ w_i |λ_i|²  with  W λ unchanged,   w_i = tr(W_ii)/rows,
+///   λ = argmin Σ w_i |λ_i|²  with  W λ unchanged,   w_i = tr(W_ii)/rows.
 ///
-/// by conjugate gradients from zero on W λ = W λ*, which never leave the range of W: equal legs carry equal
-/// loads, and λ is as continuous in time as the motion is. Constraints that stand still are free in it,
-/// contacts that slip keep their direction, what is open keeps its zero. Where a cone is in the way λ goes as
-/// far as it lets it, and on without the constraint that is at its limit. The motion is that of the solve, to
-/// its tolerance; otherwise λ* is kept. It costs a product with W for each of the distinct eigenvalues of W,
-/// about. Source: [HestenesStiefel1952].
+/// It does so by conjugate gradients from zero on W λ = W λ*, which never leave the range of W. Equal legs carry equal loads,
+/// and λ is as continuous in time as the motion is. Constraints that stand still are free in it, contacts that slip keep
+/// their direction, what is open keeps its zero. Where a cone is in the way λ goes as far as it lets it, and on without the
+/// constraint that is at its limit.
+///
+/// The motion is that of the solve, to its tolerance; otherwise λ* is kept. It costs a product with W for each of the distinct
+/// eigenvalues of W, about. Source: [HestenesStiefel1952].
 template <class Solver = inner::Absent>
 struct MinimumNorm {
   using plays = role::Solver;
   static constexpr unsigned layers = inner::layers_of<Solver> | inner::layer::minimum_norm;
-  Solver solver{};
+  Solver solver{};  ///< finds the motion
   int max_products = 200;  ///< with W; when they run out λ stays as it was solved
 
   static constexpr Needs needs = inner::needs_of<Solver>;
@@ -304,8 +305,10 @@ struct MinimumNorm<Solver> : inner::Hollow {
   using inner::Hollow::Hollow;
 };
 
+/// `MinimumNorm{solver}`.
 template <class Solver>
 MinimumNorm(Solver) -> MinimumNorm<Solver>;
+/// `MinimumNorm{solver, max_products}`.
 template <class Solver>
 MinimumNorm(Solver, int) -> MinimumNorm<Solver>;
 

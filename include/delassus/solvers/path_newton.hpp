@@ -15,18 +15,17 @@
 
 namespace delassus {
 
-/// Follows the solutions (x, log τ) of `inner::PathRows`, a curve that begins with a τ at which all
-/// constraints are alike and ends at τ = 0, by its length: a step along the tangent, then Newton's method
-/// across it. Coulomb's law is not monotone, so τ need not fall all along the curve: where it turns back, a
-/// method that lowers τ alone is caught, and this one goes around. Nothing stands on a corner before τ is
-/// small, so that hyperstatic contacts whose gaps do not fit, among which others go round, are no matter.
+/// Follows the solutions (x, log τ) of `inner::PathRows`, by the length of their curve. It begins with a τ at which all
+/// constraints are alike and ends at τ = 0. A step goes along the tangent, then Newton's method across it. Coulomb's law is
+/// not monotone, so τ need not fall all along the curve. Where it turns back, a method that lowers τ alone is caught, and
+/// this one goes around. Nothing stands on a corner before τ is small. Hyperstatic contacts whose gaps do not fit, among
+/// which others go round, are therefore no matter.
 ///
-/// It begins from λ = 0, whatever λ is, and keeps what it was given where it finds no smaller error. A
-/// factorization has six unknowns a body, without bodies three a contact; tens of them where the curve is
-/// plain, a thousand and more where it folds. Islands with laws other than equalities, φ ≥ 0 and Coulomb's
-/// are left as they are, and so are coefficients of zero where there are no bodies. Source:
-/// [ChenMangasarian1996] for following smoothed complementarity, [FukushimaLuoTseng2002] for the cone,
-/// [AllgowerGeorg1990] for the length of the curve.
+/// It begins from λ = 0, whatever λ is, and keeps what it was given where it finds no smaller error. A factorization has six
+/// unknowns a body, without bodies three a contact. There are tens of them where the curve is plain, a thousand and more
+/// where it folds. Islands with laws other than equalities, φ ≥ 0 and Coulomb's are left as they are, and so are coefficients
+/// of zero where there are no bodies. Source: [ChenMangasarian1996] for following smoothed complementarity,
+/// [FukushimaLuoTseng2002] for the cone, [AllgowerGeorg1990] for the length of the curve.
 struct PathNewton {
   using plays = role::Solver;
   double tolerance = 1e-8;    ///< of the criterion
@@ -38,12 +37,13 @@ struct PathNewton {
   Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::tangents;
+  /// What outlives a solve: room.
   template <class Rows>
   struct Workspace {
-    using T = typename Rows::Scalar;
-    inner::PathLaws<T, inner::PathSystem<Rows>> laws;
-    Array<T> best;
-    AcceleratedSweeps::Workspace<Rows> sweeps;
+    using T = typename Rows::Scalar;  ///< scalar of W and λ
+    inner::PathLaws<T, inner::PathSystem<Rows>> laws;  ///< the curve and its factors
+    Array<T> best;  ///< λ of the smallest error so far
+    AcceleratedSweeps::Workspace<Rows> sweeps;  ///< room of the sweeps after the path
     void reset(Index rows) {
       best.reserve(std::size_t(rows));
       sweeps.reset(rows);

@@ -14,18 +14,17 @@
 
 namespace delassus {
 
-/// Outside, the proximal point: λ̂ ← λ, where λ meets the laws of d + W λ + ε w (λ − λ̂), w_i = tr(W_ii)/rows,
-/// and ε shrinks by 0.01 a time, where that is slow by what it has to. Inside, Newton's method for the
-/// velocities of the bodies with F and J of `inner::BodySpace`, each step halved until the rows see less of F.
-/// At the fixed point nothing is left of ε: the laws are met as they are, Coulomb's too.
+/// Outside, the proximal point: λ̂ ← λ, where λ meets the laws of d + W λ + ε w (λ − λ̂), w_i = tr(W_ii)/rows. (The number ε
+/// shrinks by 0.01 a time, where that is slow by what it has to.) Inside, Newton's method for the velocities of the bodies
+/// with F and J of `inner::BodySpace`, each step halved until the rows see less of F. At the fixed point nothing is left of
+/// ε: The laws are met as they are, Coulomb's too.
 ///
-/// The number of factorizations hardly grows with the height of a stack or the ratio of masses; one costs a
-/// few sweeps. Where Newton's method stalls, accelerated sweeps lead on from the best λ; an island that it
-/// cannot treat (a law without `tangent`, bodies coupled by springs under an implicit integrator) is swept
-/// throughout, and one that it did not bring to the tolerance is swept from its start. The smallest measured
-/// residual is what is kept. Source: [Rockafellar1976] for the proximal point, [QiSun1993] for
-/// Newton's method on it, [AcaryBremondHuber2018] for both together, [AlartCurnier1991] for the contact's
-/// equations.
+/// The number of factorizations hardly grows with the height of a stack or the ratio of masses; one costs a few sweeps. Where
+/// Newton's method stalls, accelerated sweeps lead on from the best λ. An island that it cannot treat is swept throughout, and
+/// one that it did not bring to the tolerance is swept from its start. (It cannot treat a law without `tangent`, nor bodies
+/// coupled by springs under an implicit integrator.) The smallest measured residual is what is kept. Source: [Rockafellar1976]
+/// for the proximal point, [QiSun1993] for Newton's method on it, [AcaryBremondHuber2018] for both together,
+/// [AlartCurnier1991] for the contact's equations.
 struct ProximalNewton {
   using plays = role::Solver;
   double tolerance = 1e-8;       ///< of the criterion
@@ -37,14 +36,15 @@ struct ProximalNewton {
   Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::tangents;
+  /// What outlives a solve: room.
   template <class Rows>
   struct Workspace {
-    using T = typename Rows::Scalar;
+    using T = typename Rows::Scalar;  ///< scalar of W and λ
     static_assert(Rows::widest > 0,
                   "delassus: Newton's method needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
                   "solve it by AcceleratedGaussSeidel");
-    inner::BodySpace<T, inner::NewtonSystem<T, std::max(1, Rows::widest)>, inner::LawsAsTheyAre<T>> body;
-    AcceleratedSweeps::Workspace<Rows> sweeps;
+    inner::BodySpace<T, inner::NewtonSystem<T, std::max(1, Rows::widest)>, inner::LawsAsTheyAre<T>> body;  ///< of the Newton steps
+    AcceleratedSweeps::Workspace<Rows> sweeps;  ///< room of the sweeps where Newton's method does not act
     void reset(Index rows) { sweeps.reset(rows); }
   };
 
@@ -91,11 +91,10 @@ struct ProximalNewton {
       const SolveReport swept = sweep(problem, work, left, 1);
       now.sweeps += swept.sweeps;
       now.measure = swept.measure;
-      if (swept.status == Status::infeasible)
-        return {swept.status, now.sweeps, now.measure, now.factorizations};
-    } else {
-      now.measure = problem.measure();
+      if (swept.status == Status::infeasible) return {swept.status, now.sweeps, now.measure, now.factorizations, swept.ended_by};
+      return finish(now, swept.ended_by);
     }
+    now.measure = problem.measure();
     return finish(now);
   }
 
@@ -103,9 +102,8 @@ struct ProximalNewton {
     return inner::sweeps_of(options(), most, least).solve(problem, work.sweeps);
   }
 
-  SolveReport finish(const auto& now) const {
-    return {options().verdict(now.measure, now.rows()), now.sweeps, now.measure,
-            now.factorizations};
+  SolveReport finish(const auto& now, const char* stage = "newton") const {
+    return {options().verdict(now.measure, now.rows()), now.sweeps, now.measure, now.factorizations, stage};
   }
 };
 

@@ -21,10 +21,11 @@ enum class Criterion : unsigned char {
 /// The numbers that all solvers have, whose meanings and defaults are theirs.
 struct SolveOptions {
   double tolerance = 1e-6;  ///< of the criterion
-  int max_iterations = 0, min_iterations = 0;
+  /// Of sweeps or factorizations, as the solver says.
+  int max_iterations = 0, min_iterations = 0;  ///< even where the start is good enough
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
-  Criterion criterion = Criterion::residual;
+  Criterion criterion = Criterion::residual;  ///< what is compared with the tolerance
 
   /// Whether the criterion needs a measure of all rows.
   bool is_measured() const { return criterion != Criterion::last_change; }
@@ -37,6 +38,7 @@ struct SolveOptions {
     return error(m.worst, m.siconos, m.worst_change);
   }
 
+  /// Whether an island of so many rows is solved, by the tolerance alone.
   bool is_within(const Measure& m, int rows) const {
     if (all_verified) return worst_error(m) <= tolerance;
     return error(m) <= tolerance * (scale_tolerance ? rows : 1);

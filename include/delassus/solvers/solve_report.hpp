@@ -6,10 +6,11 @@
 
 namespace delassus {
 
+/// Of one island.
 struct SolveReport {
-  Status status = Status::converged;
-  int sweeps = 0;
-  Measure measure{};
+  Status status = Status::converged;  ///< solved, or why not
+  int sweeps = 0;  ///< over the whole island
+  Measure measure{};  ///< of the impulses that it left
   int factorizations = 0;  ///< of Newton's method, sweeps not counted
   const char* ended_by = "sweeps";  ///< the stage of the solver that came last
 };

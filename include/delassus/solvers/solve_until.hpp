@@ -25,8 +25,8 @@ consteval bool takes_deadline() {
 
 }  // namespace inner
 
-/// Solves from the λ in `problem` until the solver's own tolerance holds or `deadline` (s on `clock`) has come; what is left
-/// there is then the iterate of the smallest measured residual, the first λ being one of them where the solver's
+/// Solves from the λ in `problem` until the solver's own tolerance holds or `deadline` (s on `clock`) has come. What is left
+/// there is then the iterate of the smallest measured residual. The first λ is one of them where the solver's
 /// `min_iterations` is 0. The first island is begun whatever the time is. As from step to step in a loop, what came to
 /// nothing before a deadline is passed over in the next solves with the same workspace, up to sixteen times.
 template <class Laws, class Rows, class Operator, class Solver, Clock C = SteadyClock>
@@ -42,8 +42,8 @@ SolveReport solve_until(Problem<Laws, Rows, Operator>& problem, const Solver& so
   }
 }
 
-/// The same with a workspace of its own, which is let go of after the deadline: that takes up to a millisecond where
-/// Newton's method has acted on a thousand boxes.
+/// The same with a workspace of its own, which is let go of after the deadline: that takes time where
+/// Newton's method has acted on many bodies.
 template <class Laws, class Rows, class Operator, class Solver, Clock C = SteadyClock>
 SolveReport solve_until(Problem<Laws, Rows, Operator>& problem, const Solver& solver, double deadline, C clock = {}) {
   if constexpr (inner::takes_deadline<Solver>()) {

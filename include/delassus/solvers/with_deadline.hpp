@@ -40,20 +40,20 @@ struct TimedSpace {
 
 }  // namespace inner
 
-/// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one
-/// millisecond together. The clock is read after each sweep, inside long sweeps, measures and factorizations
-/// of Newton's method in the velocities of the bodies, and before each of those, which is not begun where it
-/// would end too late. When the time is up, but for what giving an iterate back takes (`load_share` of a
-/// sweep), what is half done is let go, and the iterate of the smallest measured residual is returned, with
-/// status `deadline`; islands that come later still get their
-/// `min_iterations` sweeps and a measure, since a contact that is new has no impulse before its first sweep.
+/// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one millisecond together. The
+/// clock is read after each sweep, and inside long sweeps, measures and factorizations of Newton's method in the velocities of
+/// the bodies. It is read before each of those too, which is not begun where it would end too late.
+///
+/// When the time is up, what is half done is let go, and the iterate of the smallest measured residual is returned, with
+/// status `deadline`. (The time leaves what giving an iterate back takes, `load_share` of a sweep.) Islands that come later
+/// still get their `min_iterations` sweeps and a measure, since a contact that is new has no impulse before its first sweep.
 template <class Solver = inner::Absent, Clock C = SteadyClock>
 struct WithDeadline {
   using plays = role::Solver;
   static constexpr unsigned layers = inner::layers_of<Solver> | inner::layer::deadline;
-  Solver solver{};
+  Solver solver{};  ///< asks whether its time is up
   double budget = std::numeric_limits<double>::infinity();  ///< s from the moment the first island is begun
-  C clock{};
+  C clock{};  ///< s, read while it solves
   double deadline =
       std::numeric_limits<double>::infinity();  ///< on `clock`, s; the earlier of the two counts
 
@@ -101,14 +101,19 @@ struct WithDeadline<Solver, C> : inner::Hollow {
   using inner::Hollow::Hollow;
 };
 
+/// `WithDeadline{solver}`: no limit.
 template <class Solver>
 WithDeadline(Solver) -> WithDeadline<Solver>;
+/// A number before the solver; refused by the checks.
 template <class Solver>
 WithDeadline(double, Solver) -> WithDeadline<double>;  // the number first: the loop's checks say so
+/// `WithDeadline{solver, budget}`.
 template <class Solver>
 WithDeadline(Solver, double) -> WithDeadline<Solver>;
+/// `WithDeadline{solver, budget, clock}`.
 template <class Solver, Clock C>
 WithDeadline(Solver, double, C) -> WithDeadline<Solver, C>;
+/// `WithDeadline{solver, budget, clock, deadline}`.
 template <class Solver, Clock C>
 WithDeadline(Solver, double, C, double) -> WithDeadline<Solver, C>;
 

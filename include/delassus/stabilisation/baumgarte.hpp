@@ -9,9 +9,8 @@
 
 namespace delassus {
 
-/// bias = rate · φ/h; a contact is pushed out at most at `max_speed`, a joint closed at most at `max_joint_speed`, where one
-/// is given: what was put together far apart, or meets a step much shorter than the last, then comes home and is not
-/// shot there.
+/// bias = rate · φ/h. A contact is pushed out at most at `max_speed`, a joint closed at most at `max_joint_speed`, where one is
+/// given. What was put together far apart, or meets a step much shorter than the last, then comes home and is not shot there.
 struct Baumgarte {
   using plays = role::Stabilisation;
   double rate = 0.2;            ///< share of φ per step, in (0, 1]

@@ -9,7 +9,7 @@
 
 namespace delassus {
 
-/// The velocity solve sees no violation. Afterwards w = A⁻¹ Hᵀ μ with H w + u⁺ + rate · φ/h ≥ 0 (= 0 for joints) moves
+/// The velocity solve sees no violation. Afterwards w = A⁻¹ Hᵀ μ with H w + u⁺ + rate · φ/h ≥ 0 (= 0 for joints). It moves
 /// the positions by h w, on the same W and with the friction rows locked at μ = 0.
 struct PositionProjection {
   using plays = role::Stabilisation;
@@ -27,7 +27,9 @@ struct PositionProjection {
   }
   double equality(double, double) const { return 0; }
   double penetration(double, double) const { return 0; }
+  /// The speed at which an overlap is closed, ≤ 0, m/s.
   double push(double phi, double h) const { return std::max(close(phi, h), -max_speed); }
+  /// The same of a joint, of either sign, without a limit.
   double close(double phi, double h) const { return rate * phi / h; }
 };
 static_assert(Stabilisation<PositionProjection>);

@@ -13,14 +13,14 @@ namespace delassus {
 ///
 ///   u + φ ω/(2ζ + h ω) + R λ = 0,   R = W_nn / (h ω (2ζ + h ω)).
 ///
-/// At rest a mass m sags by g/ω² · (what it carries)/m. Joints are held as by Baumgarte at `joint_rate`,
-/// at most at `max_joint_speed`.
+/// At rest a mass m sags by g/ω² · (what it carries)/m. Joints are held as by Baumgarte at `joint_rate`, at most at
+/// `max_joint_speed`.
 struct SoftContact {
   using plays = role::Stabilisation;
   double frequency = 30;     ///< f, Hz
   double damping_ratio = 1;  ///< ζ
   double max_speed = 1;      ///< m/s
-  double joint_rate = 0.2;
+  double joint_rate = 0.2;  ///< share of φ per step, in [0, 1]
   double max_joint_speed = std::numeric_limits<double>::infinity();  ///< m/s, rad/s
 
   void check() const {
@@ -30,6 +30,7 @@ struct SoftContact {
     inner::expect_zero_to_one("SoftContact: joint_rate", joint_rate);
     inner::expect_above_zero("SoftContact: max_joint_speed", max_joint_speed, "m/s");
   }
+  /// ω, rad/s.
   double omega() const { return 6.283185307179586 * frequency; }
   double equality(double phi, double h) const {
     return std::clamp(joint_rate * phi / h, -max_joint_speed, max_joint_speed);

@@ -10,16 +10,16 @@
 
 namespace delassus {
 
-/// `WithCompliance{Baumgarte{}, 1e-7}`: a joint or contact under the force f comes to rest with φ = −C f, C
-/// in m/N (rad/(N·m) of a row of angles). With the bias β φ/h that the stabilisation gives, that is
+/// `WithCompliance{Baumgarte{}, 1e-7}`: A joint or contact under the force f comes to rest with φ = −C f, C in m/N
+/// (rad/(N·m) of a row of angles). With the bias β φ/h that the stabilisation gives, that is
 ///
 ///   u + β φ/h + R λ = 0,   R = β C/h²,   f = λ/h.
 ///
-/// Then no λ is infinite: rows that contradict each other share what is missing like springs, λ is unique
-/// where constraints are redundant, and a body's depth of rest does not depend on h. Friction rows stay
-/// rigid, for a compliance on them would creep; springs of their own rows too. A stabilisation without a rate
-/// of its own
-/// (`PositionProjection`, which sees no φ in the velocity solve) has β = 0, and nothing yields.
+/// Then no λ is infinite. Rows that contradict each other share what is missing like springs, λ is unique where constraints
+/// are redundant, and a body's depth of rest does not depend on h.
+///
+/// Friction rows stay rigid, for a compliance on them would creep; springs of their own rows too. A stabilisation without a
+/// rate of its own (`PositionProjection`, which sees no φ in the velocity solve) has β = 0, and nothing yields.
 template <class S = inner::Absent>
 struct WithCompliance {
   using plays = role::Stabilisation;
@@ -29,7 +29,7 @@ struct WithCompliance {
   using stages = typename Inside::template stages<Base>;
   template <class P, class Inside = S>
   using State = typename Inside::template State<P>;
-  S stabilisation{};
+  S stabilisation{};  ///< whose rates are kept
   double least = 0;  ///< C, m/N
 
   void check() const {
@@ -40,12 +40,15 @@ struct WithCompliance {
   double penetration(double phi, double h) const { return stabilisation.penetration(phi, h); }
   double relative_compliance(double h) const requires requires { stabilisation.relative_compliance(h); }
   { return stabilisation.relative_compliance(h); }
+  /// Of the stabilisation inside, where it corrects positions.
   double push(double phi, double h) const requires requires { stabilisation.push(phi, h); }
   { return stabilisation.push(phi, h); }
+  /// Likewise.
   double close(double phi, double h) const requires requires { stabilisation.close(phi, h); }
   { return stabilisation.close(phi, h); }
-  /// R of an equality and of a lower or upper row, 1/kg.
+  /// R of an equality, 1/kg.
   double joint_compliance(double h) const { return equality(near, h) / near * least / h; }
+  /// R of a lower or upper row, 1/kg.
   double contact_compliance(double h) const { return penetration(-near, h) / -near * least / h; }
 
   static constexpr double near = 1e-9;  ///< m, where no recovery is capped
@@ -59,8 +62,10 @@ struct WithCompliance<S> : inner::Hollow {
   using inner::Hollow::Hollow;
 };
 
+/// `WithCompliance{Baumgarte{}}`: C = 0.
 template <class S>
 WithCompliance(S) -> WithCompliance<S>;
+/// `WithCompliance{Baumgarte{}, C}`.
 template <class S>
 WithCompliance(S, double) -> WithCompliance<S>;
 static_assert(Stabilisation<WithCompliance<Baumgarte>>);

@@ -11,8 +11,8 @@
 
 namespace delassus {
 
-/// The bias of a lower row, u⁺ + bias ≥ 0: φ/h of an open one, which may close within the step and no more; of one that
-/// overlaps what the stabilisation pushes with. Velocities in m/s, φ in m.
+/// The bias of a lower row, u⁺ + bias ≥ 0. Of an open one it is φ/h: it may close within the step and no more. Of one
+/// that overlaps it is what the stabilisation pushes with. Velocities in m/s, φ in m.
 template <class S>
 double lower_bias(const S& stabilisation, double phi, double h) {
   return phi < 0 ? stabilisation.penetration(phi, h) : phi / h;
@@ -127,8 +127,9 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
 
 }  // namespace inner
 
-/// bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias; equalities hold for the mean velocity,
-/// as do springs that ask for it and the direction of friction (`inner::rotated_slip`), all other rows for v_next.
+/// Makes bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias. Equalities hold for the mean
+/// velocity, as do springs that ask for it and the direction of friction (`inner::rotated_slip`). All other rows hold
+/// for v_next.
 template <class World, class T, class S>
 void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const S& stabilisation, double h, double theta) {
   const inner::BodyVelocities<World> v(world);

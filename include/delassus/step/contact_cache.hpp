@@ -17,8 +17,8 @@ namespace delassus {
 
 /// A contact as a host reads it after the step: `impulse` (N·s, world) is what body B received from A.
 struct ContactResult {
-  ContactRecord record;
-  Vec3 impulse = zero<Vec3>();
+  ContactRecord record;  ///< where they meet
+  Vec3 impulse = zero<Vec3>();  ///< world, N·s, on B
   bool starts_cold = false;  ///< the impulse is no start for the next step
   bool is_sliding = false;   ///< the friction impulse is as large as the cone allows
 };
@@ -27,8 +27,8 @@ struct ContactResult {
 template <class Scalar>
 class BasicContactCache {
  public:
-  Array<Collider> colliders;
-  std::vector<ContactPoint> points;
+  Array<Collider> colliders;  ///< of this step, what `gather` found
+  std::vector<ContactPoint> points;  ///< what collision detection answered
   Array<ContactResult> results;  ///< in the order of `points`: by pair, then by feature
 
   /// One collider for every body with a shape.
@@ -82,8 +82,8 @@ class BasicContactCache {
     }
   }
 
-  /// The impulse that result `i` had last step, by the id of its contact, or the nearest unclaimed one of its pair within
-  /// what both can have moved in a step of h (s) and 2e-2 of the smaller one's size. Zero when there is none.
+  /// The impulse that result `i` had last step, by the id of its contact. Else that of the nearest unclaimed one of its
+  /// pair, within what both can have moved in a step of h (s) and 2e-2 of the smaller one's size. Zero when there is none.
   Vec3 remembered(Index i, double h) {
     const ContactRecord& record = results[i].record;
     return memory_.take(record.pair, record.feature, record.point(), [&] {
@@ -115,6 +115,6 @@ class BasicContactCache {
   BasicContactMemory<Scalar> memory_;
 };
 
-using ContactCache = BasicContactCache<double>;
+using ContactCache = BasicContactCache<double>;  ///< with impulses remembered in double
 
 }  // namespace delassus

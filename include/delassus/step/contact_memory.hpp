@@ -15,8 +15,8 @@
 namespace delassus {
 
 /// What is remembered of the contacts of the last step, sorted by pair and feature. A name is found by
-/// bisection; who has lost his is looked for along the longest axis of his pair, whose order is made when the
-/// first one asks: n contacts of one pair, as two soft surfaces have, cost n log n.
+/// bisection. A contact that has lost its name is looked for along the longest axis of its pair, whose order is
+/// made when the first one asks. So n contacts of one pair, as two soft surfaces have, cost n log n.
 template <class Scalar>
 class BasicContactMemory {
  public:

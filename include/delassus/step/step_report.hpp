@@ -9,15 +9,15 @@ namespace delassus {
 /// The worst of all islands, and the counts of the step. Returned by every step; nothing in it is optional reading for
 /// a host that cares: not converging is a value, not an exception.
 struct StepReport {
-  Status status = Status::converged;
+  Status status = Status::converged;  ///< the most severe one
   int sweeps = 0;                 ///< of the island that took most
   double residual = 0;            ///< `Measure::residual`, largest of the islands
   double natural_map_error = 0;   ///< `Measure::siconos`, largest of the islands
   double max_penetration = 0;     ///< m, at the start of the step
   double max_joint_violation = 0; ///< m or rad, at the start of the step
-  Index contacts = 0;
+  Index contacts = 0;             ///< points, whether a law takes them or not
   Index rows = 0;
-  Index islands = 0;
+  Index islands = 0;              ///< groups that were solved on their own
   Index quarantined = 0;          ///< bodies left where they were because something was not finite
   Index pairs = 0;                ///< near pairs from the broad phase
   Index queries = 0;              ///< narrow-phase queries

@@ -15,8 +15,8 @@
 
 namespace delassus {
 
-/// λ ← h/h_last · λ of the last step, by contact id or by item; contacts carry theirs as a world vector, brought back
-/// into the cone of the new frame. h and h_last are this step and the last one, s.
+/// λ ← h/h_last · λ of the last step, by contact id or by item. Contacts carry theirs as a world vector, brought back
+/// into the cone of the new frame. Arguments h and last_h are this step and the last one, s.
 template <class T>
 void warm_start(AllLaws<T> laws, AllRows<T> rows, ContactCache& cache, double h, double last_h) {
   for (std::size_t p = 0; p < laws.size(); ++p) laws[p].law->warm_start(laws[p].pool, rows[p], cache, h / last_h, h);

@@ -53,16 +53,17 @@ struct Bdf2 {
   using plays = role::Integrator;
   template <class P>
   using State = StepBySets<inner::StepByAcceleration, typename P::World, typename P::Laws>;
+  /// Particles and soft bodies.
   template <class Set>
   static constexpr bool can_move = Set::width == 3;
   double tolerance = 1e-10;  ///< of the accelerations
   int max_iterations = 20;   ///< factorizations; reaching it is a status
 
-  inner::Bdf2Rule rule(double h) const { return {h}; }
+  inner::Bdf2Rule rule(double h) const { return {h}; }  ///< for a step of h, s
   void check() const { inner::check_newton("Bdf2", tolerance, max_iterations); }
-  void move(auto& step) const { inner::solve_at_once(step); }
+  void move(auto& step) const { inner::solve_at_once(step); }  ///< the stages Linearize to Correct
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }  ///< p ← h f, N·s
   void advance(auto& set, double h) const { arrive_with_velocity(set, h); }
 };
 static_assert(Integrator<Bdf2>);

@@ -8,16 +8,18 @@
 
 namespace delassus {
 
-/// With v̄ = (1 − θ) v + θ v₊: M (v₊ − v) = h f(q ⊕ θ h v̄), q₊ = q ⊕ h v̄, where `ImplicitEuler` makes one
-/// Newton step and lags behind what stiffens or turns fast. For soft bodies and rods without joints and
-/// contacts, undamped.
+/// With v̄ = (1 − θ) v + θ v₊: M (v₊ − v) = h f(q ⊕ θ h v̄), q₊ = q ⊕ h v̄. `ImplicitEuler` makes one Newton step
+/// of this and lags behind what stiffens or turns fast. For soft bodies and rods without joints and contacts,
+/// undamped.
 ///
-/// θ = 1, implicit Euler: first order, energy does not rise. θ = ½, the midpoint rule: second order, keeps
-/// momentum and angular momentum; of a motion that is stiff within a step the energy swings.
+/// With θ = 1, implicit Euler, it is of first order, and the energy does not rise. With θ = ½, the midpoint rule, it is
+/// of second order and keeps momentum and angular momentum. Then the energy of a motion that is stiff within a step
+/// swings.
 struct FullNewton {
   using plays = role::Integrator;
   template <class P>
   using State = StepBySets<inner::ElasticNewton, typename P::World, typename P::Laws>;
+  /// Soft bodies and rods.
   template <class Set>
   static constexpr bool can_move = requires(const Set& set) {
     set.elastic_energy();
@@ -31,9 +33,9 @@ struct FullNewton {
                          "must be 1, implicit Euler, or 0.5, the midpoint rule");
     inner::check_newton("FullNewton", tolerance, max_iterations);
   }
-  void move(auto& step) const { inner::solve_at_once(step); }
+  void move(auto& step) const { inner::solve_at_once(step); }  ///< the stages Linearize to Correct
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }  ///< p ← h f, N·s
   void advance(auto& set, double h) const {
     if (theta == 1)
       set.advance(h);

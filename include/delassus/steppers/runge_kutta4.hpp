@@ -17,6 +17,7 @@ struct RungeKutta4 {
   using plays = role::Integrator;
   template <class P>
   using State = RungeKuttaStep<typename P::World, typename P::Laws, typename P::Rows>;
+  /// Rigid bodies and particles.
   template <class Set>
   static constexpr bool can_move = requires {
     typename Set::Path;
@@ -26,9 +27,9 @@ struct RungeKutta4 {
   int max_iterations = 20;  ///< factorizations of the projection; reaching it is a status
 
   void check() const { inner::check_newton("RungeKutta4", tolerance, max_iterations); }
-  void move(auto& step) const { inner::solve_at_once(step); }
+  void move(auto& step) const { inner::solve_at_once(step); }  ///< the stages Linearize to Correct
   SystemScale scale(double) const { return {.mass = 1}; }
-  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }
+  void impulse(const auto& set, auto& p, double h) const { inner::kick(set, p, h); }  ///< p ← h f, N·s
   void advance(auto& set, double h) const { set.finish_step(h); }
 };
 static_assert(Integrator<RungeKutta4>);

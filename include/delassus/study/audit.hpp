@@ -32,9 +32,10 @@ class Audit {
  public:
   using plays = role::Listener;
   using listens = Listens<stage::Begin, stage::Step>;
-  double least = 1e-4;
+  double least = 1e-4;  ///< of the speed of the scene, in (0, 1)
 
   Audit() = default;
+  /// `Audit{1e-3}`.
   explicit Audit(double least_share) : least(least_share) {}
 
   void check() const {
@@ -56,6 +57,7 @@ class Audit {
     see_motion(loop.world());
   }
 
+  /// Of the steps so far.
   AuditReport report() const { return inner::audit_report(seen_); }
 
  private:

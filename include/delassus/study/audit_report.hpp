@@ -16,27 +16,32 @@
 
 namespace delassus {
 
-enum class Effect : std::uint8_t { contact, friction, rolling, restitution, joint, body };
+/// What may act.
+enum class Effect : std::uint8_t { contact /**< λ_n */, friction /**< λ_t */, rolling /**< moments */, restitution /**< bounces */, joint /**< one item */, body /**< motion */ };
+/// Whether it did.
 enum class Verdict : std::uint8_t {
-  acted,
+  acted,  ///< at least once
   held,   ///< friction that acted and never slipped: any larger coefficient does the same
   never,  ///< the run would have been the same without
 };
 
+/// As tables print it.
 constexpr const char* name(Effect effect) {
   constexpr const char* names[] = {"contact", "friction", "rolling friction", "restitution", "joint", "body"};
   return inner::name_in(names, effect);
 }
+/// The same of a verdict.
 constexpr const char* name(Verdict verdict) {
   constexpr const char* names[] = {"acted", "held, never slipped", "never"};
   return inner::name_in(names, verdict);
 }
 
+/// One effect of one law, joint or body.
 struct EffectUse {
-  Effect effect;
+  Effect effect;  ///< its kind
   std::string name;  ///< of the law, or the body
   int place = -1;    ///< of a joint in its pool
-  Verdict verdict = Verdict::never;
+  Verdict verdict = Verdict::never;  ///< over the whole run
   long acted = 0;    ///< constraints × steps in which it acted
   long present = 0;  ///< constraints × steps in which it was there
   double work = 0;   ///< visits of its rows: Σ rows × (sweeps + factorizations)
@@ -44,17 +49,19 @@ struct EffectUse {
 
 /// Where a body was at the end, to compare two runs.
 struct AuditedBody {
-  int set;
-  Index block;
-  Vec3 position;
+  int set;  ///< place of its set in World{...}
+  Index block;  ///< of that set
+  Vec3 position;  ///< at the end, m, world
 };
 
+/// What a run used, and what it paid for.
 struct AuditReport {
-  long steps = 0;
+  long steps = 0;  ///< that were seen
   double work = 0;  ///< visits of rows, Σ rows × (sweeps + factorizations): no machine changes them
-  std::vector<EffectUse> uses;
-  std::vector<AuditedBody> bodies;
+  std::vector<EffectUse> uses;  ///< laws in their order, then bodies
+  std::vector<AuditedBody> bodies;  ///< all that move
 
+  /// Those whose verdict is `never`.
   std::vector<EffectUse> unused() const {
     std::vector<EffectUse> out;
     for (const EffectUse& use : uses)

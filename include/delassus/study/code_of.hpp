@@ -73,10 +73,12 @@ template <class P>
 std::string code_of(const P&) {
   return inner::policy_name<P>() + "{}";
 }
+/// The same of one that says its code.
 template <inner::SaysItsCode P>
 std::string code_of(const P& policy) {
   return policy.code();
 }
+/// The same of one that has defaults to compare with.
 template <class P>
   requires(!inner::SaysItsCode<P> && std::is_default_constructible_v<P>)
 std::string code_of(const P& policy) {

@@ -14,8 +14,9 @@
 
 namespace delassus {
 
+/// What it shows.
 struct DiagramOptions {
-  int measure = 0;
+  int measure = 0;  ///< place among those of the study
   double budget = 0;     ///< drawn, with the cheapest run that holds it, where > 0
   int colour_axis = -1;  ///< axis of the combinations that colours tell apart; -1: the first with a choice
   int marker_axis = -1;  ///< and the one that marks tell apart; -1: the next

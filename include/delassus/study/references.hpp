@@ -11,8 +11,8 @@ namespace delassus {
 /// The scene with these policies at 1/refinement of the plan's smallest step.
 template <class... P>
 struct Refined {
-  int refinement;
-  std::tuple<P...> policies;
+  int refinement;  ///< at least 1
+  std::tuple<P...> policies;  ///< what the scene is called with
 };
 
 /// `refined(10, ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-12})`.
@@ -27,12 +27,14 @@ Refined<P...> refined(int refinement, P... policies) {
 /// order may be refined more.
 template <class... R>
 struct References {
-  static constexpr int count = int(sizeof...(R));
-  std::tuple<R...> runs;
+  static constexpr int count = int(sizeof...(R));  ///< at least 2 where a measure has no exact(t)
+  std::tuple<R...> runs;  ///< in the order given
 
   References() = default;
+  /// At least one.
   explicit References(R... r) requires(sizeof...(R) > 0) : runs(std::move(r)...) {}
 };
+/// `References{refined(...), refined(...)}`.
 template <class... R>
 References(R...) -> References<R...>;
 

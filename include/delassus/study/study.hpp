@@ -26,6 +26,7 @@ struct StudyPlan {
   int repeats = 3;                   ///< timed runs; the cost is their median
   double max_seconds = 60;           ///< of cost, a run: a longer one is stopped and shown as such
   std::string log{};  ///< file that keeps each finished run; a study that was interrupted goes on from it
+  /// From 0 to `shards` − 1.
   int shard = 0, shards = 1;  ///< only runs whose number is `shard` modulo `shards`
   int only = -1;              ///< only the run of this number
   bool is_quiet = false;      ///< no progress line
@@ -50,9 +51,11 @@ struct StudyPlan {
                         " s");
     return std::lround(count);
   }
+  /// Whether this run is to be done here, by `only` or by the shard.
   bool wants(int run) const { return only >= 0 ? run == only : run % shards == shard; }
 };
 
+/// How a run ended.
 enum class Outcome : std::uint8_t {
   sound,     ///< every step converged
   capped,    ///< finite, but some steps ran out of sweeps
@@ -60,6 +63,7 @@ enum class Outcome : std::uint8_t {
   too_slow,  ///< stopped at max_seconds
 };
 
+/// As diagrams print it.
 constexpr const char* name(Outcome outcome) {
   constexpr const char* names[] = {"sound", "capped", "failed", "too slow"};
   return inner::name_in(names, outcome);
@@ -67,36 +71,40 @@ constexpr const char* name(Outcome outcome) {
 
 /// One combination at one tolerance and one step size.
 struct StudyRun {
-  int number = -1;
-  int combination = -1;
+  int number = -1;  ///< from 0, see StudyPlan
+  int combination = -1;  ///< from 0, in the order of the list
   std::string code;       ///< its policies as C++
   double tolerance = -1;  ///< of the solver; -1 where the plan names none
   double h = 0;           ///< s
-  Outcome outcome = Outcome::failed;
+  Outcome outcome = Outcome::failed;  ///< `failed` until it is known
   double cost = 0;        ///< s, median of the repeats, all steps, without set-up
   double least_cost = 0;  ///< s, the smallest of the repeats
   double sweeps = 0;      ///< of all steps: the count that no machine changes
-  long steps = 0;
+  long steps = 0;  ///< that it took, up to where it was stopped
   long capped_steps = 0;       ///< that did not converge
   std::vector<double> errors;  ///< by measure
 
+  /// Whether its errors and cost count: sound or capped.
   bool is_usable() const { return outcome == Outcome::sound || outcome == Outcome::capped; }
 };
 
 /// A measure and what is known of its reference.
 struct StudyMeasure {
-  std::string name, unit;
+  /// For titles.
+  std::string name, unit;  ///< of its errors
   double uncertainty = 0;  ///< of the reference; 0 where it is exact or none is needed
 };
 
+/// A plan and what its runs showed.
 struct Study {
-  StudyPlan plan;
-  int combinations = 0;
+  StudyPlan plan;  ///< as it was given
+  int combinations = 0;  ///< how many there are
   std::vector<std::vector<std::string>> axes;  ///< the C++ text of each choice
-  std::vector<StudyMeasure> measures;
+  std::vector<StudyMeasure> measures;  ///< in the order of the errors of a run
   std::vector<StudyRun> runs;  ///< in the order of their numbers
   int resumed = 0;             ///< of them, read from the log
 
+  /// Of the whole plan, whatever the shard.
   int run_count() const {
     return combinations * int(plan.steps.size()) * int(plan.tolerances.empty() ? 1 : plan.tolerances.size());
   }
@@ -157,6 +165,7 @@ struct Study {
   std::string line(const StudyRun& run) const {
     return "auto loop = " + call(run) + ";  // then loop.step(" + inner::step_text(run.h) + ")";
   }
+  /// `scene(ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-08})`.
   std::string call(const StudyRun& run) const { return plan.call + "(" + run.code + ")"; }
 };
 

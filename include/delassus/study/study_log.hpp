@@ -31,6 +31,7 @@ class StudyLog {
     }
   }
 
+  /// A finished run by its number and its policies; null where there is none.
   const StudyRun* find(int number, std::string_view code) const {
     for (const StudyRun& run : runs_)
       if (run.number == number && run.code == code) return &run;
@@ -39,6 +40,7 @@ class StudyLog {
   /// The uncertainties of the references, if they were found out before.
   const std::optional<std::vector<double>>& uncertainties() const { return uncertainties_; }
 
+  /// Appends a line and closes the file. Throws InvalidArgument when it cannot be written.
   void keep(const StudyRun& run) {
     std::string line = key_ + "\trun\t" + std::to_string(run.number) + "\t" +
                        std::to_string(run.combination) + "\t" + run.code;
@@ -47,6 +49,7 @@ class StudyLog {
       line += "\t" + inner::number_text(x, 17);
     append(line, run.errors);
   }
+  /// The same of the references, by measure.
   void keep_uncertainties(const std::vector<double>& uncertainties) {
     append(key_ + "\treference", uncertainties);
   }

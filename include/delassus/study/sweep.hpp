@@ -29,6 +29,7 @@ namespace delassus {
 /// Processor time of this process, all its threads together. Where other threads work too, take `ThreadClock`
 /// of adapters/posix.hpp.
 struct ProcessorClock {
+  /// s used so far.
   double now() const { return double(std::clock()) / CLOCKS_PER_SEC; }
 };
 static_assert(Clock<ProcessorClock>);

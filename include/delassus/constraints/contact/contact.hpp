@@ -47,17 +47,18 @@ struct Contact {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
-  static constexpr bool is_contact = true;
+  static constexpr bool is_contact = true;  ///< read by the loop: collision detection makes the items
   static constexpr unsigned refines = inner::refinements_of<Law> & refine::set_restitution ? refine::restitution : 0u;
   using overrides = typename inner::overrides_of<Law>::type;
 
-  Law law{};
+  Law law{};  ///< solved at each point, with its numbers where no pair has others
 
+  /// One point; Detect and the scheme fill it.
   struct Item {
     const ContactRecord* record = nullptr;  ///< in the loop's list of contacts, until the next Detect
-    Vec3 point{0, 0, 0};                   ///< where the rows are taken, and how far the bodies are apart: those of the
-    double gap = 0;                         ///< record, until a scheme moves them on
-    Mat3 frame = diagonal_of<3>(1.0);
+    Vec3 point{0, 0, 0};                   ///< where the rows are taken, m, world: the record's, until a scheme moves it on
+    double gap = 0;                         ///< m, negative in overlap; likewise
+    Mat3 frame = diagonal_of<3>(1.0);  ///< rows n, t₁, t₂: unit vectors of the world
     typename Law::Parameters parameters{};
     Index result = -1;  ///< its place in the loop's list of contacts
   };
@@ -106,10 +107,12 @@ struct Contact {
 template <class Law>
   requires(!requires { Law::rows, Law::kinds, typename Law::Parameters{}; })
 struct Contact<Law> {
+  /// Read by the checks, which refuse it.
   using no_contact_law = Law;
-  Law law{};
+  Law law{};  ///< what was given
 };
 
+/// `Contact{Coulomb{}}` is around a Coulomb.
 template <class Law>
 Contact(Law) -> Contact<Law>;
 

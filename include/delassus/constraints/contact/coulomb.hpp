@@ -15,12 +15,14 @@ namespace delassus {
 
 /// u = W λ + b:  0 ≤ u_n ⟂ λ_n ≥ 0,  |λ_t| ≤ μ λ_n,  and λ_t = −μ λ_n u_t/|u_t| where the contact slips.
 ///
-/// Exactly one of three cases holds for a contact whose neighbours are fixed:
-///   open   b_n ≥ 0: λ = 0;
-///   stick  λ = −W⁻¹ b lies in the cone;
-///   slip   u_n = 0 and u_t = −α λ_t with α > 0: after eliminating λ_n,
-///          (S + α 1) λ_t = −c,  S = W_tt − W_tn W_nt/W_nn,  c = b_t − W_tn b_n/W_nn,
-///          and α is the root of μ λ_n(α) = |λ_t(α)|, by a bracketed iteration that starts at the last α.
+/// Exactly one of three cases holds for a contact whose neighbours are fixed.
+///
+///   Open:  b_n ≥ 0, and λ = 0.
+///   Stick: λ = −W⁻¹ b lies in the cone.
+///   Slip:  u_n = 0 and u_t = −α λ_t with α > 0. After eliminating λ_n,
+///          (S + α 1) λ_t = −c,  S = W_tt − W_tn W_nt/W_nn,  c = b_t − W_tn b_n/W_nn.
+///
+/// In slip, α is the root of μ λ_n(α) = |λ_t(α)|. A bracketed iteration finds it, from the last α.
 struct Coulomb {
   static constexpr int rows = 3;
   static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
@@ -29,19 +31,20 @@ struct Coulomb {
 
   double friction = 0.5;  ///< μ ≥ 0, where neither the pair nor the materials say otherwise
 
+  /// Of one contact.
   struct Parameters {
-    double friction;
+    double friction;  ///< μ ≥ 0
   };
 
   /// What one contact's own block gives once a step, and the last α.
   template <class T>
   struct Memory {
-    Mat<3, 3, T> inverse;
+    Mat<3, 3, T> inverse;  ///< of W, kg
     T schur[4];        ///< S, by columns
     T to_normal[2];    ///< W_nt / W_nn
     T from_normal[2];  ///< W_tn / W_nn
     T over_normal;     ///< 1 / W_nn
-    T alpha = 0;
+    T alpha = 0;  ///< root of the last slip, 1/kg; 0: none in this step
   };
 
   void check() const { inner::expect_not_negative("Coulomb: friction", friction); }
@@ -114,8 +117,8 @@ struct Coulomb {
     return slope;
   }
 
-  /// `tangent` of the convex problem that is left when the slip s = |u_t| of De Saxcé's form is a given number:
-  /// λ = P_K(λ − W⁻¹ (d + μ s e_n)) in the metric W, which one scaling of λ_t makes Euclid's.
+  /// `tangent` of the convex problem that is left when the slip s = |u_t| of De Saxcé's form is a given number.
+  /// (λ = P_K(λ − W⁻¹ (d + μ s e_n)) in the metric W, which one scaling of λ_t makes Euclid's.)
   template <class T>
   Mat<3, 3, T> convex_tangent(const Parameters& p, Local<3, T>& c, T slip) const {
     const T mu = T(p.friction), scale = std::sqrt(c.W(1, 1) / c.W(0, 0));
@@ -148,12 +151,12 @@ struct Coulomb {
   }
 
  private:
-  /// With X = adj(S + α) c = a + α c and D = det(S + α) = α² + τ α + δ: λ_t = −X/D, λ_n = (W_nt X/D −
-  /// b_n)/W_nn, so that the root is that of P(α) = √Q(α) with quadratic polynomials,
+  /// With X = adj(S + α) c = a + α c and D = det(S + α) = α² + τ α + δ: λ_t = −X/D, λ_n = (W_nt X/D − b_n)/W_nn.
+  /// The root is that of P(α) = √Q(α) with quadratic polynomials,
   ///
-  ///   P = μ (W_nt X − b_n D)/W_nn,   Q = |X|²,
+  ///   P = μ (W_nt X − b_n D)/W_nn,   Q = |X|².
   ///
-  /// found by Halley's iteration on P/√Q − 1, which is nearly straight in α. S = s 1 has the root in closed
+  /// Halley's iteration finds it on P/√Q − 1, which is nearly straight in α. S = s 1 has the root in closed
   /// form; that starts the first visit, with s = cᵀSc/|c|².
   template <class T>
   static Vec<3, T> slip(const Vec<3, T>& b, T mu, Memory<T>& memory) {

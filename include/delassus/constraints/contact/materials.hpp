@@ -13,23 +13,25 @@ namespace delassus {
 
 /// What a surface is made of. Friction μ ≥ 0, restitution e in [0, 1].
 struct Material {
-  double friction = 0.5;
-  double restitution = 0;
+  double friction = 0.5;  ///< μ
+  double restitution = 0;  ///< e
 };
 
 /// Numbers of materials, 0 being "none said". The combination rule of two materials is
 ///
-///   μ = √(μ_a μ_b),   e = max(e_a, e_b);
+///   μ = √(μ_a μ_b),   e = max(e_a, e_b).
 ///
-/// an entry for the pair comes before it, and a pair with a 0 in it keeps the law's own parameters.
+/// An entry for the pair comes before it, and a pair with a 0 in it keeps the law's own parameters.
 class Materials {
  public:
+  /// Returns its number, from 1. Throws for μ < 0 and for e outside [0, 1].
   Index add(const Material& material) {
     check(material, "material");
     materials_.push_back(material);
     return count();
   }
 
+  /// What holds between two in place of the rule. Throws for a number that was not given out.
   void set_pair(Index a, Index b, const Material& material) {
     check(material, "material pair");
     DELASSUS_EXPECT(std::min(a, b) >= 0 && std::max(a, b) <= count(),
@@ -53,7 +55,9 @@ class Materials {
     return Material{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution)};
   }
 
+  /// Without materials and pairs the laws' own numbers hold.
   bool empty() const { return materials_.empty() && pairs_.empty(); }
+  /// Whether it may be said of a body: 0 may.
   bool contains(Index material) const { return material >= 0 && material <= count(); }
   /// Their numbers go from 1 to this.
   Index count() const { return Index(materials_.size()); }

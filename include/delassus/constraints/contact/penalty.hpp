@@ -15,7 +15,9 @@ namespace delassus {
 
 /// Which velocity a penalty contact sees: the one after the step, or the mean ū of those before and after it.
 struct AtEnd {};
+/// See `AtEnd`: the mean ū.
 struct AtMean {};
+/// When a penalty contact looks at the velocity.
 template <class W>
 concept SpringTime = std::same_as<W, AtEnd> || std::same_as<W, AtMean>;
 
@@ -23,27 +25,28 @@ concept SpringTime = std::same_as<W, AtEnd> || std::same_as<W, AtMean>;
 ///
 ///   f_n = max(0, k δ − c u_n),  δ = −gap,   with the friction of `Law` on top.
 ///
-/// As rows the spring is implicit Euler's, λ_n = max(0, h (k (δ − h u_n) − c u_n)) at the velocity after the step: stable
-/// for every k and h, and never a source of energy. Under the scheme `CollisionsFirst` with an explicit integrator it is
-/// a force of the free motion at the start of the step, with no row and no solve: stable for h √(k/m) < 2 only.
+/// As rows the spring is implicit Euler's, λ_n = max(0, h (k (δ − h u_n) − c u_n)) at the velocity after the step.
+/// It is stable for every k and h, and never a source of energy. Under the scheme `CollisionsFirst` with an explicit
+/// integrator it is a force of the free motion at the start of the step, with no row and no solve. There it is stable
+/// for h √(k/m) < 2 only.
 ///
 /// `Penalty{Coulomb{.friction = 0.5}, 1e5, 50, AtMean{}}` has λ_n = max(0, h (k (δ − h ū/2) − c ū)) instead, the midpoint
-/// rule's, under `ImplicitMidpoint` only: of second order, where the other is of first and damps. The damper, whose force
-/// jumps at the touch, leaves first order to the touch. For springs that the step resolves,
-/// h √(k/m) ≤ ½: what is first seen h v deep is given the energy of that, (h √(k/m))² of the impact's.
+/// rule's, under `ImplicitMidpoint` only. It is of second order, where the other is of first and damps. The damper, whose
+/// force jumps at the touch, leaves first order to the touch. For springs that the step resolves, h √(k/m) ≤ ½: What is
+/// first seen h v deep is given the energy of that, (h √(k/m))² of the impact's.
 template <class Law = inner::Absent, SpringTime When = AtEnd>
 struct Penalty {
   using wraps = Law;
-  static constexpr bool takes_mean = std::same_as<When, AtMean>;
+  static constexpr bool takes_mean = std::same_as<When, AtMean>;  ///< read by the loop, which then gives the rows of the midpoint rule
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
   static constexpr auto refines = refine::check | refine::soften;
   using overrides = typename inner::overrides_of<Law>::type;
 
-  Law law{};
+  Law law{};  ///< gives the friction
   double stiffness = 0;  ///< k > 0, N/m
   double damping = 0;    ///< c ≥ 0, N·s/m
-  [[no_unique_address]] When when{};
+  [[no_unique_address]] When when{};  ///< `AtEnd` or `AtMean`
 
   using Parameters = typename Law::Parameters;
 
@@ -85,12 +88,16 @@ struct Penalty<Law, When> : inner::Hollow {
   using inner::Hollow::Hollow;
 };
 
+/// `Penalty{Coulomb{}, k}` has no damper.
 template <class Law>
 Penalty(Law, double) -> Penalty<Law>;
+/// Without numbers: refused by `check`, as k must be > 0.
 template <class Law>
 Penalty(Law) -> Penalty<Law>;
+/// `Penalty{Coulomb{}, k, c}`.
 template <class Law>
 Penalty(Law, double, double) -> Penalty<Law>;
+/// `Penalty{Coulomb{}, k, c, AtMean{}}`.
 template <class Law, SpringTime When>
 Penalty(Law, double, double, When) -> Penalty<Law, When>;
 

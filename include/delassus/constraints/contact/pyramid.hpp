@@ -15,14 +15,13 @@
 
 namespace delassus {
 
-/// u = W λ + b:  0 ≤ u_n ⟂ λ_n ≥ 0, and along each tangent axis by itself |λ_i| ≤ μ λ_n, λ_i = −μ λ_n sign
-/// u_i where it slips. This is what engines do whose friction rows are boxes: here to compare with them,
-/// since `Coulomb` costs no more. Along an axis it is Coulomb's law; along a diagonal it holds with √2 μ, and
-/// what slides there stops after 1/√2 of the way. The axes are those of `contact_frame`, x and y on a level
-/// floor.
+/// u = W λ + b:  0 ≤ u_n ⟂ λ_n ≥ 0. Along each tangent axis by itself |λ_i| ≤ μ λ_n, and λ_i = −μ λ_n sign u_i
+/// where it slips. This is what engines do whose friction rows are boxes: It is here to compare with them, since
+/// `Coulomb` costs no more. Along an axis it is Coulomb's law. Along a diagonal it holds with √2 μ, and what slides
+/// there stops after 1/√2 of the way. The axes are those of `contact_frame`, x and y on a level floor.
 ///
-/// A visit is exact: of the nine cases, open aside, stick or one of two ways of slip on either axis, it takes
-/// the first whose linear equations meet the law, or the one that misses it least.
+/// A visit is exact. Of the nine cases, open aside, it takes the first whose linear equations meet the law, or the
+/// one that misses it least. (The cases are stick or one of two ways of slip on either axis.)
 struct Pyramid {
   static constexpr int rows = 3;
   static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
@@ -32,7 +31,7 @@ struct Pyramid {
 
   /// Not called friction: who finds that takes the law for a round cone.
   struct Parameters {
-    double slope;
+    double slope;  ///< μ of either axis
   };
 
   void check() const { inner::expect_not_negative("Pyramid: friction", friction); }

@@ -18,11 +18,12 @@ struct Restitution {
   static constexpr auto refines = refine::check | refine::set_restitution;
   using overrides = inner::overrides_around_t<Law, NewtonImpact>;
 
-  Law law{};
+  Law law{};  ///< solved, with the target velocity in b
   double restitution = 0;  ///< e in [0, 1], where neither the pair nor the materials say otherwise
 
+  /// Of one contact: those of the law inside, and e.
   struct Parameters : Law::Parameters {
-    double restitution;
+    double restitution;  ///< e
   };
 
   void check() const {
@@ -41,8 +42,10 @@ struct Restitution<Law> : inner::Hollow {
   using inner::Hollow::Hollow;
 };
 
+/// `Restitution{Coulomb{}, e}`.
 template <class Law>
 Restitution(Law, double) -> Restitution<Law>;
+/// `Restitution{Coulomb{}}`: e is that of the materials, else 0.
 template <class Law>
 Restitution(Law) -> Restitution<Law>;
 

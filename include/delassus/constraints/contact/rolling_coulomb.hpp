@@ -14,16 +14,16 @@ namespace delassus {
 
 /// u = W λ + b, rows (n, t₁, t₂) of the velocity and (t₁, t₂, n) of the rate of turn at the contact:
 ///
-///   0 ≤ u_n ⟂ λ_n ≥ 0,   |λ_t| ≤ μ λ_n,   |λ_r| ≤ μ_r λ_n,   |λ_s| ≤ μ_s λ_n,
+///   0 ≤ u_n ⟂ λ_n ≥ 0,   |λ_t| ≤ μ λ_n,   |λ_r| ≤ μ_r λ_n,   |λ_s| ≤ μ_s λ_n.
 ///
-/// each bound reached where its own velocity is not zero, and then against it: slip u_t (m/s), roll ω_r about
-/// a tangent and spin ω_s about the normal (rad/s). λ_r and λ_s are moments times h, N·m·s; μ_r and μ_s are
-/// lengths: half the width of the patch in which a soft wheel rests, say. A ball of radius R stands on slopes
+/// Each bound is reached where its own velocity is not zero, and then against it. (Slip u_t in m/s; roll ω_r about a
+/// tangent and spin ω_s about the normal in rad/s.) The impulses λ_r and λ_s are moments times h, N·m·s. Lengths are
+/// μ_r and μ_s, m: half the width of the patch in which a soft wheel rests, say. A ball of radius R stands on slopes
 /// up to tan θ = μ_r/R.
 ///
-/// A visit ends at the rounding of its six equations: it sticks as a whole, or blocks are met in turn, (n, t)
-/// and the roll each by Coulomb's own root, until Newton's method on the cases that they are in goes the rest
-/// of the way. A contact starts a step without the moments of the last one. Source: docs/references.md,
+/// A visit ends at the rounding of its six equations. Either the contact sticks as a whole, or blocks are met in turn,
+/// (n, t) and the roll each by Coulomb's own root. Newton's method on the cases that they are in goes the rest of the
+/// way. A contact starts a step without the moments of the last one. Source: docs/references.md,
 /// [AcaryBourrier2021], with a bound of its own for the spin.
 struct RollingCoulomb {
   static constexpr int rows = 6;
@@ -36,20 +36,22 @@ struct RollingCoulomb {
   double rolling_friction = 0;    ///< μ_r ≥ 0, m
   double torsional_friction = 0;  ///< μ_s ≥ 0, m
 
+  /// Of one contact.
   struct Parameters {
-    double friction, rolling, torsional;
+    double friction /**< μ */, rolling /**< μ_r, m */, torsional;  ///< μ_s, m
   };
 
-  /// What one contact's own block gives once a step, its turns measured in the length ℓ that makes them weigh
-  /// as much as its motions, ℓ² = tr W_uu / tr W_ωω: velocities ℓ ω, impulses λ_ω/ℓ.
+  /// What one contact's own block gives once a step. Turns are measured in the length ℓ that makes them weigh as much
+  /// as the motions, ℓ² = tr W_uu / tr W_ωω. (Velocities are ℓ ω then, impulses λ_ω/ℓ.)
   template <class T>
   struct Memory {
-    T length;
-    Mat<6, 6, T> W;
-    PivotedLu<6, T> whole;
-    bool may_stick;
-    Coulomb::Memory<T> slide, roll;
-    Vec<6, T> last;
+    T length;  ///< ℓ, m; 1 where nothing turns
+    Mat<6, 6, T> W;  ///< the own block, so measured, 1/kg
+    PivotedLu<6, T> whole;  ///< its factors
+    bool may_stick;  ///< false where it is singular
+    /// The rows (n, t₁, t₂) of the velocity by themselves.
+    Coulomb::Memory<T> slide, roll;  ///< n and the two rows of the roll, without what couples them
+    Vec<6, T> last;  ///< λ of the last visit, so measured, N·s
   };
 
   void check() const {
@@ -93,7 +95,7 @@ struct RollingCoulomb {
     return measured_in(memory.length, lambda);
   }
 
-  /// Where W is diagonal, and alike in the rows of a disc, the cases are explicit: with x = λ − W⁻¹ d
+  /// Where W is diagonal, and alike in the rows of a disc, the cases are explicit. With x = λ − W⁻¹ d,
   ///
   ///   λ_n = max(0, x_n),   λ_k = min(|x_k|, μ_k λ_n) x_k/|x_k|,   k the slip, the roll, the spin.
   template <class T>

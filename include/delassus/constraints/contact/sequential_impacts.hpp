@@ -132,11 +132,13 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
 
 /// What `SequentialRestitution` changes: impacts come before the free motion, and their impulses into the list of contacts.
 struct SequentialImpacts {
+  /// Kept from the free motion to the end of the step.
   template <class P>
   struct State {
     std::vector<Vec3> impulses;  ///< of the contacts, N·s
   };
 
+  /// What a step does besides.
   template <class Base>
   struct stages : Base {
     static void free_motion(auto& step) {
@@ -144,6 +146,7 @@ struct SequentialImpacts {
                       step.contact_cache.results.size(), step.h);
       Base::free_motion(step);
     }
+    /// Adds the impacts to the list of contacts, not to the next warm start.
     static void keep_impulses(auto& step) {
       Base::keep_impulses(step);  // impacts are no start for the next step
       const auto& impulses = step.template state<SequentialImpacts>().impulses;

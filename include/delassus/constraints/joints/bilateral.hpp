@@ -18,6 +18,7 @@ struct Bilateral {
   static constexpr bool bilateral = true;
   static constexpr auto refines = refine::prepare | refine::tangent | refine::natural_map;
 
+  /// Of one item, made by each `prepare`.
   template <class T>
   struct Memory {
     T inverse[rows * rows];  ///< of W, by columns

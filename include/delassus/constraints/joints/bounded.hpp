@@ -20,6 +20,7 @@ struct Bounded {
   static constexpr std::array<RowKind, 1> kinds{RowKind::friction};
   static constexpr auto refines = refine::prepare | refine::clamp | refine::tangent;
 
+  /// Of one row, made by each `prepare`.
   template <class T>
   struct Memory {
     T most;  ///< h F, N·s or N·m·s
@@ -47,6 +48,7 @@ struct Bounded {
     return Mat<1, 1, T>(c.lambda[0] == free ? 1 / c.W(0, 0) : T(0));
   }
 
+  /// Throws where max_force is negative or not a number; `what` and `unit` are for the sentence.
   static void check_cap(double max_force, const char* what, const char* unit) {
     DELASSUS_EXPECT(max_force >= 0,
                     std::string(what) + ": max_force " + inner::text(max_force) + " must be >= 0 " + unit);

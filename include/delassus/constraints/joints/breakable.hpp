@@ -17,6 +17,7 @@ namespace delassus {
 /// joint says `acts`, as `Reaction` wants it.
 template <class Joint = inner::Absent>
 struct Breakable : Joint {
+  /// What the joint has, and what it bears.
   struct Item : Joint::Item {
     double max_force = std::numeric_limits<double>::infinity();   ///< N
     double max_moment = std::numeric_limits<double>::infinity();  ///< N·m
@@ -31,6 +32,7 @@ struct Breakable : Joint {
                         inner::text(item.max_moment) + " N·m must be > 0");
   }
 
+  /// Whether this step's λ/h was more than the joint bears, as a force or as a moment.
   bool breaks(const Item& item, const Vec<Joint::rows>& lambda, double h) const {
     double force = 0, moment = 0;
     for (int k = 0; k < Joint::rows; ++k) (Joint::acts[k] < 3 ? force : moment) += lambda[k] * lambda[k];
@@ -42,10 +44,13 @@ struct Breakable : Joint {
 template <class Joint>
   requires(!requires { Joint::acts; } || refines<Joint>(refine::breaks))
 struct Breakable<Joint> {
+  /// Read by the checks, which refuse it.
   using no_joint = Joint;
+  /// Takes anything, so that the checks can speak.
   explicit Breakable(const auto&...) {}
 };
 
+/// `Breakable{Hinge{}}`.
 template <class Joint>
 Breakable(Joint) -> Breakable<Joint>;
 

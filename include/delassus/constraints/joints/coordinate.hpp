@@ -10,18 +10,18 @@
 
 namespace delassus {
 
-/// The angle (rad) by which b's frame is turned about a_z against a's: the twist of the turn from a to b,
+/// The angle (rad) by which b's frame is turned about a_z against a's. It is the twist of the turn from a to b,
 ///
-///   θ = atan2(a_y · b_x − a_x · b_y, a_x · b_x + a_y · b_y),   θ̇ = (a_z + b_z) · (ω_b − ω_a)/(1 + a_z ·
-///   b_z),
+///   θ = atan2(a_y · b_x − a_x · b_y, a_x · b_x + a_y · b_y),   θ̇ = (a_z + b_z) · (ω_b − ω_a)/(1 + a_z · b_z).
 ///
-/// where the axes are parallel simply a_z · (ω_b − ω_a). Singular at b_z = −a_z, where it says 0 and takes
+/// Where the axes are parallel, θ̇ is simply a_z · (ω_b − ω_a). Singular at b_z = −a_z, where it says 0 and takes
 /// a_z. Source: the twist 2 atan2(z, w) of the quaternion, written in its rotation matrix.
 struct Turn {
-  static constexpr bool winds = true;  // known up to whole turns
-  static constexpr const char* force_unit = "N·m";
+  static constexpr bool winds = true;  ///< known up to whole turns
+  static constexpr const char* force_unit = "N·m";  ///< of what acts on it, for refusals
   static constexpr double limit_margin = 1;  ///< rad: 60 rad/s at 60 steps a second
 
+  /// θ of one pose, rad, from −π to π.
   static double value(const JointFrames& f) {
     const Vec3 ax = f.a(0), ay = f.a(1), bx = f.b(0), by = f.b(1);
     return std::atan2(inner::dot_from_end(ay, bx) - inner::dot_from_end(ax, by), inner::dot_from_end(ax, bx) + inner::dot_from_end(ay, by));
@@ -37,11 +37,13 @@ struct Turn {
 
 /// How far (m) b's point is from a's along a_z: s = a_z · (x_b − x_a), in every pose.
 struct Slide {
-  static constexpr bool winds = false;
-  static constexpr const char* force_unit = "N";
+  static constexpr bool winds = false;  ///< a pose tells all of it
+  static constexpr const char* force_unit = "N";  ///< of what acts on it, for refusals
   static constexpr double limit_margin = 0.05;  ///< m
 
+  /// s of one pose, m.
   static double value(const JointFrames& f) { return inner::dot_from_end(f.a(2), f.xb - f.xa); }
+  /// u_k += factor · ṡ.
   static void write(auto& joint, int k, double factor) { joint.along(k, factor * joint.a(2)); }
   static void check(const auto& item, const char* what) { inner::expect_frame(item.a, what, "first"); }
 };

@@ -12,20 +12,23 @@ namespace delassus {
 /// The phase of a coupling is what it is in the pose of the first step.
 inline constexpr double from_pose = std::numeric_limits<double>::quiet_NaN();
 
-/// φ = q_a − ratio q_b − phase: q_a the `First` coordinate of a against its carrier c, q_b the `Second` of b
-/// against its carrier d. One row, turns counted over all of them, so that nothing adds up. c and d are
-/// mostly points of one housing, or of the world. λ is the force or moment on a along its axis (N·s, N·m·s);
-/// −ratio λ acts on b, and the carriers take the opposite of each, so that momentum and angular momentum of
-/// free bodies stay. The joints that leave a and b these coordinates are added beside it. Singular where the
-/// coordinates are.
+/// φ = q_a − ratio q_b − phase. (The `First` coordinate of a against its carrier c is q_a, the `Second` of b against its
+/// carrier d is q_b.) One row, turns counted over all of them, so that nothing adds up. Mostly c and d are points of one
+/// housing, or of the world. The impulse λ is the force or moment on a along its axis (N·s, N·m·s), and −ratio λ acts on
+/// b. The carriers take the opposite of each, so that momentum and angular momentum of free bodies stay. The joints that
+/// leave a and b these coordinates are added beside it. Singular where the coordinates are.
 template <class First = inner::Absent, class Second = inner::Absent>
 struct Coupling : Bilateral<1> {
+  /// Two coordinates and their ratio.
   struct Item {
-    Anchor a, b;               ///< what moves
-    Anchor c, d;               ///< what a moves against, what b does: z axes along the axes of motion
+    /// What moves by q_a.
+    Anchor a{}, b{};               ///< what moves by q_b
+    /// What a moves against; its z axis is the axis of q_a.
+    Anchor c, d;               ///< what b moves against, likewise
     double ratio = 1;          ///< of q_a to q_b
     double phase = from_pose;  ///< rad or m
-    double position_a = 0, position_b = 0;  ///< q_a, q_b at the start of the last step, over all turns
+    /// q_a at the start of the last step, over all turns.
+    double position_a = 0, position_b = 0;  ///< q_b, likewise
   };
 
   static constexpr auto refines = Bilateral<1>::refines | refine::check | refine::follow;
@@ -63,6 +66,7 @@ struct Coupling : Bilateral<1> {
 template <class First, class Second>
   requires(!AxisCoordinate<First> || !AxisCoordinate<Second>)
 struct Coupling<First, Second> {
+  /// Read by the checks, which refuse it.
   using no_coordinate = First;
 };
 

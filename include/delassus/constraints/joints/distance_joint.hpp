@@ -14,11 +14,13 @@ namespace delassus {
 /// With stiffness k (N/m) or damping c (N·s/m) the row is soft: λ = −h (k (φ + h u) + c u), the spring and damper of
 /// implicit Euler. Points that coincide have no direction: the row then acts along z, where it is deterministic.
 struct DistanceJoint : Bilateral<1> {
+  /// Two points, of bodies or of the world; without stiffness and damping the joint is rigid.
   struct Item {
-    Anchor a, b;
+    /// λ > 0 pushes it away from b.
+    Anchor a{}, b{};  ///< gets −λ
     double length = 0;  ///< L ≥ 0, m
-    double stiffness = 0;
-    double damping = 0;
+    double stiffness = 0;  ///< k ≥ 0, N/m
+    double damping = 0;  ///< c ≥ 0, N·s/m
   };
 
   static constexpr auto refines = Bilateral<1>::refines | refine::check;

@@ -8,14 +8,16 @@
 
 namespace delassus {
 
-/// λ = −h (k (q + h u − q* − h s) + c (u − s)), |λ| ≤ h max_force: implicit Euler of a spring and a damper,
-/// stable for every k (N·m/rad or N/m), c (N·m·s/rad or N·s/m) and h. The target q* is that of the start of
-/// the step and moves at s = `speed`. Without a cap and with speed 0 a spring: `Drive<Turn>` beside a hinge,
-/// `Drive<Slide>` beside a slider.
+/// λ = −h (k (q + h u − q* − h s) + c (u − s)), |λ| ≤ h max_force. That is implicit Euler of a spring and a damper,
+/// stable for every k (N·m/rad or N/m), c (N·m·s/rad or N·s/m) and h. The target q* is that of the start of the step and
+/// moves at s = `speed`. Without a cap and with speed 0 it is a spring: `Drive<Turn>` beside a hinge, `Drive<Slide>`
+/// beside a slider.
 template <class Coordinate = inner::Absent>
 struct Drive : Bounded, OnAxis<Coordinate> {
+  /// One axis, where it shall be, and how hard it is drawn there.
   struct Item {
-    Anchor a, b;
+    /// Its z axis is the axis.
+    Anchor a{}, b{};  ///< is driven by λ > 0 to larger q
     double target = 0;                                           ///< q*, rad (over all turns) or m
     double stiffness = 0;                                        ///< k ≥ 0; one of k and c > 0
     double damping = 0;                                          ///< c ≥ 0
@@ -51,6 +53,7 @@ struct Drive : Bounded, OnAxis<Coordinate> {
 template <class Coordinate>
   requires(!AxisCoordinate<Coordinate>)
 struct Drive<Coordinate> {
+  /// Read by the checks, which refuse it.
   using no_coordinate = Coordinate;
 };
 

@@ -34,16 +34,15 @@ struct JointFrames {
   Vec3 b(int k) const { return column(B, k); }
 };
 
-/// Writes the rows of a joint between the ends a and b. Both act at x_b, so that the impulses of a row are
-/// opposite and have one line: they keep momentum and angular momentum exactly, whatever is left of the
-/// violation. A row's positive impulse pushes a along, or turns a about, an axis of a's frame. With x = x_a −
-/// x_b and ω = ω_a − ω_b:
+/// Writes the rows of a joint between the ends a and b. Both act at x_b, so that the impulses of a row are opposite and
+/// have one line: They keep momentum and angular momentum exactly, whatever is left of the violation. A row's positive
+/// impulse pushes a along, or turns a about, an axis of a's frame. With x = x_a − x_b and ω = ω_a − ω_b:
 ///
 ///   (a_i · x)˙   = a_i · (v_a − v_b) at x_b,
-///   (a_i · b_j)˙ = (a_i × b_j) · ω:
+///   (a_i · b_j)˙ = (a_i × b_j) · ω.
 ///
-/// both hold in every pose, closed or not, and are at most quadratic in the rotations, so that an implicit
-/// midpoint rule that takes them at the mean of the axes keeps them.
+/// Both hold in every pose, closed or not, and are at most quadratic in the rotations. An implicit midpoint rule that
+/// takes them at the mean of the axes therefore keeps them.
 template <class World, class Row>
 class JointRows : public JointFrames {
   using End = decltype(std::declval<Row&>().end(std::declval<const Anchor&>(), std::declval<const Vec3&>()));
@@ -67,8 +66,8 @@ class JointRows : public JointFrames {
     perpendicular(k, 1, 2);
     perpendicular(k + 1, 0, 2, -1);
   }
-  /// Rows k, k + 1, k + 2: the frames alike. φ_i = ½ (a_j · b_l − a_l · b_j), (i, j, l) cyclic: for b turned
-  /// against a by an angle θ about n it is −n_i sin θ, where closed about a_i.
+  /// Rows k, k + 1, k + 2: The frames alike. With φ_i = ½ (a_j · b_l − a_l · b_j), (i, j, l) cyclic. For b turned against a
+  /// by an angle θ about n it is −n_i sin θ, where closed about a_i.
   void alike(int k) {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, l = (i + 2) % 3;

@@ -15,14 +15,12 @@
 namespace delassus {
 
 /// q − lower ≥ 0 ⟂ λ_0 ≥ 0 and q − upper ≤ 0 ⟂ λ_1 ≤ 0 for q = `Turn` or `Slide`: `Limit<Turn>` on a hinge,
-/// `Limit<Slide>` on a slider. At most one acts, so that the two are solved exactly. An open stop lets the
-/// axis come to it within the step and no further; e = 0 takes the speed away, e > 0 gives the share e of it
-/// back.
+/// `Limit<Slide>` on a slider. At most one acts, so that the two are solved exactly. An open stop lets the axis come to it
+/// within the step and no further. With e = 0 the stop takes the speed away, with e > 0 it gives the share e of it back.
 ///
-/// A bound has a row only while it is nearer than `margin` (1 rad, 0.05 m) plus twice the way of the last
-/// step: one that is far costs nothing and does not weigh in the residual. Something that is hit and goes
-/// further than that in its first step passes the stop by that step's way, and is pushed back as from an
-/// overlap.
+/// A bound has a row only while it is nearer than `margin` (1 rad, 0.05 m) plus twice the way of the last step. One that is
+/// far costs nothing and does not weigh in the residual. Something that is hit and goes further than that in its first step
+/// passes the stop by that step's way, and is pushed back as from an overlap.
 template <class Coordinate = inner::Absent>
 struct Limit : OnAxis<Coordinate> {
   static constexpr int rows = 2;
@@ -30,10 +28,12 @@ struct Limit : OnAxis<Coordinate> {
   static constexpr auto refines = refine::check | refine::follow | refine::clamp | refine::natural_map | refine::tangent | refine::restitution;
   using overrides = Overrides<NewtonImpact>;
 
+  /// One axis and its stops.
   struct Item {
-    Anchor a, b;
+    /// Its z axis is the axis.
+    Anchor a{}, b{};  ///< is pushed by λ > 0 to larger q
     double lower = -std::numeric_limits<double>::infinity();  ///< rad or m
-    double upper = std::numeric_limits<double>::infinity();
+    double upper = std::numeric_limits<double>::infinity();  ///< rad or m, at least `lower`
     double restitution = 0;  ///< e in [0, 1]
     double margin = Coordinate::limit_margin;  ///< rad or m
     double position = 0;     ///< q at the start of the last step
@@ -103,6 +103,7 @@ struct Limit : OnAxis<Coordinate> {
 template <class Coordinate>
   requires(!AxisCoordinate<Coordinate>)
 struct Limit<Coordinate> {
+  /// Read by the checks, which refuse it.
   using no_coordinate = Coordinate;
 };
 

@@ -14,8 +14,10 @@ namespace delassus {
 /// holds what is below its cap.
 template <class Coordinate = inner::Absent>
 struct Motor : Bounded, OnAxis<Coordinate> {
+  /// One axis, its speed, and how strong it is.
   struct Item {
-    Anchor a, b;
+    /// Its z axis is the axis.
+    Anchor a{}, b{};  ///< is pushed by λ > 0 to larger q
     double speed = 0;                                            ///< rad/s or m/s
     double max_force = std::numeric_limits<double>::infinity();  ///< N·m or N
     double position = 0;  ///< of the axis at the start of the last step, rad over all turns or m
@@ -42,6 +44,7 @@ struct Motor : Bounded, OnAxis<Coordinate> {
 template <class Coordinate>
   requires(!AxisCoordinate<Coordinate>)
 struct Motor<Coordinate> {
+  /// Read by the checks, which refuse it.
   using no_coordinate = Coordinate;
 };
 

@@ -8,14 +8,16 @@
 
 namespace delassus {
 
-/// φ = (a_z · (x_a − x_b), a_y · b_z, −a_x · b_z): three rows; b moves along a_x and a_y and turns about a_z.
-/// λ is the force on a along a_z (N·s) and the moment on a about a_x and a_y (N·m·s), about x_b. Ranks are
-/// lost where those of `Hinge` are.
+/// φ = (a_z · (x_a − x_b), a_y · b_z, −a_x · b_z). Three rows: b moves along a_x and a_y and turns about a_z. The impulse λ
+/// is the force on a along a_z (N·s) and the moment on a about a_x and a_y (N·m·s), about x_b. Ranks are lost where those
+/// of `Hinge` are.
 struct Planar : Bilateral<3> {
   static constexpr std::array<int, 3> acts{2, 3, 4};  ///< see `Reaction`
 
+  /// Both ends need a frame.
   struct Item {
-    Anchor a, b;
+    /// a_z is normal to the plane.
+    Anchor a{}, b{};  ///< moves in it
   };
 
   static constexpr auto refines = Bilateral<3>::refines | refine::check;

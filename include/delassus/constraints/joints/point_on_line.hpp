@@ -8,14 +8,15 @@
 
 namespace delassus {
 
-/// φ = (a_x · (x_a − x_b), a_y · (x_a − x_b)): two rows; x_b is free along a_z and b turns as it likes, so
-/// that b may be a particle. λ is the force on a along a_x and a_y (N·s), which acts at x_b. No pose is
-/// singular.
+/// φ = (a_x · (x_a − x_b), a_y · (x_a − x_b)). Two rows: x_b is free along a_z and b turns as it likes, so that b may be a
+/// particle. The impulse λ is the force on a along a_x and a_y (N·s), which acts at x_b. No pose is singular.
 struct PointOnLine : Bilateral<2> {
   static constexpr std::array<int, 2> acts{0, 1};  ///< see `Reaction`
 
+  /// The first end needs a frame.
   struct Item {
-    Anchor a, b;
+    /// a_z is the line.
+    Anchor a{}, b{};  ///< the point on it
   };
 
   static constexpr auto refines = Bilateral<2>::refines | refine::check;

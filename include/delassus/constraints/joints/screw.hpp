@@ -9,13 +9,15 @@
 
 namespace delassus {
 
-/// φ = (a_x · (x_a − x_b), a_y · (x_a − x_b), a_y · b_z, −a_x · b_z, s − p θ/2π − phase): the rows of
-/// `Cylindrical`, and one more that couples s, how far b is along a_z, with θ, its turn about it over all
-/// turns; p > 0 is a right-handed thread. λ_4 pushes b along a_z with as many N·s and turns it back with p/2π
-/// of it (N·m·s). Ranks are lost where those of `Hinge` are.
+/// φ = (a_x · (x_a − x_b), a_y · (x_a − x_b), a_y · b_z, −a_x · b_z, s − p θ/2π − phase). These are the rows of
+/// `Cylindrical`, and one more. It couples s, how far b is along a_z, with θ, its turn about it over all turns. A pitch
+/// p > 0 is a right-handed thread. The impulse λ_4 pushes b along a_z with as many N·s and turns it back with p/2π of it
+/// (N·m·s). Ranks are lost where those of `Hinge` are.
 struct Screw : Bilateral<5> {
+  /// Both ends need a frame.
   struct Item {
-    Anchor a, b;
+    /// a_z is the axis.
+    Anchor a{}, b{};  ///< turns about it and moves along it
     double pitch = 1e-3;  ///< p, m a turn
     double phase = 0;     ///< s where θ is 0, m
     double position = 0;  ///< θ at the start of the last step, rad over all turns

@@ -8,14 +8,16 @@
 
 namespace delassus {
 
-/// φ = (a_x · (x_a − x_b), a_y · (x_a − x_b), ½ (a_j · b_l − a_l · b_j)): five rows; b moves freely along
-/// a_z. λ is the force on a along a_x and a_y (N·s) and the moment on a about x_b (N·m·s), in the axes of a's
-/// frame. Ranks are lost where those of `Weld` are.
+/// φ = (a_x · (x_a − x_b), a_y · (x_a − x_b), ½ (a_j · b_l − a_l · b_j)). Five rows: b moves freely along a_z. The impulse λ
+/// is the force on a along a_x and a_y (N·s) and the moment on a about x_b (N·m·s), in the axes of a's frame. Ranks are
+/// lost where those of `Weld` are.
 struct Slider : Bilateral<5> {
   static constexpr std::array<int, 5> acts{0, 1, 3, 4, 5};  ///< see `Reaction`
 
+  /// Both ends need a frame.
   struct Item {
-    Anchor a, b;
+    /// Its axes are those of the rows.
+    Anchor a{}, b{};  ///< moves along a_z
   };
 
   static constexpr auto refines = Bilateral<5>::refines | refine::check;

@@ -8,16 +8,17 @@
 
 namespace delassus {
 
-/// φ = (a_k · (x_a − x_b), a_x · b_y): four rows. The arms of the cross are a_x, on a, and b_y, on b; b turns
-/// freely about either, and not about a_x × b_y. Shafts along a_z and b_z turn each other; where they meet at
-/// a right angle (b_z = ±a_x) the shaft a cannot turn. λ is the force on a (N·s, axes of a's frame) and its
-/// moment about a_x × b_y (N·m·s) about x_b. The last row is lost only where the arms are parallel, which it
-/// forbids.
+/// φ = (a_k · (x_a − x_b), a_x · b_y). Four rows: The arms of the cross are a_x, on a, and b_y, on b. The end b turns
+/// freely about either, and not about a_x × b_y. Shafts along a_z and b_z turn each other; where they meet at a right
+/// angle (b_z = ±a_x) the shaft a cannot turn. The impulse λ is the force on a (N·s, axes of a's frame) and its moment
+/// about a_x × b_y (N·m·s) about x_b. The last row is lost only where the arms are parallel, which it forbids.
 struct Universal : Bilateral<4> {
   static constexpr std::array<int, 4> acts{0, 1, 2, 5};  ///< see `Reaction`
 
+  /// Both ends need a frame.
   struct Item {
-    Anchor a, b;
+    /// a_x is one arm of the cross.
+    Anchor a{}, b{};  ///< b_y is the other
   };
 
   static constexpr auto refines = Bilateral<4>::refines | refine::check;

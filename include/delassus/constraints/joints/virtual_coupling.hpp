@@ -10,14 +10,16 @@
 
 namespace delassus {
 
-/// φ = (x_a − x_b, θ), θ the vector of the turn that takes b's frame to a's; u = (v_a − v_b, ω_a − ω_b), all in world axes.
+/// φ = (x_a − x_b, θ), θ the vector of the turn that takes b's frame to a's. With u = (v_a − v_b, ω_a − ω_b), all in world
+/// axes,
 ///
-///   λ = −h (K (φ + h u) + C u),   K = diag(k 1, k_θ 1), C = diag(c 1, c_θ 1):
+///   λ = −h (K (φ + h u) + C u),   K = diag(k 1, k_θ 1), C = diag(c 1, c_θ 1).
 ///
-/// six soft rows of compliance 1/(h² k + h c), stable for any k, c ≥ 0 and any mass. The rows about axes take θ̇ for
+/// Six soft rows of compliance 1/(h² k + h c) are stable for any k, c ≥ 0 and any mass. The rows about axes take θ̇ for
 /// ω_a − ω_b, true to second order in θ. Both impulses act at the middle of the two anchors.
 /// Source: [ColgateStanleyBrown1995] for the coupling.
 struct VirtualCoupling : Bilateral<6> {
+  /// Both ends need an orientation.
   struct Item {
     Anchor a;                       ///< on the tool
     Anchor b;                       ///< on the device: a kinematic body, or a place in the world

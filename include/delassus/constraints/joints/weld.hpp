@@ -8,14 +8,16 @@
 
 namespace delassus {
 
-/// φ = (a_k · (x_a − x_b), ½ (a_j · b_l − a_l · b_j)), (k, j, l) cyclic: six rows, no free axis. λ is the
-/// force (N·s) and the moment (N·m·s) on a about x_b, in the axes of a's frame. The rows lose rank where b is
-/// turned by 90° or 180° against a; beyond 90° they pull to the half turn.
+/// φ = (a_k · (x_a − x_b), ½ (a_j · b_l − a_l · b_j)), (k, j, l) cyclic. Six rows, no free axis. The impulse λ is the force
+/// (N·s) and the moment (N·m·s) on a about x_b, in the axes of a's frame. The rows lose rank where b is turned by 90° or
+/// 180° against a; beyond 90° they pull to the half turn.
 struct Weld : Bilateral<6> {
   static constexpr std::array<int, 6> acts{0, 1, 2, 3, 4, 5};  ///< see `Reaction`
 
+  /// Both ends need a frame.
   struct Item {
-    Anchor a, b;
+    /// Its axes are those of the rows.
+    Anchor a{}, b{};  ///< its frame is held on that of a
   };
 
   static constexpr auto refines = Bilateral<6>::refines | refine::check;

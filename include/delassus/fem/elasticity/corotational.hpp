@@ -7,16 +7,21 @@
 
 namespace delassus {
 
-/// `Corotational` at one F a lane. Beside 2μ |dF|² and λ tr²(RᵀdF), ∂P/∂F has the turn of R: with a′ = R a,
+/// `Corotational` at one F a lane. Beside 2μ |dF|² and λ tr²(RᵀdF), ∂P/∂F has the turn of R. With a′ = R a,
 ///
-///   block(a, b) = 2μ a·b 1 + λ a′ b′ᵀ + [a′]ₓ Z [b′]ₓᵀ,   Z = Σ_k ½ (twist_k − 2μ) u_k u_kᵀ,
+///   block(a, b) = 2μ a·b 1 + λ a′ b′ᵀ + [a′]ₓ Z [b′]ₓᵀ,   Z = Σ_k ½ (twist_k − 2μ) u_k u_kᵀ.
 ///
-/// u_k the principal axes where the element is, twists cut at zero.
+/// Here u_k are the principal axes where the element is, and twists are cut at zero.
 struct CorotationalLanes {
-  LaneMatrix R, stress, turn;  ///< P and Z, Pa
-  Lanes lambda, two_mu;
+  /// @var R
+  /// The rotation next to F.
+  /// @var stress
+  /// P, Pa.
+  LaneMatrix R, stress, turn;  ///< Z, Pa
+  /// Lamé's λ, Pa.
+  Lanes lambda, two_mu;  ///< 2μ, Pa
 
-  /// All by the volume they act in, m³.
+  /// Multiplies P, Z, λ and 2μ by the volume they act in, m³.
   void integrate(const Lanes& volume) {
     for (LaneMatrix* A : {&stress, &turn})
       for (LaneVector& column : A->column) column = times(volume, column);
@@ -25,8 +30,12 @@ struct CorotationalLanes {
 
   /// Of a gradient g: g, λ R g, R g, and [R g]ₓ Z by columns.
   struct Pulled {
-    LaneVector gradient, stiff, turned;
-    LaneMatrix lever;
+    /// @var gradient
+    /// g, 1/m.
+    /// @var stiff
+    /// λ R g.
+    LaneVector gradient, stiff, turned;  ///< R g, 1/m
+    LaneMatrix lever;  ///< [R g]ₓ Z
   };
   Pulled pull(const LaneVector& g) const {
     Pulled p;
@@ -36,6 +45,7 @@ struct CorotationalLanes {
     for (int k = 0; k < 3; ++k) p.lever.column[k] = cross(p.turned, turn.column[k]);
     return p;
   }
+  /// The stiffness between two nodes, 3 × 3 a lane, by the formula above.
   LaneMatrix block(const Pulled& a, const Pulled& b) const {
     const Lanes along = two_mu * dot(a.gradient, b.gradient);
     LaneMatrix K;
@@ -53,7 +63,7 @@ struct CorotationalLanes {
 /// The last σ is signed, so that an element that is flat or inside out is pushed back by the same law.
 struct Corotational {
   double young = 1e5;  ///< Pa
-  double poisson = 0.3;
+  double poisson = 0.3;  ///< ν in (−1, ½)
 
   /// Of the stretches σ.
   static PrincipalState principal(const Lame& lame, const Vec3& sigma) {

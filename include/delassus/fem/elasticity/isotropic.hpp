@@ -5,15 +5,14 @@
 
 namespace delassus {
 
-/// Ψ(σ₀, σ₁, σ₂) with F = U diag(σ) Vᵀ, and what follows from it. `flip[k]` and `twist[k]` are the
-/// eigenvalues of ∂P/∂F for the modes that mix the two other directions i, j:
-///
-///   flip = (p_i − p_j)/(σ_i − σ_j),   twist = (p_i + p_j)/(σ_i + σ_j),   p_i = ∂Ψ/∂σ_i.
+/// Ψ(σ₀, σ₁, σ₂) with F = U diag(σ) Vᵀ, and what follows from it. With p_i = ∂Ψ/∂σ_i, `flip[k]` and `twist[k]`
+/// are the eigenvalues of ∂P/∂F for the modes that mix the two other directions i, j.
 struct PrincipalState {
   double energy = 0;            ///< J/m³
   Vec3 stress = Vec3::Zero();   ///< p, Pa
   Mat3 hessian = Mat3::Zero();  ///< ∂²Ψ/∂σ∂σ, Pa
-  Vec3 flip = Vec3::Zero(), twist = Vec3::Zero();
+  /// (p_i − p_j)/(σ_i − σ_j), Pa.
+  Vec3 flip = Vec3::Zero(), twist = Vec3::Zero();  ///< (p_i + p_j)/(σ_i + σ_j), Pa
 };
 
 /// P = U diag(p) Vᵀ, and ∂P/∂F by its modes: the three stretches, which the Hessian couples, and six that are
@@ -21,6 +20,7 @@ struct PrincipalState {
 /// [IrvingTeranFedkiw2004], [Smith2018].
 class IsotropicPoint {
  public:
+  /// Ψ and its derivatives at the stretches of F, and F's U and V.
   IsotropicPoint(const PrincipalState& state, const SingularValues& F)
       : U_(F.U), V_(F.V), energy_(state.energy), hessian_(positive_part(state.hessian)) {
     Mat3 Up = U_;
@@ -33,8 +33,8 @@ class IsotropicPoint {
     stress_ = Up * V_.transpose();
   }
 
-  double energy() const { return energy_; }
-  const Mat3& stress() const { return stress_; }
+  double energy() const { return energy_; }  ///< Ψ, J/m³
+  const Mat3& stress() const { return stress_; }  ///< P, Pa
   /// A gradient in the axes of the principal stretches.
   Vec3 pull(const Vec3& gradient) const { return V_.transpose() * gradient; }
   /// ∂P/∂F contracted with two of them.

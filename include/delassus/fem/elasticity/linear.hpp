@@ -9,20 +9,24 @@ namespace delassus {
 /// swell. Its stiffness is the same everywhere, so A is factored once and again only when the step or the
 /// fixed nodes change.
 struct Linear {
-  static constexpr bool has_constant_stiffness = true;
+  static constexpr bool has_constant_stiffness = true;  ///< read by soft bodies: K is made once
   double young = 1e5;  ///< Pa
-  double poisson = 0.3;
+  double poisson = 0.3;  ///< ν in (−1, ½)
 
+  /// Hooke's law at one F.
   class Point {
    public:
+    /// Keeps ε of F.
     Point(const Lame& lame, const Mat3& F)
         : lame_(lame), strain_(0.5 * (F + F.transpose().eval()) - Mat3::Identity().eval()) {}
+    /// Ψ, J/m³.
     double energy() const {
       const double t = strain_.trace();
       double sum = 0;
       for (int k = 0; k < 9; ++k) sum += strain_.data()[k] * strain_.data()[k];
       return lame_.mu * sum + 0.5 * lame_.lambda * t * t;
     }
+    /// P = 2μ ε + λ tr ε 1, Pa.
     Mat3 stress() const {
       Mat3 P = 2 * lame_.mu * strain_;
       for (int k = 0; k < 3; ++k) P(k, k) += lame_.lambda * strain_.trace();

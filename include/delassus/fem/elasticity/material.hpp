@@ -11,7 +11,9 @@ namespace delassus {
 
 /// Lamé's numbers, Pa: λ = E ν/((1 + ν)(1 − 2ν)), μ = E/(2(1 + ν)).
 struct Lame {
-  double lambda, mu;
+  /// λ, Pa.
+  double lambda, mu;  ///< μ, the modulus of shear, Pa
+  /// Of Young's modulus (Pa) and Poisson's ratio; λ is infinite for ν = ½.
   Lame(double young, double poisson)
       : lambda(young * poisson / ((1 + poisson) * (1 - 2 * poisson))), mu(young / (2 * (1 + poisson))) {}
   /// Those of strains in a sheet whose faces are free: λ = E ν/(1 − ν²).
@@ -22,13 +24,11 @@ struct Lame {
   }
 };
 
-/// A hyperelastic material. `at(F)` is what it says at one deformation gradient F = ∂x/∂X: the energy per
+/// A hyperelastic material. `at(F)` is what it says at one deformation gradient F = ∂x/∂X. That is the energy per
 /// volume at rest (J/m³), the first Piola–Kirchhoff stress P = ∂Ψ/∂F (Pa), and ∂P/∂F with its negative
-/// eigenvalues cut to zero, which
+/// eigenvalues cut to zero. The last is contracted with two gradients a, b (1/m) of shape functions:
 ///
-///   block(pull(a), pull(b))_ik = Σ_jl a_j (∂P_ij/∂F_kl) b_l
-///
-/// shows contracted with two gradients of shape functions.
+///   block(pull(a), pull(b))_ik = Σ_jl a_j (∂P_ij/∂F_kl) b_l.
 template <class M>
 concept ElasticMaterial = requires(const M material, const Mat3 F, const Vec3 a) {
   { material.young } -> std::convertible_to<double>;    // Young's modulus, Pa

@@ -9,19 +9,17 @@
 
 namespace delassus {
 
-/// No stress across the sheet, so that it thins as it is pulled. For a law of Hooke's kind, of two constants
-/// and quadratic in its strain, that is the same law of the two stretches in the sheet with
+/// No stress across the sheet, so that it thins as it is pulled. Of a law of Hooke's kind, with two constants
+/// and quadratic in its strain, that is again the same law. It takes the two stretches in the sheet, and
 ///
-///   λ ← E ν/(1 − ν²) = 2λμ/(λ + 2μ),   μ ← μ,
+///   λ ← E ν/(1 − ν²) = 2λμ/(λ + 2μ).
 ///
-/// which has a limit for ν = ½. Its `at` takes F = ∂x/∂X with the last column zero, X in the plane of the
-/// sheet. The tangent: that of the two stretches p, positive part; and across the sheet, along its normal n,
-/// what tension holds,  p_i/σ_i n nᵀ ⊗ V_i V_iᵀ, where p_i > 0: a sheet that is pressed is free to fold.
-/// A law names its derivatives by `principal(lame, σ)`: `Corotational`, `StVenantKirchhoff`.
+/// This has a limit for ν = ½. A law names its derivatives by `principal(lame, σ)`: `Corotational`,
+/// `StVenantKirchhoff`.
 template <ElasticMaterial M>
 struct PlaneStress {
   double young = M{}.young;  ///< Pa
-  double poisson = M{}.poisson;
+  double poisson = M{}.poisson;  ///< ν in (−1, ½]
   double bending = 1;  ///< of the stiffness that a solid sheet has, E t³/(12(1 − ν²)); what is woven has less
 
   static constexpr bool may_keep_volume = true;  ///< ν = ½
@@ -29,6 +27,9 @@ struct PlaneStress {
     inner::expect_not_negative(who + ": the share of bending", bending);
   }
 
+  /// F = ∂x/∂X has a last column of zeros; X lies in the plane of the sheet.
+  /// The tangent is the positive part of that of the two stretches. Across the sheet, along its normal n, it is
+  /// what tension holds:  p_i/σ_i n nᵀ ⊗ V_i V_iᵀ, where p_i > 0. A sheet that is pressed is free to fold.
   IsotropicPoint at(const Mat3& F) const {
     const SingularValues f = stretches(F);
     PrincipalState s;

@@ -10,7 +10,7 @@ namespace delassus {
 /// E/(3√3) there, and it does not come back from inside out: for tests and for tension.
 struct StVenantKirchhoff {
   double young = 1e5;  ///< Pa
-  double poisson = 0.3;
+  double poisson = 0.3;  ///< ν in (−1, ½)
 
   /// Of the stretches x.
   static PrincipalState principal(const Lame& lame, const Vec3& x) {

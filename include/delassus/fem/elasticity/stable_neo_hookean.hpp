@@ -7,12 +7,12 @@
 
 namespace delassus {
 
-/// Ψ = μ/2 (I − 3) + λ/2 (J − α)² − μ/2 ln(I + 1),  I = Σσ_i², J = det F, α = 1 + 3μ/(4λ), less its value at
-/// rest. μ and λ are 4/3 and λ + 5/6 μ of Lamé's, so that small strains follow Hooke's law. No logarithm of
-/// J: finite for every F. Source: [Smith2018].
+/// Ψ = μ/2 (I − 3) + λ/2 (J − α)² − μ/2 ln(I + 1), less its value at rest. Here I = Σσ_i², J = det F and
+/// α = 1 + 3μ/(4λ). With Lamé's λ_L and μ_L, μ is 4/3 μ_L and λ is λ_L + 5/6 μ_L, so that small strains follow
+/// Hooke's law. No logarithm of J: finite for every F. Source: [Smith2018].
 struct StableNeoHookean {
   double young = 1e5;  ///< Pa
-  double poisson = 0.3;
+  double poisson = 0.3;  ///< ν in (−1, ½)
 
   IsotropicPoint at(const Mat3& F) const {
     const Lame lame(young, poisson);

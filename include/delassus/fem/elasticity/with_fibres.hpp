@@ -17,7 +17,7 @@ namespace delassus {
 template <ElasticMaterial M>
 struct WithFibres {
   double young = M{}.young;  ///< of M, Pa
-  double poisson = M{}.poisson;
+  double poisson = M{}.poisson;  ///< ν of M
   Vec3 direction = unit_axis(0);  ///< unit, in the mesh's axes where it was put
   double fibres = 5;              ///< k/E
 
@@ -29,17 +29,21 @@ struct WithFibres {
                         " times Young's modulus, must be finite and >= 0");
   }
 
+  /// M's answer at one F, and the fibres' share of it.
   template <class Matrix>
   struct Point {
-    Matrix matrix;
+    Matrix matrix;  ///< M's alone
     Vec3 direction;  ///< a as `pull` shows it
     Vec3 along;      ///< F a
-    double k, excess;
-    Mat3 total;
+    /// Of the fibres, Pa.
+    double k, excess;  ///< (I₄ − 1)₊
+    Mat3 total;  ///< P with the fibres, Pa
 
+    /// Ψ with the fibres, J/m³.
     double energy() const { return matrix.energy() + 0.125 * k * excess * excess; }
-    const Mat3& stress() const { return total; }
+    const Mat3& stress() const { return total; }  ///< P with the fibres, Pa
     Vec3 pull(const Vec3& gradient) const { return matrix.pull(gradient); }
+    /// ∂P/∂F with the fibres, contracted with two gradients that `pull` has shown.
     Mat3 block(const Vec3& a, const Vec3& b) const {
       Mat3 B = matrix.block(a, b);
       if (!(excess > 0)) return B;
