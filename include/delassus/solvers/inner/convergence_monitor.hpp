@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace delassus::inner {
 
@@ -134,7 +135,7 @@ class ConvergenceMonitor {
                                    : report_.measure.residual < best_.residual))
       return;
     best_ = report_.measure;
-    if (start_ && !has_improved_) start_->swap(best_set_), has_improved_ = true;
+    if (start_ && !has_improved_) std::swap(*start_, best_set_), has_improved_ = true;
     problem_.save(best_set_);
     if (!(options_.error(best_) < 0.5 * mark_)) return;
     mark_ = options_.error(best_);
