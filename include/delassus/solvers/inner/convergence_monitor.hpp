@@ -163,7 +163,7 @@ class ConvergenceMonitor {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
 
-  const SolveOptions& options_;
+  const SolveOptions options_;
   Problem& problem_;
   Impulses& best_set_;
   Impulses* start_ = nullptr;
