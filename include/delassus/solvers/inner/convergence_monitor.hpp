@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace delassus::inner {
 
@@ -134,7 +135,7 @@ class ConvergenceMonitor {
                                    : report_.measure.residual < best_.residual))
       return;
     best_ = report_.measure;
-    if (start_ && !has_improved_) start_->swap(best_set_), has_improved_ = true;
+    if (start_ && !has_improved_) std::swap(*start_, best_set_), has_improved_ = true;
     problem_.save(best_set_);
     if (!(options_.error(best_) < 0.5 * mark_)) return;
     mark_ = options_.error(best_);
@@ -162,7 +163,7 @@ class ConvergenceMonitor {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr Measure unmeasured{.residual = infinity, .siconos = infinity, .worst = infinity};
 
-  const SolveOptions& options_;
+  const SolveOptions options_;
   Problem& problem_;
   Impulses& best_set_;
   Impulses* start_ = nullptr;
