@@ -159,6 +159,8 @@ def main():
     if a.undocumented:
         print("\n".join([*missing, f"site: {len(missing)} public names without a comment"]))
         return 1 if missing else 0
+    if (a.out / "doxygen.css").exists():  # an older site
+        shutil.rmtree(a.out)
     os.makedirs(a.out, exist_ok=True)
     mistakes = [*doxygen(a.out), *missing]
     mistakes += dead_links(a.out)

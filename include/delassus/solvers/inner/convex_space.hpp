@@ -119,17 +119,17 @@ class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
 
   /// How far the slips of the rows' λ are from those given, √Σ (|u_t| − s)²/w against √Σ |u|²/w.
   double slip_change(Island<T>& island) const {
-    double change = 0, whole = 0;
+    double moved = 0, whole = 0;
     T numbers[most_rows];
     double u[most_rows];
     for (const Constraint& c : constraints_) {
       island.velocity(*c.span, c.item, numbers);
       for (int k = 0; k < c.rows; ++k) u[k] = double(numbers[k]);
       const double apart = slip_of(c, u) - laws.slip[std::size_t(c.number)];
-      change += apart * apart / c.weight;
+      moved += apart * apart / c.weight;
       whole += square_of(u, c.rows) / c.weight;
     }
-    return std::sqrt(change / whole);
+    return std::sqrt(moved / whole);
   }
 
   /// Of λ(u), by W itself.
