@@ -62,6 +62,8 @@ def complaints(root):
             for before, shown in BLOCK.findall("\n" + text):
                 if not re.match(r"<!-- (from|part of) \S+ -->$", before):
                     yield f"{name}: no program is named above the block that begins with {shown.splitlines()[0].strip()!r}"
+        for word in re.findall(r"^[A-Z]+_[A-Z_]+$", text, re.MULTILINE):
+            yield f"{name}: {word} stands for a text that is not there yet"
         for target in LINK.findall(CODE.sub("", text)):
             if "://" not in target and not target.startswith("mailto:") and not (page.parent / target).exists():
                 yield f"{name}: the link to {target} leads nowhere"
@@ -86,6 +88,7 @@ def self_test():
         ("<!-- part of examples/a.cpp -->\n```cpp\nint main() {}\n```\n", None),
         ("<!-- part of examples/a.cpp -->\n```cpp\nint x;\n```\n", "is none"),
         ("<!-- part of examples/b.cpp -->\n```cpp\nint x;\n```\n", "does not exist"),
+        ("# A\n\nA_CAPTION\n", "not there yet"),
         ("text\n```cpp\nint x;\n```\n", "no program is named"),
     ]
     failures = 0

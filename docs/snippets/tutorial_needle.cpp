@@ -45,5 +45,7 @@ int main() {
   std::printf("tip at (%.1f, %.1f, %.1f) mm\n", 1e3 * tip.x(), 1e3 * tip.y(), 1e3 * tip.z());
   std::printf("the hand feels %.3f N, the needle is bent by %.2f mm\n", pull.norm(), 1e3 * bend);
 
-  write_replay_page("needle.html", "Needle", std::vector{loop.get<Recorder>().recording()});
+  Recording recording = loop.get<Recorder>().recording();
+  recording.bodies.back() = recorded_particle(1e-3);  // the last node begins no segment and would be a ball of 3 cm
+  write_replay_page("needle.html", "Needle", std::vector{recording});
 }

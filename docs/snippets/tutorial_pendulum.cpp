@@ -1,5 +1,5 @@
 // Tutorial: a motor lifts a pendulum against a stop, lets go, and the pendulum swings.
-// prints: half way: 0\.584 rad, motor 2\.70(.|\n)*at the stop: 1\.200 rad, motor 10\.00 N m, stop 5\.43
+// prints: at the stop: 1\.200 rad, motor 10\.00 N m, stop 5\.43
 #include <delassus/delassus.hpp>
 #include <delassus/io/recorder.hpp>
 #include <delassus/io/replay_page.hpp>

@@ -1,5 +1,5 @@
 // Tutorial: a soft block falls on a floor and comes to rest; the floor carries its weight.
-// prints: at rest
+// prints: at rest: shorter by 9\.5[0-9] mm, a bar in closed form 9\.81 mm, weight 78\.480 N
 #include <delassus/delassus.hpp>
 #include <delassus/fem/elasticity/corotational.hpp>
 #include <delassus/fem/tetrahedral_fem.hpp>

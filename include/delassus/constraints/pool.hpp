@@ -23,6 +23,8 @@ struct ConstraintHandle {
   Index index = -1;
   std::uint32_t generation = 0;
   std::uint32_t owner = 0;  ///< its pool's own number; copies of a loop share it
+
+  friend bool operator==(const ConstraintHandle&, const ConstraintHandle&) = default;
 };
 
 namespace inner {

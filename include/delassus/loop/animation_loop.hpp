@@ -64,6 +64,11 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
   ConstraintHandle<Law> constraint(Index place) const {
     return laws().template of<Law>().handle(place);
   }
+  /// Whether the constraint is there: neither removed nor broken, and this loop's.
+  template <class Law>
+  bool contains(ConstraintHandle<Law> constraint) const {
+    return laws().template of<Law>().contains(constraint);
+  }
   /// What a constraint was added with: its numbers may be changed at any time, its anchors may not.
   template <class Law>
   auto& item(ConstraintHandle<Law> constraint) {
