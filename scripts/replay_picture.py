@@ -4,8 +4,8 @@
     scripts/replay_picture.py PAGE.html PICTURE.png [--time 2.5] [--scene 1] [--size 800x450] [--keys ...]
 
 It opens a copy of the page in headless chromium. The address `#1/2.5` of a page names its scene and time.
-`--keys` are keys of the page, pressed before the picture is taken: `+` and `-` zoom, `w a s d` turn, `c` hides impulses, `x` is x-ray.
-The picture has 256 colours, so that it is small.
+`--keys` are keys of the page, pressed before the picture is taken: `+` and `-` zoom, `w a s d` turn, `c` hides
+impulses, `x` is x-ray. The picture has 256 colours, so that it is small.
 """
 import argparse
 import struct
@@ -16,7 +16,8 @@ import zlib
 from collections import Counter
 from pathlib import Path
 
-# What is no part of the scene is out of sight, and the scene fills the window. The page draws its plots all the same: they keep a size.
+# What is no part of the scene is out of sight, and the scene fills the window.
+# The page draws its plots all the same: they keep a size.
 STYLE = """<style>header, nav, footer, #tables, #transport, #toggles, #caption, #legend label { display: none !important }
 #plots { visibility: hidden }
 body { margin: 0 !important; padding: 0 !important; max-width: none !important }

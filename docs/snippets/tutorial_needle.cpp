@@ -41,7 +41,7 @@ int main() {
   const Vec3 pull = reaction(loop, grip).force;
   const Vec3 tip = rods.position(rods.node(needle, 15));
   for (const auto& c : loop.contacts())
-    std::printf("plate: %.4f N, %s, gap %.2e m\n", c.impulse.norm() / h, c.is_sliding ? "slides" : "sticks", c.record.gap);
+    std::printf("plate: %.4f N, %s\n", c.impulse.norm() / h, c.is_sliding ? "slides" : "sticks");
   std::printf("tip at (%.1f, %.1f, %.1f) mm\n", 1e3 * tip.x(), 1e3 * tip.y(), 1e3 * tip.z());
   std::printf("the hand feels %.3f N, the needle is bent by %.2f mm\n", pull.norm(), 1e3 * bend);
 
