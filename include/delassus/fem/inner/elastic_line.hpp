@@ -146,12 +146,11 @@ class ElasticLine {
     add(force_[e + 1], s.force[2], s.force[3]);
     if (!with_stiffness) return;
     const auto& K = s.K;
-    add(diagonal_[e], K[0][0], K[0][1], Mat3(K[0][1].transpose()), K[1][1]);
-    add(diagonal_[e + 1], K[2][2], K[2][3], Mat3(K[2][3].transpose()), K[3][3]);
+    add(diagonal_[e], K[0][0], K[0][1], transposed(K[0][1]), K[1][1]);
+    add(diagonal_[e + 1], K[2][2], K[2][3], transposed(K[2][3]), K[3][3]);
     // The second node's rows, the first one's columns.
     beside_[e].setZero();
-    add(beside_[e], Mat3(K[0][2].transpose()), Mat3(K[1][2].transpose()), Mat3(K[0][3].transpose()),
-        Mat3(K[1][3].transpose()));
+    add(beside_[e], transposed(K[0][2]), transposed(K[1][2]), transposed(K[0][3]), transposed(K[1][3]));
   }
   static void add(Velocity& to, const Vec3& force, const Vec3& moment) {
     for (int i = 0; i < 3; ++i) to[i] += T(force[i]), to[i + 3] += T(moment[i]);
