@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Makes what the front page of docs/ shows of the evidence: two pictures and a table.
+"""Makes what the front page of docs/ shows of the rest: two pictures of the evidence, and the list of pages.
 
-    scripts/front_page.py            writes docs/pictures/hard_cases.svg, docs/pictures/effects.svg and the table of docs/evidence/what_holds.md
+    scripts/front_page.py            writes docs/pictures/hard_cases.svg, docs/pictures/effects.svg, the table of docs/evidence/what_holds.md
+                                     and the list of docs/README.md
     scripts/front_page.py --check    exit code 1 if they are not what would be written; a test of the tree
 
 The pictures are of docs/evidence/ladders/peers.csv and of the table of docs/evidence/effects.md, the table is of docs/evidence/ladders.md.
@@ -12,8 +13,11 @@ import re
 import sys
 from pathlib import Path
 
+import build_site as site
+
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 MARKS = re.compile(r"(<!-- what holds -->\n).*?(<!-- end of what holds -->)", re.DOTALL)
+PAGES = re.compile(r"(<!-- pages -->\n).*?(<!-- end of pages -->)", re.DOTALL)
 ENGINES = ["delassus", "MuJoCo", "DART", "ODE", "Bullet"]
 ALL, SOME, NONE = "#2c7fb8", "#a6cfe3", "#f2ab7c"
 TEXT = 'font-family="sans-serif" fill="#333"'
@@ -107,15 +111,28 @@ def effects(page):
     return picture(left + 420, top + len(bars) * step + 12, parts)
 
 
+def all_pages():
+    """A line for each folder: its pages by their titles."""
+    lines = []
+    for folder, title in site.MENU.items():
+        pages = [f"[{site.title_of(page).replace('`', '')}]({page.relative_to(DOCS)})" for page in site.pages_in(folder)]
+        lines.append(f"- **{title}**: " + (" · ".join(pages) if folder != "decisions" else "[a question, a choice and its reasons each](decisions)"))
+    return "\n".join([*lines, "- **Sources**: [references](references.md)"]) + "\n"
+
+
 def made():
     """Path -> text of all that this writes."""
+    front = DOCS / "README.md"
+    list_of_pages, found = PAGES.subn(lambda m: m[1] + all_pages() + m[2], front.read_text(encoding="utf-8"))
+    if found != 1:
+        sys.exit(f"{front.name} has no marks for the list of pages")
     held = DOCS / "evidence/what_holds.md"
     text, found = MARKS.subn(lambda m: m[1] + table((DOCS / "evidence/ladders.md").read_text(encoding="utf-8")) + m[2], held.read_text(encoding="utf-8"))
     if found != 1:
         sys.exit(f"{held.name} has no marks for the table of what holds")
     with open(DOCS / "evidence/ladders/peers.csv", encoding="utf-8", newline="") as results:
         cases = hard_cases(list(csv.DictReader(results)))
-    return {held: text, DOCS / "pictures/hard_cases.svg": cases,
+    return {front: list_of_pages, held: text, DOCS / "pictures/hard_cases.svg": cases,
             DOCS / "pictures/effects.svg": effects((DOCS / "evidence/effects.md").read_text(encoding="utf-8"))}
 
 

@@ -53,7 +53,7 @@ delassus_tree_test(tree/docs_self_test ${Python3_EXECUTABLE} ${scripts}/check_do
 delassus_tree_test(tree/words ${Python3_EXECUTABLE} ${scripts}/check_words.py ${PROJECT_SOURCE_DIR})
 delassus_tree_test(tree/words_self_test ${Python3_EXECUTABLE} ${scripts}/check_words.py --self-test)
 if(DELASSUS_TEST_ALL)
-  delassus_tree_test(tree/site ${Python3_EXECUTABLE} ${scripts}/site.py --out ${PROJECT_BINARY_DIR}/site)
+  delassus_tree_test(tree/site ${Python3_EXECUTABLE} ${scripts}/build_site.py --out ${PROJECT_BINARY_DIR}/site)
 endif()
 
 delassus_tree_test(tree/front_page ${Python3_EXECUTABLE} ${scripts}/front_page.py --check)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Builds the site: the pages of docs/ in their order, and the API from the public headers.
 
-    scripts/site.py                  writes out/docs/index.html; exit code 1 at a warning of Doxygen, a dead link inside of the site, or a
+    scripts/build_site.py                  writes out/docs/index.html; exit code 1 at a warning of Doxygen, a dead link inside of the site, or a
                                      public name without a comment
-    scripts/site.py --out DIR        the same into another folder
-    scripts/site.py --undocumented   lists the public names without a comment, writes no site
+    scripts/build_site.py --out DIR        the same into another folder
+    scripts/build_site.py --undocumented   lists the public names without a comment, writes no site
 
 Public is what docs/site/Doxyfile reads. What a concept asks of a type is documented at the concept: docs/site/concepts.txt names
 these members, which need no comment of their own.
@@ -157,14 +157,14 @@ def main():
     a = parser.parse_args()
     missing = list(undocumented())
     if a.undocumented:
-        print("\n".join([*missing, f"site: {len(missing)} public names without a comment"]))
+        print("\n".join([*missing, f"build_site: {len(missing)} public names without a comment"]))
         return 1 if missing else 0
     if (a.out / "doxygen.css").exists():  # an older site
         shutil.rmtree(a.out)
     os.makedirs(a.out, exist_ok=True)
     mistakes = [*doxygen(a.out), *missing]
     mistakes += dead_links(a.out)
-    print("\n".join([*mistakes, f"site: {len(mistakes)} mistakes; open {a.out / 'index.html'}"]))
+    print("\n".join([*mistakes, f"build_site: {len(mistakes)} mistakes; open {a.out / 'index.html'}"]))
     return 1 if mistakes else 0
 
 
