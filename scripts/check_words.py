@@ -80,7 +80,7 @@ def repeats(said, name):
 
 
 def words_of(page, is_reference):
-    text = re.sub(r"<!--.*?-->|```.*?```", "", page, flags=re.DOTALL)
+    text = re.sub(r"<!-- pages -->.*<!-- end of pages -->|<!--.*?-->|```.*?```", "", page, flags=re.DOTALL)
     if is_reference:
         text = re.sub(r"^\|.*$", "", text, flags=re.MULTILINE)
     return len(re.findall(r"\w\S*", text))
