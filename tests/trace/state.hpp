@@ -7,6 +7,7 @@
 #include <delassus/loop/animation_loop.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -183,7 +184,8 @@ class Memory {
     text_.line("contact"), text_(e.pair), text_(e.feature), part(e.point), part(e.impulse);
     if (text_.reads()) e.is_taken = false;
   }
-  void part(Materials&) {}
+  template <std::derived_from<Materials> M>
+  void part(M&) {}
 
   // --- what sleeps
   // -------------------------------------------------------------------------------------------------
@@ -272,7 +274,7 @@ class Memory {
     for (E& e : list) part(e);
   }
   template <class X>
-  requires requires(X& x, Memory& m) { x.memory(m); }
+  requires(requires(X& x, Memory& m) { x.memory(m); } && !std::derived_from<X, Materials>)
   void part(X& x) { x.memory(*this); }
 
   Text &text_, &pairs_;

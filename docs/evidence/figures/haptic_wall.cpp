@@ -1,6 +1,6 @@
 // Draws docs/theory/haptic_wall.svg: a hand presses a tool on a stiff wall, with the force from ticks at 1 kHz and with the force of
 // the loop at 30 Hz. The runs are those of the tests.
-#include "../../tests/haptics/wall.hpp"
+#include "../../../tests/haptics/wall.hpp"
 
 #include <cstdio>
 

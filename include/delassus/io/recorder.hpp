@@ -22,12 +22,12 @@ namespace inner {
 /// What a step was asked for: by its scheme, else by the solver if there is one to ask; 0 if nobody.
 template <class Loop>
 double tolerance_of(const Loop& loop) {
-  if constexpr (requires { loop.template policy<role::Scheme>().tolerance; })
+  if constexpr (requires { loop.template policy<role::Scheme>().tolerance; }) {
     return loop.template policy<role::Scheme>().tolerance;
-  else if constexpr (requires { loop.island_reports(), loop.template policy<role::Solver>().tolerance; })
-    return loop.template policy<role::Solver>().tolerance;
-  else
-    return 0;
+  } else if constexpr (requires { loop.island_reports(); }) {  // else there is no solver to look at
+    if constexpr (requires { loop.template policy<role::Solver>().tolerance; }) return loop.template policy<role::Solver>().tolerance;
+  }
+  return 0;
 }
 
 }  // namespace inner
