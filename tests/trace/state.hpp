@@ -176,7 +176,8 @@ class Memory {
 
   // --- contacts
   // ----------------------------------------------------------------------------------------------------
-  void part(ContactCache& book) {
+  template <std::derived_from<ContactCache> Cache>
+  void part(Cache& book) {
     text_.line("contacts");
     book.memory(*this);
   }
@@ -274,7 +275,7 @@ class Memory {
     for (E& e : list) part(e);
   }
   template <class X>
-  requires(requires(X& x, Memory& m) { x.memory(m); } && !std::derived_from<X, Materials>)
+  requires(requires(X& x, Memory& m) { x.memory(m); } && !std::derived_from<X, Materials> && !std::derived_from<X, ContactCache>)
   void part(X& x) { x.memory(*this); }
 
   Text &text_, &pairs_;
