@@ -15,7 +15,7 @@ import tempfile
 import textwrap
 from pathlib import Path
 
-SHOWN = re.compile(r"(<!-- from (\S+) -->\n```cpp\n)(.*?)(```)", re.DOTALL)
+SHOWN = re.compile(r"(<!-- from (\S+) -->\n```(?:cpp|xml)\n)(.*?)(```)", re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 PART = re.compile(r"<!-- part of (\S+) -->\n```cpp\n(.*?)```", re.DOTALL)
 BLOCK = re.compile(r"([^\n]*)\n```(?:cpp|c\+\+)\n(.*?)```", re.DOTALL)
