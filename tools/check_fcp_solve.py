@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Runs fcp_solve as a user would: check_fcp_solve.py PROGRAM. What it prints, writes and returns is checked."""
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -48,9 +49,33 @@ def main():
         bad.write_text(SLIPS.replace("0.5", "-0.5"))
         status, _, error = run(program, bad)
         expect(status == 2 and f"{bad}, line 3: friction -0.5 must be >= 0" in error, f"a bad file: {status} {error}")
-        status, text, _ = run(program, "--help")
-        expect(status == 0 and text.startswith("usage: fcp_solve FILE"), f"--help: {status} {text}")
-        for words, reason in (([], "usage"), ([problem, "--solver", "magic"], "'magic'"), ([problem, "--tolerance", "x"], "'x'"),
+        # The eigenvalues of [[1, 2], [2, 1]] are 3 and −1.
+        apart = "1 2 0 2 1 0 0 0 1"
+        twice = SLIPS.replace("1 1\n", "1 2\n", 1) + "0 0 1 0 0 0 1 0 0 0 1\n"
+        for text, line, reason in ((SLIPS.replace("1 0 0 0 1 0 0 0 1", apart), 5, "indefinite"),
+                                   (SLIPS.replace("1 0 0 0 1 0 0 0 1", "1 0.5 0 0 1 0 0 0 1"), 5, "symmetric"),
+                                   (twice, 6, "given twice, first on line 5")):
+            bad.write_text(text)
+            status, _, error = run(program, bad)
+            expect(status == 2 and f"{bad}, line {line}: " in error and reason in error, f"a bad file: {status} {error}")
+        status, text, error = run(program, problem, bad, Path(folder, "none.fcp"), problem)
+        expect(status == 2 and [row.split()[2] for row in text.splitlines()[1:]] == ["converged"] * 2,
+               f"good files beside bad ones: {status} {text}")
+        expect(f"{bad}, line 6" in error and "none.fcp" in error, f"each bad file is told: {error}")
+        # λ = 0 has Siconos' error 1/√(1 + μ²)/√5 = 4e-4 for μ = 1000, and all of the penetration.
+        steep = Path(folder, "steep.fcp")
+        steep.write_text(SLIPS.replace("0.5", "1000"))
+        for stop in ("err", "err_s", "both"):
+            for solver in ("accelerated", "plain", "path"):
+                status, _, _ = run(program, steep, "--tolerance", "1e-3", "--stop", stop, "--solver", solver, "--out", out)
+                normal = float(out.read_text().split()[0])
+                expect(status == 0 and 1 - normal <= 1e-3 * 5 ** 0.5, f"{stop}, {solver}: no penetration, u_n = {normal - 1}")
+        for word in ("--help", "-h"):
+            status, text, _ = run(program, word)
+            expect(status == 0 and text.startswith("usage: fcp_solve FILE"), f"{word}: {status} {text}")
+        status, text, _ = run(program, "--version")
+        expect(status == 0 and re.fullmatch(r"fcp_solve \d+\.\d+\.\d+\n", text), f"--version: {status} {text}")
+        for words, reason in (([], "usage"), ([problem, "--solver", "magic"], "'magic'"), ([problem, "--tolerance", "x"], "'x'"), ([problem, "--tolerance", "inf"], "'inf'"),
                               ([problem, "--stop", "no"], "'no'"), ([problem, "--nothing", "1"], "--nothing")):
             status, _, error = run(program, *words)
             expect(status == 2 and reason in error, f"{words}: {status} {error}")

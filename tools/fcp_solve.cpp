@@ -2,15 +2,19 @@
 //
 //   fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|path|plain] [--warm FILE] [--out FILE]
 //             [--save FILE] [--time-limit S]
+//   fcp_solve --help | --version
 //
 // err is Siconos' error, err_s the scale-free one; by default both must be within the tolerance. `build` is the own blocks'
 // factors and the workspace, `solve` the median of repeated solves, both in ms of this thread's processor time; the limit, 10 s a solve, is of the wall clock. --warm starts
 // from a file of impulses, --out writes them, --save the problem; all three go with one problem. Files named .hdf5 or .h5 are in the
 // form of FCLIB, where the tool is built with HDF5: `fcp_solve a.fcp --save a.hdf5` turns one form into the other.
 //
-// Exit status 1 when a problem did not reach the tolerance, 2 when the arguments or a file are wrong.
+// A file that is wrong is told on standard error, with its line, and the others are solved. Exit status 1 when a problem did not
+// reach the tolerance, 2 when the arguments or a file are wrong.
 #include "read_any.hpp"
 
+#include <delassus/core/cmath.hpp>
+#include <delassus/core/expect.hpp>
 #include <delassus/io/problem_file.hpp>
 #include <delassus/problems/friction_problem.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
@@ -18,6 +22,7 @@
 #include <delassus/solvers/law_set.hpp>
 #include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/with_deadline.hpp>
+#include <delassus/version.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -44,12 +49,14 @@ struct Options {
   std::vector<std::string> files;
   double tolerance = 1e-8, time_limit = 10;
   std::string solver = "accelerated", stop = "both", warm, out, save;
-  bool asks_help = false;
+  const char* asks = nullptr;  ///< what is printed, and no more
 };
 
+const std::string version_text =
+    "fcp_solve " + std::to_string(version.major) + '.' + std::to_string(version.minor) + '.' + std::to_string(version.patch);
 constexpr const char* usage =
     "usage: fcp_solve FILE... [--tolerance 1e-8] [--stop err|err_s|both] [--solver accelerated|path|plain] "
-    "[--warm FILE] [--out FILE] [--save FILE] [--time-limit S]";
+    "[--warm FILE] [--out FILE] [--save FILE] [--time-limit S], or fcp_solve --help, or fcp_solve --version";
 
 struct Result {
   SolveReport report;
@@ -105,7 +112,6 @@ Result run_named(FrictionProblem& problem, const Options& o, Criterion criterion
   if (o.solver == "path")
     return run(problem, PathNewton{.tolerance = o.tolerance, .max_iterations = no_limit, .max_sweeps = no_limit, .criterion = criterion},
                o.time_limit);
-  DELASSUS_EXPECT(o.solver == "accelerated", "--solver '" + o.solver + "' is none of 'accelerated', 'path' and 'plain'");
   return run(problem,
              AcceleratedSweeps{.tolerance = o.tolerance, .max_iterations = no_limit, .min_iterations = 0, .criterion = criterion},
              o.time_limit);
@@ -115,20 +121,19 @@ Options parse(int count, char** words) {
   Options o;
   for (int k = 1; k < count; ++k) {
     const std::string word = words[k];
-    if (word.rfind("--", 0) != 0) {
+    if (word.rfind("-", 0) != 0) {
       o.files.push_back(word);
       continue;
     }
-    if (word == "--help") {
-      o.asks_help = true;
-      return o;
-    }
+    if (word == "--help" || word == "-h") o.asks = usage;
+    if (word == "--version") o.asks = version_text.c_str();
+    if (o.asks) return o;
     DELASSUS_EXPECT(k + 1 < count, word + " needs a value");
     const std::string value = words[++k];
     const auto positive = [&] {
       char* end = nullptr;
       const double number = std::strtod(value.c_str(), &end);
-      DELASSUS_EXPECT(*end == 0 && !value.empty() && number > 0, word + " '" + value + "' must be a number > 0");
+      DELASSUS_EXPECT(*end == 0 && !value.empty() && number > 0 && std::isfinite(number), word + " '" + value + "' must be a finite number > 0");
       return number;
     };
     if (word == "--tolerance") o.tolerance = positive();
@@ -141,6 +146,9 @@ Options parse(int count, char** words) {
     else inner::refuse("there is no option " + word);
   }
   DELASSUS_EXPECT(!o.files.empty(), usage);
+  DELASSUS_EXPECT(o.solver == "accelerated" || o.solver == "path" || o.solver == "plain",
+                  "--solver '" + o.solver + "' is none of 'accelerated', 'path' and 'plain'");
+  DELASSUS_EXPECT(o.stop == "err" || o.stop == "err_s" || o.stop == "both", "--stop '" + o.stop + "' is none of err, err_s, both");
   DELASSUS_EXPECT(o.files.size() == 1 || (o.warm.empty() && o.out.empty() && o.save.empty()),
                   "--warm, --out and --save go with one problem");
   return o;
@@ -151,7 +159,6 @@ bool solve_file(const std::string& file, const Options& o) {
   if (!o.save.empty()) write_any(o.save, problem);
   auto& lambda = problem.rows.pool<0>().lambda;
   if (!o.warm.empty()) lambda = read_impulses(o.warm, Index(lambda.size()));
-  DELASSUS_EXPECT(o.stop == "err" || o.stop == "err_s" || o.stop == "both", "--stop '" + o.stop + "' is none of err, err_s, both");
   const Result r = run_named(problem, o, o.stop == "err" ? Criterion::siconos_error : o.stop == "err_s" ? Criterion::residual : Criterion::both_errors);
   std::printf("%-40s %4d %-14s %9.2e %9.2e %8d %3d %9.4f %10.4f %s\n", name_of(file).c_str(), int(lambda.size()),
               name(r.report.status), r.report.measure.siconos, r.report.measure.residual, r.report.sweeps, r.report.factorizations, 1e3 * r.build,
@@ -165,15 +172,22 @@ bool solve_file(const std::string& file, const Options& o) {
 
 int main(int count, char** words) try {
   const Options o = parse(count, words);
-  if (o.asks_help) {
-    std::puts(usage);
+  if (o.asks) {
+    std::puts(o.asks);
     return 0;
   }
   std::printf("%-40s %4s %-14s %9s %9s %8s %3s %9s %10s %s\n", "problem", "nc", "status", "err", "err_s", "sweeps", "fac",
               "build ms", "solve ms", "ended by");
-  bool all = true;
-  for (const std::string& file : o.files) all = solve_file(file, o) && all;
-  return all ? 0 : 1;
+  int status = 0;
+  for (const std::string& file : o.files) {
+    try {
+      if (!solve_file(file, o)) status = std::max(status, 1);
+    } catch (const InvalidArgument& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      status = 2;
+    }
+  }
+  return status;
 } catch (const InvalidArgument& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;

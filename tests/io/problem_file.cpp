@@ -114,6 +114,23 @@ TEST_CASE("impulses are written and read back to the bit") {
                       "delassus: guess, line 4: the file goes on after the impulses of 1 contacts");
 }
 
+// [[1, w], [w, 1]] has the eigenvalues 1 ± w. Six digits make an eigenvalue that is zero one of −1e-6.
+TEST_CASE("a file whose W is indefinite is refused at the contact that makes it so") {
+  const auto file = [](const std::string& own, const std::string& between) {
+    return "fcp 1 sym\n3 4\n0.5 0.5 0.5\n-1 0 0\n-1 0 0\n-1 0 0\n0 0 1 0 0 0 1 0 0 0 1\n1 1 " + own + "\n2 1 " + between +
+           " 0 0 0 0 0 0 0 0\n2 2 1 0 0 0 1 0 0 0 1\n";
+  };
+  const std::string unit = "1 0 0 0 1 0 0 0 1";
+  REQUIRE_NOTHROW(parse_problem(file(unit, "0.99"), "W.fcp"));
+  REQUIRE_NOTHROW(parse_problem(file(unit, "-1.000001"), "W.fcp"));
+  REQUIRE_THROWS_WITH(parse_problem(file(unit, "1.01"), "W.fcp"),
+                      Catch::Contains("W.fcp, line 10: W of contacts 0 to 2 is indefinite"));
+  REQUIRE_THROWS_WITH(parse_problem(file("1 2 0 2 1 0 0 0 1", "0"), "W.fcp"),
+                      Catch::Contains("W.fcp, line 8: W of contacts 0 to 1 is indefinite"));
+  // Of a W that is not symmetric its symmetric part is asked.
+  REQUIRE_NOTHROW(parse_problem("fcp 1 gen\n1 1\n0.5\n-1 0 0\n0 0 1 9 0 -9 1 0 0 0 1\n", "W.fcp"));
+}
+
 TEST_CASE("bad problem files are refused with file, line and reason") {
   const auto refusal = [](const std::string& text) -> std::string {
     try {
@@ -138,7 +155,12 @@ TEST_CASE("bad problem files are refused with file, line and reason") {
   REQUIRE(refusal(with(two, "1 0 0.1", "1 2 0.1")).find("line 8: '2' is no whole number from 0 to 1") !=
           std::string::npos);
   REQUIRE(refusal(with(two, "1 0 0.1", "1 1 0.1")) ==
-          at + "9: the diagonal block of contact 1 is given twice");
+          at + "8: block (1, 1) is given twice, first on line 7; take one of them out");
+  REQUIRE(refusal(with(with(two, "2 3", "2 4"), "1 0 0.1", "1 0 0 0 0 0 0 0 0 0 0\n1 0 0.1")) ==
+          at + "9: block (1, 0) is given twice, first on line 8; take one of them out");
+  const std::string symmetric = with(two, "gen", "sym");
+  REQUIRE(refusal(symmetric) == at + "6: W_10 of contact 0 is 0.2 and W_01 is 0.1, but a file of the form 'sym' is symmetric; "
+                                     "write 'gen' if W is not");
   REQUIRE(refusal(with(two, "1 1 5", "1 0 5")).find("line 9: the diagonal block of contact 1 is missing") != std::string::npos);
   REQUIRE(refusal(with(two, "1 1 5", "1 1 0")) == at + "7: W_00 of contact 1 is 0 and must be > 0");
   REQUIRE(refusal(with(two, " 0.9\n", "\n")) ==

@@ -4,6 +4,7 @@
 #include <delassus/adapters/hdf5_file.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/problems/definiteness.hpp>
 #include <delassus/problems/friction_problem.hpp>
 
 #include <algorithm>
@@ -120,6 +121,8 @@ inline FrictionProblem read_fclib(const std::string& path) {
     const std::string sentence = error.what();
     in.expect(false, sentence.substr(sentence.rfind(": ") + 2));
   }
+  const Index indefinite = first_indefinite_contact(p);
+  in.expect(indefinite < 0, "W of contacts 0 to " + std::to_string(indefinite) + " is indefinite: some impulses do negative work, λᵀ W λ < 0");
   if (in.has("/guesses") && in.has("/guesses/1")) p.rows.pool<0>().lambda = in.vectors("/guesses/1/r", n);
   return p;
 }

@@ -3,8 +3,10 @@
 
 #include <delassus/io/inner/text.hpp>
 #include <delassus/io/inner/text_reader.hpp>
+#include <delassus/problems/definiteness.hpp>
 #include <delassus/problems/friction_problem.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <span>
@@ -21,9 +23,49 @@ namespace delassus {
 //   NC NB                    contacts, blocks that follow
 //   μ_1 … μ_NC
 //   q_n q_t1 q_t2            NC lines, m/s
-//   i j w00 w01 … w22        NB lines, from 0, 3 × 3 row by row, 1/kg; every diagonal block is there
+//   i j w00 w01 … w22        NB lines, from 0, 3 × 3 row by row, 1/kg; every diagonal block is there, none
+//                          twice, and no impulse does negative work, λᵀ W λ ≥ 0
 //
 // A file of impulses (the guess of a warm start, or a solution): 3 NC numbers, N·s.
+
+namespace inner {
+
+/// Where a block of a file stands.
+struct PlaceOfBlock {
+  Index row, column;
+  int line;
+};
+
+/// Refuses the later of two blocks that have one place. Leaves the places sorted.
+inline void refuse_repeats(std::vector<PlaceOfBlock>& places, const TextReader& in) {
+  std::sort(places.begin(), places.end(), [](const PlaceOfBlock& a, const PlaceOfBlock& b) {
+    return a.row != b.row ? a.row < b.row : a.column != b.column ? a.column < b.column : a.line < b.line;
+  });
+  const PlaceOfBlock* twice = nullptr;
+  int first = 0;
+  for (std::size_t k = 1; k < places.size(); ++k)
+    if (places[k].row == places[k - 1].row && places[k].column == places[k - 1].column && (!twice || places[k].line < twice->line))
+      twice = &places[k], first = places[k - 1].line;
+  if (twice)
+    in.refuse_at(twice->line, "block (" + std::to_string(twice->row) + ", " + std::to_string(twice->column) +
+                                  ") is given twice, first on line " + std::to_string(first) + "; take one of them out");
+}
+
+/// W_ii as it stands in a file: a diagonal > 0, and symmetric to rounding where W is.
+inline void expect_own_block(const GivenBlock& own, bool is_symmetric, const TextReader& in) {
+  const std::string of = " of contact " + std::to_string(own.row) + " is ";
+  for (int k = 0; k < 3; ++k)
+    if (!(own.block(k, k) > 0))
+      in.refuse_here("W_" + std::to_string(k) + std::to_string(k) + of + text(own.block(k, k)) + " and must be > 0");
+  if (!is_symmetric) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < i; ++j)
+      if (std::abs(own.block(i, j) - own.block(j, i)) > 1e-5 * std::max(own.block(i, i), own.block(j, j)))
+        in.refuse_here("W_" + std::to_string(i) + std::to_string(j) + of + text(own.block(i, j)) + " and W_" + std::to_string(j) +
+                       std::to_string(i) + " is " + text(own.block(j, i)) + ", but a file of the form 'sym' is symmetric; write 'gen' if W is not");
+}
+
+}  // namespace inner
 
 /// The problem that `text` holds; `path` is what a refusal calls it. λ is zero.
 inline FrictionProblem parse_problem(std::string_view text, const std::string& path) {
@@ -45,29 +87,34 @@ inline FrictionProblem parse_problem(std::string_view text, const std::string& p
   }
   for (Index i = 0; i < n; ++i) q.push_back(in.vector("a velocity"));
   std::vector<GivenBlock> blocks;
+  std::vector<inner::PlaceOfBlock> places;
   for (Index b = 0; b < count; ++b) {
     GivenBlock given;
     given.row = in.integer("the row of a block", 0, n - 1);
     given.column = in.integer("the column of a block", 0, is_symmetric ? given.row : n - 1);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) given.block(i, j) = in.number("an entry of a block");
-    if (given.row == given.column)
-      for (int k = 0; k < 3; ++k)
-        if (!(given.block(k, k) > 0))
-          in.refuse_here("W_" + std::to_string(k) + std::to_string(k) + " of contact " +
-                         std::to_string(given.row) + " is " + inner::text(given.block(k, k)) +
-                         " and must be > 0");
+    if (given.row == given.column) inner::expect_own_block(given, is_symmetric, in);
+    places.push_back({given.row, given.column, in.line()});
     blocks.push_back(given);
     if (is_symmetric && given.row != given.column)
       blocks.push_back({given.column, given.row, Mat3(given.block.transpose())});
   }
   if (!in.is_at_end()) in.refuse_here("the file goes on after its last block");
+  inner::refuse_repeats(places, in);
+  FrictionProblem p;
   try {
-    return make_friction_problem(friction, q, blocks);
+    p = make_friction_problem(friction, q, blocks);
   } catch (const InvalidArgument& error) {
     const std::string sentence = error.what();
     in.refuse_here(sentence.substr(sentence.rfind(": ") + 2));
   }
+  if (const Index k = first_indefinite_contact(p); k >= 0)
+    for (const inner::PlaceOfBlock& place : places)
+      if (place.row == k && place.column == k)
+        in.refuse_at(place.line, "W of contacts 0 to " + std::to_string(k) + " is indefinite: some impulses do negative work, λᵀ W λ < 0, " +
+                                     "as those of bodies never do; are rows and columns of the blocks as the form says?");
+  return p;
 }
 
 /// The 3 · `contacts` impulses that `text` holds.

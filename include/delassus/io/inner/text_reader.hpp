@@ -74,8 +74,11 @@ class TextReader {
     return value;
   }
 
-  [[noreturn]] void refuse_here(const std::string& reason) const {
-    refuse(path_ + ", line " + std::to_string(line_) + ": " + reason);
+  /// The line that the last word stands on.
+  int line() const { return line_; }
+  [[noreturn]] void refuse_here(const std::string& reason) const { refuse_at(line_, reason); }
+  [[noreturn]] void refuse_at(int line, const std::string& reason) const {
+    refuse(path_ + ", line " + std::to_string(line) + ": " + reason);
   }
 
  private:
