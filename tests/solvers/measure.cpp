@@ -1,6 +1,17 @@
 #include "scenes.hpp"
 
+#include <delassus/constraints/contact/pyramid.hpp>
+#include <delassus/constraints/contact/rolling_coulomb.hpp>
+#include <delassus/problems/friction_problem.hpp>
+#include <delassus/problems/reference_check.hpp>
+#include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/gauss_seidel.hpp>
+#include <delassus/solvers/measure.hpp>
+#include <delassus/solvers/path_newton.hpp>
+
 #include "catch.hpp"
+
+#include <limits>
 
 namespace measure_tests {
 
@@ -30,7 +41,8 @@ Errors errors(const Eigen::MatrixXd& W, const Eigen::VectorXd& q, const Eigen::V
     tilde[0] += mu * tilde.tail<2>().norm();
     const Vec3 x = r.segment<3>(i);
     plain += (x - euclidean_projection(x - tilde, mu)).squaredNorm();
-    scaled += (w * x - euclidean_projection(w * x - tilde, mu)).squaredNorm();
+    const double closing = std::min(0.0, u[i]);
+    scaled += std::max((w * x - euclidean_projection(w * x - tilde, mu)).squaredNorm(), closing * closing);
   }
   const double velocity = std::max(q.norm(), u.norm());
   return {std::sqrt(plain) / std::max(velocity, r.norm()), std::sqrt(scaled) / velocity};
@@ -122,6 +134,125 @@ TEST_CASE("the residual does not change when all masses or all velocities are sc
   for (auto& x : problem.rows.pool<0>().lambda) x *= size;
   for (auto& x : problem.rows.pool<0>().d) x *= size;
   REQUIRE(solve(problem, only_measure).measure.residual == Approx(before.residual).epsilon(1e-14));
+}
+
+namespace {
+
+/// One contact, W = w 1, from the impulse λ.
+FrictionProblem one_contact(double friction, const Vec3& q, double w = 1, const Vec3& lambda = Vec3::Zero()) {
+  FrictionProblem p = make_friction_problem({friction}, {q}, {{0, 0, Mat3(w * Mat3::Identity())}});
+  p.rows.pool<0>().lambda[0] = lambda;
+  return p;
+}
+
+/// What a box that comes down at 1 m/s beside a slip of 2 m/s has before it is solved, and after.
+template <class Law>
+void sees_penetration(const Law& law) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact<Law>{law}}, GaussSeidel{.tolerance = 1e-3, .max_iterations = 0, .min_iterations = 0}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  set.set_velocity(set.add({.position = {0, 0, 0.5}, .mass = 1.0, .shape = Box{1, 1, 1}}), {2, 0, -1}, {0, 0, 0});
+  loop.step(1e-3);
+  auto problem = loop.problem();
+  const SolveReport before = solve(problem, GaussSeidel{.tolerance = 1e-3, .max_iterations = 0, .min_iterations = 0});
+  CHECK(before.status == Status::max_iterations);
+  CHECK(before.measure.closing > 0.4);  // 1/√5 of each velocity
+  CHECK(before.measure.residual >= before.measure.closing);
+  const SolveReport after = solve(problem, AcceleratedGaussSeidel{.tolerance = 1e-3, .min_iterations = 0});
+  CHECK(after.status == Status::converged);
+  CHECK(after.measure.closing <= 1e-3);
+}
+
+}  // namespace
+
+// By hand: at λ = 0, −ũ = (1 − 2 μ, −2, 0) is outside of the polar cone by 1, so that |F| = 1/√(1 + μ²) and the errors are that
+// over |q| = √5: 4e-4 for μ = 1000, though the contact goes on at 1 m/s. The solution is λ = (1, −2, 0), u = 0.
+TEST_CASE("a contact that goes on into the other body is not solved, however steep its cone is") {
+  const Vec3 q(-1, 2, 0);
+  for (const double mu : {1e3, 1e4, 1e6}) {
+    CAPTURE(mu);
+    auto at_rest = one_contact(mu, q);
+    const Measure m = solve(at_rest, only_measure).measure;
+    CHECK(m.siconos == Approx(1 / std::sqrt(1 + mu * mu) / std::sqrt(5)).epsilon(1e-6));
+    CHECK(m.closing == Approx(1 / std::sqrt(5)).epsilon(1e-14));
+    CHECK(m.residual == m.closing);
+    const auto ends_right = [&](const auto& solver) {
+      auto p = one_contact(mu, q);
+      CHECK(solve(p, solver).status == Status::converged);
+      const Vec3 u = p.rows.pool<0>().lambda[0] + q;
+      CHECK(u[0] >= -1e-3 * std::sqrt(5));
+    };
+    for (const Criterion criterion : {Criterion::residual, Criterion::siconos_error, Criterion::both_errors}) {
+      ends_right(GaussSeidel{.tolerance = 1e-3, .min_iterations = 0, .criterion = criterion});
+      ends_right(AcceleratedGaussSeidel{.tolerance = 1e-3, .min_iterations = 0, .criterion = criterion});
+      ends_right(PathNewton{.tolerance = 1e-3, .criterion = criterion});
+    }
+    ends_right(GaussSeidel{.tolerance = 1e-3, .min_iterations = 0, .criterion = Criterion::last_change});
+  }
+}
+
+TEST_CASE("what goes on into a contact is seen under every contact law") {
+  sees_penetration(Coulomb{.friction = 1e4});
+  sees_penetration(RollingCoulomb{.friction = 1e4, .rolling_friction = 0.1});
+  sees_penetration(Pyramid{.friction = 1e4});
+  sees_penetration(Frictionless{});
+}
+
+// |λ| of a heavy contact does not hide what a light one does, though Siconos' measure is divided by it: 1/10⁴ here.
+TEST_CASE("by Siconos' criterion a light contact beside a heavy one is solved too") {
+  FrictionProblem p = make_friction_problem({0.5, 0.5}, {Vec3(-1, 0, 0), Vec3(-1, 0, 0)},
+                                            {{0, 0, Mat3(1e-4 * Mat3::Identity())}, {1, 1, Mat3(Mat3::Identity())}});
+  p.rows.pool<0>().lambda[0] = Vec3(1e4, 0, 0);
+  auto start = p;
+  CHECK(solve(start, only_measure).measure.siconos == Approx(1e-4));
+  CHECK(solve(p, GaussSeidel{.tolerance = 1e-3, .min_iterations = 0, .criterion = Criterion::siconos_error}).status == Status::converged);
+  CHECK(p.rows.pool<0>().lambda[1][0] == Approx(1));
+}
+
+// ũ_n = u_n + μ |u_t|: where the contact sticks, |u_t| is rounding of the size ε w |λ|, and the map μ times that.
+TEST_CASE("a contact that sticks in a very steep cone stalls at its rounding") {
+  auto p = one_contact(1e12, {-1, 2, 0.3}, 3, {0.33, -0.7, -0.09});
+  const SolveReport r = solve(p, AcceleratedGaussSeidel{.tolerance = 1e-12});
+  CHECK(r.status <= Status::stalled);
+  CHECK(r.measure.closing <= 1e-15);
+}
+
+// The squares of 10¹⁵⁵ and of 10⁻¹⁶⁵ are no numbers, those of 10¹⁵⁰ are.
+TEST_CASE("velocities whose squares are no numbers are a status, and no error is NaN") {
+  const auto report = [](double size, const auto& solver) {
+    auto p = one_contact(0.5, {-size, 2 * size, 0});
+    const SolveReport r = solve(p, solver);
+    CAPTURE(size);
+    CHECK(!std::isnan(r.measure.residual));
+    CHECK(!std::isnan(r.measure.siconos));
+    CHECK(!std::isnan(r.measure.closing));
+    return r.status;
+  };
+  const auto statuses = [&](const auto& solver) {
+    for (const double size : {1.1e154, 1e155, 1e200, 8e307}) CHECK(report(size, solver) == Status::quarantined);
+    for (const double size : {1e-155, 1e-165, 1e-300}) CHECK(report(size, solver) == Status::stalled);
+    for (const double size : {1e-60, 1e150}) CHECK(report(size, solver) == Status::converged);
+    CHECK(report(0, solver) == Status::converged);
+  };
+  for (const int least : {0, 1}) {
+    statuses(GaussSeidel{.min_iterations = least});
+    statuses(AcceleratedGaussSeidel{.min_iterations = least});
+  }
+  for (const double size : {1e155, 1e200, 1e-165}) CHECK(report(size, PathNewton{}) != Status::converged);
+}
+
+// λ of 10²⁰⁰ N·s from W = 10⁻²⁰⁰/kg: |λ|² is no number, though both velocities are.
+TEST_CASE("an impulse whose square is no number does not make Siconos' measure vanish") {
+  auto p = one_contact(0.5, {-1, 0, 0}, 1e-200, {5e199, 0, 0});
+  const SolveReport r = solve(p, GaussSeidel{.max_iterations = 0, .min_iterations = 0, .criterion = Criterion::siconos_error});
+  CHECK(r.status != Status::converged);
+  CHECK(r.measure.residual == Approx(0.5));
+}
+
+TEST_CASE("rounding that hides a tenth of the motion is no end") {
+  CHECK(Measure{.residual = 1e-3, .floor = 1e-2}.is_at_floor());
+  CHECK(!Measure{.residual = 1e-3, .floor = 1e-4}.is_at_floor());
+  CHECK(!Measure{.residual = 1e-3, .floor = 0.5}.is_at_floor());
 }
 
 }  // namespace measure_tests

@@ -21,8 +21,9 @@ namespace delassus {
 /// rows would do without it is b = u − W λ (m/s), so that their velocity becomes u = W λ + b. The present λ is no argument.
 ///
 /// A law that keeps something per item between sweeps says `template <class T> struct Memory`, and then it is
-/// solve_local(item, W, b, Memory<T>&). With `bilateral` all rows are equalities, `kinds` says one RowKind a row. What else
-/// a law has it declares in `refines`: see `constraints/refinements.hpp`.
+/// solve_local(item, W, b, Memory<T>&). With `bilateral` all rows are equalities, `kinds` says one RowKind a row. Rows whose
+/// velocity is in rad/s are bits of `static constexpr unsigned turns`; the errors of others count in m/s. What else a law has
+/// it declares in `refines`: see `constraints/refinements.hpp`.
 ///
 /// For Newton's method, tangent(item, local) is `solve_local` for a W that is diagonal, friction rows alike. It replaces
 /// local.lambda by the impulse that meets the law and returns −∂λ/∂d at it, rows × rows. An element of the generalised

@@ -17,7 +17,7 @@ namespace refine {
 enum Refinement : unsigned {
   prepare = 1 << 0,           ///< void prepare(const Mat<R, R, T>& W, Memory<T>&), or prepare(item, W, h, Memory<T>&): once a step and W
   clamp = 1 << 1,             ///< void clamp(item, Vec<R, T>& λ [, const Memory<T>&]): into its cone; in a contact without memory
-  natural_map = 1 << 2,       ///< Vec<R, T> natural_map(item, λ, u, T scale): s λ − P(s λ − ũ), zero where λ and u meet the law
+  natural_map = 1 << 2,       ///< Vec<R, T> natural_map(item, λ, u, T scale [, T of_turns]): s λ − P(s λ − ũ), zero where λ and u meet the law; s in rows in m/s [and in those in rad/s]
   natural_squares = 1 << 3,   ///< Vec<2, T> natural_squares(item, λ, u, T scale): its square at `scale` and at 1
   tangent = 1 << 4,           ///< Mat<R, R> tangent(item, Local<R>& c [, const Memory<T>&]): see `constraints/law.hpp`
   convex_tangent = 1 << 5,    ///< Mat<R, R> convex_tangent(item, Local<R>& c, double slip)

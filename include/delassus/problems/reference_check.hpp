@@ -8,6 +8,7 @@
 #include <delassus/math/positive.hpp>
 #include <delassus/solvers/gauss_seidel.hpp>
 #include <delassus/solvers/inner/convex_newton.hpp>
+#include <delassus/solvers/inner/row_weights.hpp>
 #include <delassus/solvers/measure.hpp>
 #include <delassus/solvers/path_newton.hpp>
 #include <delassus/solvers/problem.hpp>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace delassus {
@@ -28,7 +30,7 @@ namespace delassus {
 struct ReferenceDifference {
   int pool = -1;        ///< number of its law; −1: there is no constraint
   Index item = -1;      ///< the item-th rows of the pool; −1: there is no constraint
-  double velocity = 0;  ///< |u − u*|, u = d + W λ, m/s or rad/s
+  double velocity = 0;  ///< |u − u*|, u = d + W λ, m/s, turns at the length of `Measure`
   double impulse = 0;   ///< |λ − λ*|, N·s or N·m·s; not unique
   double energy = 0;    ///< ½ (u − u*)ᵀ W_ii⁻¹ (u − u*), J
   double residual = 0;  ///< |F| of λ, m/s; see `Measure`
@@ -60,14 +62,17 @@ struct ReferenceCheck {
 
 namespace inner {
 
-/// f(p, i, |F|) for every constraint of every island.
+/// f(p, i, |F|, L) for every constraint of every island, L the island's length.
 template <class Laws, class Rows, class Operator, class F>
 void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
   LawSet<Laws, typename Rows::Scalar> book(problem.laws);
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);
-  for (Index k = 0; k < problem.islands.count(); ++k)
-    each_item<decltype(problem.rows)::pool_count>(problem.islands, k, [&](auto p, Index i) { f(p, i, book.natural_error(p, i)); });
+  NoObserver nobody;
+  for (Index k = 0; k < problem.islands.count(); ++k) {
+    const double length = IslandProblem(book, problem.rows, problem.W, problem.islands, k, problem.h, nobody).length();
+    each_item<decltype(problem.rows)::pool_count>(problem.islands, k, [&](auto p, Index i) { f(p, i, book.natural_error(p, i, length), length); });
+  }
 }
 
 /// Of the λ in the problem, the worst island's.
@@ -79,8 +84,8 @@ Measure measure_of(Problem<Laws, Rows, Operator>& problem) {
 /// ½ uᵀ W⁻¹ u, W lifted by rounding's share where it is singular; a u that is no number counts most.
 template <int R, class T>
 double energy_of(const Mat<R, R, T>& W, const Vec<R, T>& u) {
-  const T lift = T(64) * std::numeric_limits<T>::epsilon() * trace(W);
-  const Mat<R, R, T> lifted = W + lift * Mat<R, R, T>::Identity();
+  Mat<R, R, T> lifted = W;
+  for (int k = 0; k < R; ++k) lifted(k, k) += T(64 * R) * std::numeric_limits<T>::epsilon() * W(k, k);
   const double energy = 0.5 * double(u.dot(inverse_of_positive(lifted) * u));
   return std::isfinite(energy) ? energy : std::numeric_limits<double>::infinity();
 }
@@ -139,14 +144,15 @@ ReferenceCheck check_against_reference(const Problem<Laws, Rows, Operator>& prob
     const Measure end = inner::measure_of(other);
     check.reached = check.reference.status == Status::converged && end.residual <= tolerance + end.floor;
 
-    inner::each_local(mine, [&](auto p, Index i, double residual) {
+    inner::each_local(mine, [&](auto p, Index i, double residual, double) {
       check.constraints.push_back({.pool = int(p), .item = i, .residual = residual});
     });
     std::size_t next = 0;
-    inner::each_local(other, [&](auto p, Index i, double residual) {
+    inner::each_local(other, [&](auto p, Index i, double residual, double length) {
       ReferenceDifference& difference = check.constraints[next++];
       const auto apart = (mine.W.template residual<p>(mine.rows, i) - other.W.template residual<p>(other.rows, i)).eval();
-      difference.velocity = double(apart.norm());
+      using Law = std::remove_cvref_t<decltype(mine.laws.template pool<p>().law)>;
+      difference.velocity = std::sqrt(inner::square_of<turning_rows<Law>()>(inner::load<Rows::template rows_of<p>>(apart.data()), length));
       difference.energy = inner::energy_of(other.W.template diagonal<p>(i), apart);
       difference.impulse = double((mine.rows.template pool<p>().lambda[i] - other.rows.template pool<p>().lambda[i]).norm());
       difference.reference_residual = residual;

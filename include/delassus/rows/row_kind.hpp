@@ -26,7 +26,17 @@ constexpr std::array<RowKind, Law::rows> row_kinds() {
   }
 }
 
+/// Bit k: row k is in rad/s and its impulse in N·m·s, by the law's own `turns`. The others are in m/s and N·s.
+template <class Law>
+constexpr unsigned turning_rows() {
+  if constexpr (requires { Law::turns; }) return Law::turns & (~0u >> (most_rows - Law::rows));
+  else return 0;
+}
+
 namespace inner {
+
+/// Whether some of so many rows turn, and not all.
+constexpr bool are_mixed(int rows, unsigned turns) { return turns != 0 && turns != ~0u >> (most_rows - rows); }
 
 template <std::size_t rows>
 constexpr bool are_equalities(const std::array<RowKind, rows>& kinds) {

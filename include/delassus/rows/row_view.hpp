@@ -1,7 +1,9 @@
 /// The rows of one pool and their part of W as plain arrays: what solvers and the loops of laws read, whatever they were built by.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/rows/row_kind.hpp>
 
 #include <cstddef>
 
@@ -49,6 +51,7 @@ template <class T>
 struct RowView {
   int pool = 0, rows = 0;
   Index items = 0;
+  unsigned turns = 0;  ///< see `turning_rows`
   T *lambda = nullptr, *d = nullptr, *bias = nullptr;
   const T *compliance = nullptr, *relative_compliance = nullptr;
   const T *diagonal = nullptr;    ///< W_ii, compliance included
@@ -61,6 +64,7 @@ struct RowView {
   const CrowdedRow* crowded = nullptr;
   FunctionsOfW<T> functions{};
 
+  bool turn(int k) const { return turns >> k & 1; }
   bool is_matrix() const { return form <= FormOfW::blocks; }
   const T* own_block(Index i) const { return diagonal + std::ptrdiff_t(rows) * rows * i; }
   T trace(Index i) const {
@@ -69,8 +73,26 @@ struct RowView {
     for (int k = 1; k < rows; ++k) sum += own[k * (rows + 1)];
     return sum;
   }
-  /// w = tr(W_ii)/rows, 1/kg.
+  /// w = tr(W_ii)/rows, of rows that have one unit: 1/kg or 1/(kg m²).
   double weight(Index i) const { return double(trace(i)) / rows; }
+  /// w of each row: the mean W_kk of the rows in its unit. What Σ w_k λ_k² says is an energy, J, in any unit of length.
+  void weights(Index i, double* w) const {
+    if (!inner::are_mixed(rows, turns)) {
+      const double all = weight(i);
+      for (int k = 0; k < rows; ++k) w[k] = all;
+      return;
+    }
+    const T* own = own_block(i);
+    double sum[2] = {};
+    int count[2] = {};
+    for (int k = 0; k < rows; ++k) sum[turn(k)] += double(own[k * (rows + 1)]), ++count[turn(k)];
+    for (int k = 0; k < rows; ++k) w[k] = sum[turn(k)] / count[turn(k)];
+  }
+  /// √w of each row.
+  void roots_of_weights(Index i, double* roots) const {
+    weights(i, roots);
+    for (int k = 0; k < rows; ++k) roots[k] = k > 0 && !inner::are_mixed(rows, turns) ? roots[0] : std::sqrt(roots[k]);
+  }
 };
 
 }  // namespace delassus

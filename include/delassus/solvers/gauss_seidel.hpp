@@ -54,13 +54,13 @@ struct GaussSeidel {
         ++report.sweeps;
         is_over = report.sweeps == max_iterations || (report.sweeps >= min_iterations && problem.is_out_of_time());
       }
-      if (is_measured || problem.observes_sweeps()) report.measure = problem.measure();
-      else report.measure.last_change = problem.last_change(), report.measure.worst_change = problem.worst_change();
+      report.measure.last_change = problem.last_change(), report.measure.worst_change = problem.worst_change();
+      report.measure.sinking = 0;
+      // Changes are compared first: a measure costs a sweep.
+      if (is_measured || problem.observes_sweeps() || is_over || limits.is_within(report.measure, rows)) report.measure = problem.measure();
       problem.notify(report.sweeps, report.measure);
     }
-    const bool is_within = limits.is_within(report.measure, rows);
-    if (!is_measured) report.measure = problem.measure();
-    report.status = is_within ? Status::converged : limits.verdict(report.measure, rows);
+    report.status = limits.verdict(report.measure, rows);
     return report;
   }
 };

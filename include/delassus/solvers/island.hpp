@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/solvers/inner/length_of_island.hpp>
 #include <delassus/solvers/inner/solve_timer.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
@@ -43,6 +44,7 @@ class Island {
   /// `spans` stay where they are as long as the island is used.
   Island(const Span<T>* spans, int count, Index island, double h) : spans_(spans), count_(count), island_(island), h_(h) {
     take(spans, count);
+    length_ = inner::length_of_island(begin(), end());
   }
 
   const Span<T>* begin() const { return spans_; }
@@ -51,6 +53,8 @@ class Island {
   Index island() const { return island_; }
   double h() const { return h_; }
   int row_count() const { return rows_; }
+  /// See `Measure`, m; of a part that of the whole.
+  double length() const { return length_; }
 
   /// The island with other spans, or another W in them, as a part of this one's solve: who is asked for the time is the whole,
   /// and nobody hears of its sweeps.
@@ -70,7 +74,7 @@ class Island {
   double sweep(const SweepRule& rule = {}) { return sweep(rule, nullptr, nullptr); }
   /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
   double sweep(const SweepRule& rule, const T* x, double* curvature) {
-    Sweep<T> sums{.relaxation = T(rule.relaxation), .tells_change = rule.tells_change};
+    Sweep<T> sums{.relaxation = T(rule.relaxation), .tells_change = rule.tells_change, .length = length_};
     for (Pass pass(*this); pass.next();) {
       if (x) sums.x = x + pass.row();
       const LawTable<T>& law = *pass.span->pool->table;
@@ -85,11 +89,12 @@ class Island {
   }
 
   Measure measure() {
-    MeasureSums sums;
+    MeasureSums sums{.length = length_};
     for (Pass pass(*this); pass.next();) pass.span->pool->table->measure(*pass.span, sums);
-    Measure m = sums.finish(double(std::numeric_limits<T>::epsilon()));
+    Measure m = sums.has_vanished() && moves() ? Measure::of_nothing() : sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
     m.worst_change = worst_change_;
+    m.sinking = h_ * std::sqrt(sums.closing);
     return limits() ? timer_->judge(m, *this) : m;
   }
 
@@ -181,14 +186,15 @@ class Island {
       for (const Index i : span) assign(span, i, nothing);
   }
 
-  /// The numbers √w_i λ_i of all constraints, in order; `to` has as many.
+  /// The numbers √w_k λ_k of all rows, in order; `to` has as many.
   void gather(Array<double>& to) const {
     std::size_t at = 0;
     for (const Span<T>& span : *this)
       for (const Index i : span) {
-        const double root = root_of_weight(span, i);
+        double root[most_rows];
+        span.pool->roots_of_weights(i, root);
         const T* lambda = impulse(span, i);
-        for (int k = 0; k < span.pool->rows; ++k) to[at++] = root * double(lambda[k]);
+        for (int k = 0; k < span.pool->rows; ++k) to[at++] = root[k] * double(lambda[k]);
       }
   }
   /// The way back, each λ_i brought into its law's cone.
@@ -197,8 +203,9 @@ class Island {
     T next[most_rows];
     for (const Span<T>& span : *this)
       for (const Index i : span) {
-        const double root = root_of_weight(span, i);
-        for (int k = 0; k < span.pool->rows; ++k, ++at) next[k] = root > 0 ? T(from[at] / root) : T(0);
+        double root[most_rows];
+        span.pool->roots_of_weights(i, root);
+        for (int k = 0; k < span.pool->rows; ++k, ++at) next[k] = root[k] > 0 ? T(from[at] / root[k]) : T(0);
         clamp(span, i, next);
         assign(span, i, next);
       }
@@ -207,7 +214,22 @@ class Island {
   /// λ_i, `rows` numbers.
   static const T* impulse(const Span<T>& span, Index i) { return span.pool->lambda + std::ptrdiff_t(span.pool->rows) * i; }
   static const T* free_of_impulses(const Span<T>& span, Index i) { return span.pool->d + std::ptrdiff_t(span.pool->rows) * i; }
-  static double root_of_weight(const Span<T>& span, Index i) { return std::sqrt(span.pool->weight(i)); }
+  /// Σ w_k x_k² of the rows of one item.
+  static double energy(const Span<T>& span, Index i, const T* x) {
+    double w[most_rows], sum = 0;
+    span.pool->weights(i, w);
+    for (int k = 0; k < span.pool->rows; ++k) sum += w[k] * double(x[k]) * double(x[k]);
+    return sum;
+  }
+  /// |u|² of one item, (m/s)².
+  double square_of_velocity(const Span<T>& span, const T* u) const {
+    double sum = 0;
+    for (int k = 0; k < span.pool->rows; ++k) {
+      const double x = (span.pool->turn(k) ? length_ : 1) * double(u[k]);
+      sum += x * x;
+    }
+    return sum;
+  }
   /// λ_i ← next, and W is told.
   static void assign(const Span<T>& span, Index i, const T* next) {
     const PoolView<T>& pool = *span.pool;
@@ -235,6 +257,7 @@ class Island {
     rows_ = 0;
     for (const Span<T>& span : *this) rows_ += span.pool->rows * int(span.count);
   }
+  double length_ = 1;
 
  private:
   /// One pass over all items: a span a pool, or pieces of it between which the clock is looked at.
@@ -272,6 +295,17 @@ class Island {
     Span<T> piece_;
   };
 
+  /// Whether some velocity is not zero, whatever its square is.
+  bool moves() const {
+    T u[most_rows];
+    for (const Span<T>& span : *this)
+      for (const Index i : span) {
+        velocity(span, i, u);
+        for (int k = 0; k < span.pool->rows; ++k)
+          if (u[k] != 0 || free_of_impulses(span, i)[k] != 0) return true;
+      }
+    return false;
+  }
   /// Whether work ends at a deadline.
   bool limits() const { return timer_ && !is_part_; }
 

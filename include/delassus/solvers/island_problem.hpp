@@ -55,6 +55,7 @@ class IslandProblem : public Island<typename Rows::Scalar> {
       if (const std::span<const Index> items = islands.items(p, island); !items.empty())
         spans_[count++] = {&book.view(p), items.data(), Index(items.size())};
     this->take(spans_, count);
+    this->length_ = inner::length_of_island(this->begin(), this->end());
     if constexpr (!std::is_same_v<Observer, NoObserver>) this->set_observer(inner::show_observer<T>(observer));
   }
   IslandProblem(const IslandProblem&) = delete;

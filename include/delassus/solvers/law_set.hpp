@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/pack.hpp>
 #include <delassus/core/slice.hpp>
+#include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/show_rows.hpp>
 #include <delassus/solvers/inner/functions_of_w.hpp>
@@ -26,6 +27,7 @@ void show_law(const Law& law, const void* items, const Index* places, void* memo
   view.table = &LawLoops<Law, T>::table;
   if constexpr (needs != Needs::sweeps && refines<Law>(refine::tangent)) view.tangent = &LawTangents<Law, T>::tangent;
   if constexpr (needs == Needs::convex_tangents && refines<Law>(refine::tangent)) view.convex_tangent = &LawTangents<Law, T>::convex_tangent;
+  view.turns = turning_rows<Law>();
   view.law = &law;
   view.law_items = items;
   view.places = places;
@@ -72,10 +74,10 @@ class LawSet<Constraints<Laws...>, T, needs> {
   const PoolView<T>& view(int pool) const { return views_[pool]; }
   inner::Slice<const PoolView<T>> views() const { return {views_, pools}; }
 
-  /// |F_i| of item i of a pool: of its natural map at w_i.
-  double natural_error(int pool, Index i) const {
+  /// |F_i| of item i of a pool, m/s, as `Measure` sums it: `length` is its island's.
+  double natural_error(int pool, Index i, double length) const {
     const PoolView<T>& view = views_[pool];
-    MeasureSums sums;
+    MeasureSums sums{.length = length};
     view.table->measure({&view, &i, 1}, sums);
     return std::sqrt(sums.residual);
   }

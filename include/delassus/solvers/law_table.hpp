@@ -58,12 +58,13 @@ struct Span {
   const Index* end() const { return items + count; }
 };
 
-/// How a sweep is made, and sums over the items it visits: Σ w |Δλ|², Σ w Δλ·(λ − x), Σ w |Δλ| and the largest w |Δλ|.
+/// How a sweep is made, and sums over the items it visits: Σ w |Δλ|², Σ w Δλ·(λ − x), Σ |w Δλ| and the largest |w Δλ|, m/s.
 template <class T>
 struct Sweep {
   T relaxation = 1;
   const T* x = nullptr;  ///< λ of the span's items one after the other, from before; null: `along` is nobody's
   bool tells_change = false;
+  double length = 1;  ///< see `Measure`, m: for rows that turn
   double energy = 0, along = 0, displacement = 0, most = 0;
 };
 
@@ -86,8 +87,8 @@ struct LawTable {
   void (*changed)(const PoolView<T>&, Index i, const T* change);
   /// u_i = (d + W λ)_i.
   void (*velocity)(const PoolView<T>&, Index i, T* u);
-  /// What an item with velocity u and impulse λ of its own adds to the measure, its weight being w.
-  void (*add_share)(const PoolView<T>&, Index i, T w, const T* u, const T* lambda, MeasureSums&);
+  /// What an item with velocity u and impulse λ of its own adds to the measure.
+  void (*add_share)(const PoolView<T>&, Index i, const T* u, const T* lambda, MeasureSums&);
   /// μ of a round cone; null where the law is none.
   double (*friction)(const PoolView<T>&, Index i);
 };

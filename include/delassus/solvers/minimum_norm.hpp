@@ -119,16 +119,16 @@ struct MinimumNorm {
       double d = 0, moved = 0;
       for (const Span<T>& span : problem)
         for (const Index i : span) {
-          d += square_of(problem.free_of_impulses(span, i), span.pool->rows);
+          d += problem.square_of_velocity(span, problem.free_of_impulses(span, i));
           problem.velocity(span, i, u);
-          moved += square_of(u, span.pool->rows);
+          moved += problem.square_of_velocity(span, u);
         }
       const double small = 10 * std::max(measure.residual, measure.floor) * std::sqrt(std::max(d, moved));
       work.search.how.clear();
       for (const Span<T>& span : problem)
         for (const Index i : span) {
           problem.velocity(span, i, u);
-          Held how = std::sqrt(square_of(u, span.pool->rows)) <= small ? still : fixed;
+          Held how = std::sqrt(problem.square_of_velocity(span, u)) <= small ? still : fixed;
           if (span.pool->table->friction && how == fixed && double(std::abs(u[0])) <= small && problem.impulse(span, i)[0] > 0) how = slips;
           if (!(span.pool->trace(i) > 0)) how = fixed;
           work.search.how.push_back(how);
@@ -157,12 +157,13 @@ struct MinimumNorm {
       const T* at;  ///< λ*
       bool slips;
       int rows, count;
-      double over, length;
+      double length;
+      double over[most_rows];
 
       /// Row of the impulse that the n-th unknown stands for.
       double unit(int n, int row) const {
-        if (slips) return over * double(at[row]) / length;
-        return n == row ? over : 0.0;
+        if (slips) return over[row] * double(at[row]) / length;
+        return n == row ? over[row] : 0.0;
       }
       /// B x.
       void impulse(const double* x, T* sum) const {
@@ -188,8 +189,11 @@ struct MinimumNorm {
           at += span.pool->rows;
           const char how = work.search.how[k++];
           if (how == fixed) continue;
-          f(Free{span, i, target, how == slips, span.pool->rows, how == slips ? 1 : span.pool->rows,
-                 1 / problem.root_of_weight(span, i), how == slips ? std::sqrt(square_of(target, span.pool->rows)) : 1});
+          Free free{span, i, target, how == slips, span.pool->rows, how == slips ? 1 : span.pool->rows,
+                    how == slips ? std::sqrt(square_of(target, span.pool->rows)) : 1, {}};
+          span.pool->roots_of_weights(i, free.over);
+          for (int row = 0; row < free.rows; ++row) free.over[row] = free.over[row] > 0 ? 1 / free.over[row] : 0;
+          f(free);
         }
     }
     /// x = √w Bᵀ λ.

@@ -10,12 +10,12 @@
 
 namespace delassus {
 
-/// What a solver's tolerance is compared with.
+/// What a solver's tolerance is compared with. Whatever it is, what goes on into a contact or a limit is compared with it too.
 enum class Criterion : unsigned char {
   residual,       ///< the residual, free of scale
-  siconos_error,  ///< Siconos' measure, for comparison. It has no shares: `all_verified` compares the island's, which is stricter
+  siconos_error,  ///< Siconos' measure or `closing`, for comparison. It has no shares: `all_verified` compares the island's, which is stricter
   both_errors,    ///< the larger of these two
-  last_change,    ///< the change of the last sweep as displacement, m: cheap, and blind to slow convergence
+  last_change,    ///< the change of the last sweep as displacement or `sinking`, m: cheap, and blind to slow convergence
 };
 
 /// The numbers that all solvers have, whose meanings and defaults are theirs.
@@ -31,11 +31,11 @@ struct SolveOptions {
   bool is_measured() const { return criterion != Criterion::last_change; }
   /// What is compared with the tolerance of an island.
   double error(const Measure& m) const {
-    return error(m.residual, m.siconos, m.last_change);
+    return error(m.residual, m, m.last_change);
   }
   /// The largest share of one constraint.
   double worst_error(const Measure& m) const {
-    return error(m.worst, m.siconos, m.worst_change);
+    return error(m.worst, m, m.worst_change);
   }
 
   /// Whether an island of so many rows is solved, by the tolerance alone.
@@ -44,22 +44,22 @@ struct SolveOptions {
     return error(m) <= tolerance * (scale_tolerance ? rows : 1);
   }
   /// Within it, or at the floor of rounding by what was measured.
-  bool is_done(const Measure& m, int rows) const { return is_within(m, rows) || m.residual <= m.floor; }
+  bool is_done(const Measure& m, int rows) const { return is_within(m, rows) || m.is_at_floor(); }
 
   /// Converged, at the rounding floor above the tolerance, out of sweeps, or away to where there are no numbers.
   Status verdict(const Measure& m, int rows) const {
     if (is_within(m, rows)) return Status::converged;
     if (!std::isfinite(m.residual)) return Status::quarantined;
-    return m.residual <= m.floor ? Status::stalled : Status::max_iterations;
+    return m.is_at_floor() ? Status::stalled : Status::max_iterations;
   }
 
  private:
-  double error(double residual, double siconos, double change) const {
+  double error(double residual, const Measure& m, double change) const {
     switch (criterion) {
       case Criterion::residual: return residual;
-      case Criterion::siconos_error: return siconos;
-      case Criterion::both_errors: return siconos > residual ? siconos : residual;
-      default: return change;
+      case Criterion::siconos_error: return m.closing > m.siconos ? m.closing : m.siconos;
+      case Criterion::both_errors: return m.siconos > residual ? m.siconos : residual;
+      default: return m.sinking > change ? m.sinking : change;
     }
   }
 };

@@ -158,9 +158,17 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
     if constexpr (has_problem) {
       auto book = this->law_set;
       book.attach(laws());  // the loop may be a copy
-      book.show(const_cast<StepData*>(this)->W, const_cast<StepData*>(this)->rows);  // nothing is written through it here
+      auto& self = const_cast<StepData&>(*this);  // nothing is written through it here
+      book.show(self.W, self.rows);
+      NoObserver nobody;
+      Array<double> lengths;
       each_pool(this->rows, [&](auto p, const auto& pool) {
-        for (Index i = 0; i < pool.items(); ++i) f(int(p), i, pool.lambda[i], book.natural_error(p, i), h);
+        lengths.assign(std::size_t(pool.items()), 1.0);
+        for (Index k = 0; k < this->islands.count(); ++k) {
+          const double length = IslandProblem(book, self.rows, self.W, this->islands, k, h, nobody).length();
+          for (const Index i : this->islands.items(int(p), k)) lengths[std::size_t(i)] = length;
+        }
+        for (Index i = 0; i < pool.items(); ++i) f(int(p), i, pool.lambda[i], book.natural_error(p, i, lengths[std::size_t(i)]), h);
       });
     }
   }

@@ -4,6 +4,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/rows/islands.hpp>
+#include <delassus/solvers/inner/length_of_island.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/contact_cache.hpp>
@@ -33,21 +34,25 @@ namespace inner {
 /// Impulses beyond every load are no start for the next step: those of constraints that contradict each other would grow
 /// from step to step without bound. A chain of n constraints between bodies whose compliances span r = max w/min w carries
 ///
-///   w_i |λ_i| ≤ n r max |d|,   w = tr(W_ii)/rows,
+///   |w λ_i| ≤ n r max |d|,   w the weights of the rows,
 ///
-/// at most.
+/// at most. Rows in rad/s count at the island's length.
 struct ImpulseLoads {
   double least = std::numeric_limits<double>::infinity(), most = 0, load = 0, response = 0;
   long count = 0;
 
+  /// `w` by row; bit k of `turns`: row k is in rad/s.
   template <class T>
-  void add(double w, const T* d, const T* lambda, int rows) {
-    T of_d = 0, of_lambda = 0;
-    for (int k = 0; k < rows; ++k) of_d += d[k] * d[k], of_lambda += lambda[k] * lambda[k];
-    least = std::min(least, w);
-    most = std::max(most, w);
-    load = std::max(load, double(std::sqrt(of_d)));
-    response = std::max(response, w * double(std::sqrt(of_lambda)));
+  void add(const double* w, const T* d, const T* lambda, int rows, unsigned turns, double length) {
+    double of_d = 0, of_lambda = 0, mean = 0;
+    for (int k = 0; k < rows; ++k) {
+      const double scale = turns >> k & 1 ? length : 1, x = scale * double(d[k]), y = scale * w[k] * double(lambda[k]);
+      of_d += x * x, of_lambda += y * y, mean += scale * scale * w[k] / rows;
+    }
+    least = std::min(least, mean);
+    most = std::max(most, mean);
+    load = std::max(load, std::sqrt(of_d));
+    response = std::max(response, std::sqrt(of_lambda));
     ++count;
   }
   bool are_exceeded() const { return !(response * least <= double(count) * most * load); }
@@ -62,10 +67,16 @@ void forget_lost_islands(AllLaws<T> laws, inner::Slice<const PoolView<T>> rows, 
   constexpr double far = 0.05;  // of the largest velocity of the island
   for (Index k = 0; k < islands.count(); ++k) {
     if (reports[k].status < Status::max_iterations || reports[k].measure.residual <= far) continue;
+    inner::LengthOfRows length;
+    for (std::size_t p = 0; p < laws.size(); ++p)
+      for (const Index i : islands.items(int(p), k)) length.add(rows[p], i);
     inner::ImpulseLoads loads;
     for (std::size_t p = 0; p < laws.size(); ++p)
-      for (const Index i : islands.items(int(p), k))
-        loads.add(rows[p].weight(i), rows[p].d + rows[p].rows * i, rows[p].lambda + rows[p].rows * i, rows[p].rows);
+      for (const Index i : islands.items(int(p), k)) {
+        double w[most_rows];
+        rows[p].weights(i, w);
+        loads.add(w, rows[p].d + rows[p].rows * i, rows[p].lambda + rows[p].rows * i, rows[p].rows, rows[p].turns, length.length());
+      }
     if (!loads.are_exceeded()) continue;
     for (std::size_t p = 0; p < laws.size(); ++p)
       for (const Index i : islands.items(int(p), k)) laws[p].law->forget(laws[p].pool, i, cache);

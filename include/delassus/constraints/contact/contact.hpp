@@ -47,6 +47,7 @@ struct Contact {
   using wraps = Law;
   static constexpr int rows = Law::rows;
   static constexpr auto kinds = Law::kinds;
+  static constexpr unsigned turns = rows > inner::rows_along<rows> ? ~0u << inner::rows_along<rows> : 0u;  ///< see `turning_rows`
   static constexpr bool is_contact = true;  ///< read by the loop: collision detection makes the items
   static constexpr unsigned refines = inner::refinements_of<Law> & refine::set_restitution ? refine::restitution : 0u;
   using overrides = typename inner::overrides_of<Law>::type;

@@ -129,10 +129,14 @@ struct RollingCoulomb {
   }
 
   /// F_n = min(s λ_n, u_n);  F_k = s λ_k − clip(s λ_k − u_k) on the disc of radius μ_k s λ_n, k the slip, the
-  /// roll, the spin.
+  /// roll, the spin. Where s is `of_turns`, 1/(kg m²), in the rows of the roll and the spin, these are in rad/s.
+  template <class T>
+  Vec<6, T> natural_map(const Parameters& p, const Vec<6, T>& lambda, const Vec<6, T>& u, T scale, T of_turns) const {
+    return Cones<T>{T(p.friction), T(p.rolling), T(p.torsional)}.miss(lambda, u, scale, of_turns);
+  }
   template <class T>
   Vec<6, T> natural_map(const Parameters& p, const Vec<6, T>& lambda, const Vec<6, T>& u, T scale) const {
-    return Cones<T>{T(p.friction), T(p.rolling), T(p.torsional)}.miss(lambda, u, scale);
+    return natural_map(p, lambda, u, scale, scale);
   }
   template <class T>
   void clamp(const Parameters& p, Vec<6, T>& lambda) const {
@@ -169,10 +173,11 @@ struct RollingCoulomb {
       x[0] = std::max(x[0], T(0));
       for (int k = 0; k < 3; ++k) shorten(x, k, slope(k) * x[0]);
     }
-    Vec<6, T> miss(const Vec<6, T>& lambda, const Vec<6, T>& u, T scale) const {
-      const Vec<6, T> x = scale * lambda;
-      Vec<6, T> y = x - u;
-      for (int k = 0; k < 3; ++k) shorten(y, k, slope(k) * std::max(x[0], T(0)));
+    Vec<6, T> miss(const Vec<6, T>& lambda, const Vec<6, T>& u, T scale, T of_turns) const {
+      Vec<6, T> x, y;
+      for (int k = 0; k < 6; ++k) x[k] = (k < 3 ? scale : of_turns) * lambda[k], y[k] = x[k] - u[k];
+      const T pressed = std::max(lambda[0], T(0));
+      for (int k = 0; k < 3; ++k) shorten(y, k, slope(k) * ((k == 0 ? scale : of_turns) * pressed));
       y[0] = std::max(y[0], T(0));
       return x - y;
     }
@@ -198,7 +203,7 @@ struct RollingCoulomb {
     Vec<6, T> lambda = memory.last, best = lambda;
     T least = std::numeric_limits<T>::infinity();
     const auto is_enough = [&](const Vec<6, T>& x) {
-      const T off = cones.miss(x, W * x + b, weight).norm();
+      const T off = cones.miss(x, W * x + b, weight, weight).norm();
       if (off < least) least = off, best = x;
       return off <= enough;
     };
@@ -225,7 +230,7 @@ struct RollingCoulomb {
         Vec<6, T> ahead = here;
         bool is_met = false;
         for (int k = 0; k < 6 && !is_met && newton_step(some, W, b, weight, ahead); ++k)
-          is_met = next < T(1) ? some.miss(ahead, W * ahead + b, weight).norm() <= near : is_enough(ahead);
+          is_met = next < T(1) ? some.miss(ahead, W * ahead + b, weight, weight).norm() <= near : is_enough(ahead);
         if (is_met) here = ahead, share = next;
         part *= is_met ? T(2) : T(0.5);
       }

@@ -5,16 +5,19 @@
 #include <delassus/math/positive.hpp>
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
 
 #include <limits>
 
 namespace delassus {
 
 /// λ ← λ − W⁻¹ (b + W λ) from the λ of the last visit in this step, so that what rounding left of u = 0 at one visit goes at the
-/// next. A block that is singular (a redundant row, an end without mass) is lifted by rounding's share.
-template <int rows_>
+/// next. A block that is singular (a redundant row, an end without mass) is lifted by rounding's share. Bit k of `turns`: row k is
+/// in rad/s, as in a `Hinge`, which is Bilateral<5, 0b11000>.
+template <int rows_, unsigned turns_ = 0>
 struct Bilateral {
   static constexpr int rows = rows_;
+  static constexpr unsigned turns = turns_;
   static constexpr bool bilateral = true;
   static constexpr auto refines = refine::prepare | refine::tangent | refine::natural_map;
 
@@ -27,9 +30,15 @@ struct Bilateral {
 
   template <class T>
   void prepare(const Mat<rows, rows, T>& W, Memory<T>& memory) const {
-    const T lift = T(64) * std::numeric_limits<T>::epsilon() * trace(W);
+    constexpr T rounding = T(64) * std::numeric_limits<T>::epsilon();
     Mat<rows, rows, T> lifted = W;
-    add_diagonal(lifted, lift);
+    if constexpr (inner::are_mixed(rows, turns)) {
+      T sum[2] = {};
+      for (int k = 0; k < rows; ++k) sum[turns >> k & 1] += W(k, k);
+      for (int k = 0; k < rows; ++k) lifted(k, k) += rounding * sum[turns >> k & 1];
+    } else {
+      add_diagonal(lifted, rounding * trace(W));
+    }
     const Mat<rows, rows, T> inverse = inverse_of_positive(lifted);
     for (int k = 0; k < rows * rows; ++k) memory.inverse[k] = inverse.data()[k];
     for (T& x : memory.last) x = 0;

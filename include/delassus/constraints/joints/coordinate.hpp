@@ -73,6 +73,8 @@ double unwound(double value, double last) {
 /// to date once a step. It starts from 0, or from what the item says: 4π is the third turn.
 template <class Coordinate>
 struct OnAxis {
+  static constexpr unsigned turns = Coordinate::winds ? ~0u : 0u;  ///< see `turning_rows`
+
   void follow(auto& item, const auto& world) const {
     item.position = position(item, {item.a, item.b, world});
   }

@@ -18,7 +18,7 @@ inline constexpr double from_pose = std::numeric_limits<double>::quiet_NaN();
 /// b. The carriers take the opposite of each, so that momentum and angular momentum of free bodies stay. The joints that
 /// leave a and b these coordinates are added beside it. Singular where the coordinates are.
 template <class First = inner::Absent, class Second = inner::Absent>
-struct Coupling : Bilateral<1> {
+struct Coupling : Bilateral<1, First::winds ? 1u : 0u> {
   /// Two coordinates and their ratio.
   struct Item {
     /// What moves by q_a.

@@ -11,7 +11,7 @@ namespace delassus {
 /// φ = (a_k · (x_a − x_b), a_y · b_z, −a_x · b_z). Five rows: b turns freely about the z axis of the frames. The impulse λ
 /// is the force on a (N·s, axes of a's frame) and its moment about a_x and a_y (N·m·s) about x_b. A row is lost where b_z
 /// lies in the plane of a_x and a_y. The pose b_z = −a_z meets the rows as well, and beyond 90° they pull there.
-struct Hinge : Bilateral<5> {
+struct Hinge : Bilateral<5, 0b11000> {
   static constexpr std::array<int, 5> acts{0, 1, 2, 3, 4};  ///< see `Reaction`
 
   /// Both ends need a frame.
@@ -20,7 +20,7 @@ struct Hinge : Bilateral<5> {
     Anchor a{}, b{};  ///< turns about a_z
   };
 
-  static constexpr auto refines = Bilateral<5>::refines | refine::check;
+  static constexpr auto refines = Bilateral<5, 0b11000>::refines | refine::check;
 
   static void check(const Item& item) { inner::expect_frames(item, "Hinge"); }
 

@@ -13,7 +13,7 @@ namespace delassus {
 /// `Cylindrical`, and one more. It couples s, how far b is along a_z, with θ, its turn about it over all turns. A pitch
 /// p > 0 is a right-handed thread. The impulse λ_4 pushes b along a_z with as many N·s and turns it back with p/2π of it
 /// (N·m·s). Ranks are lost where those of `Hinge` are.
-struct Screw : Bilateral<5> {
+struct Screw : Bilateral<5, 0b01100> {
   /// Both ends need a frame.
   struct Item {
     /// a_z is the axis.
@@ -23,7 +23,7 @@ struct Screw : Bilateral<5> {
     double position = 0;  ///< θ at the start of the last step, rad over all turns
   };
 
-  static constexpr auto refines = Bilateral<5>::refines | refine::check | refine::follow;
+  static constexpr auto refines = Bilateral<5, 0b01100>::refines | refine::check | refine::follow;
 
   static void check(const Item& item) {
     inner::expect_frames(item, "Screw");

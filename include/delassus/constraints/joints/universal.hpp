@@ -12,7 +12,7 @@ namespace delassus {
 /// freely about either, and not about a_x × b_y. Shafts along a_z and b_z turn each other; where they meet at a right
 /// angle (b_z = ±a_x) the shaft a cannot turn. The impulse λ is the force on a (N·s, axes of a's frame) and its moment
 /// about a_x × b_y (N·m·s) about x_b. The last row is lost only where the arms are parallel, which it forbids.
-struct Universal : Bilateral<4> {
+struct Universal : Bilateral<4, 0b1000> {
   static constexpr std::array<int, 4> acts{0, 1, 2, 5};  ///< see `Reaction`
 
   /// Both ends need a frame.
@@ -21,7 +21,7 @@ struct Universal : Bilateral<4> {
     Anchor a{}, b{};  ///< b_y is the other
   };
 
-  static constexpr auto refines = Bilateral<4>::refines | refine::check;
+  static constexpr auto refines = Bilateral<4, 0b1000>::refines | refine::check;
 
   static void check(const Item& item) { inner::expect_frames(item, "Universal"); }
 

@@ -18,7 +18,7 @@ namespace delassus {
 /// Six soft rows of compliance 1/(h² k + h c) are stable for any k, c ≥ 0 and any mass. The rows about axes take θ̇ for
 /// ω_a − ω_b, true to second order in θ. Both impulses act at the middle of the two anchors.
 /// Source: [ColgateStanleyBrown1995] for the coupling.
-struct VirtualCoupling : Bilateral<6> {
+struct VirtualCoupling : Bilateral<6, 0b111000> {
   /// Both ends need an orientation.
   struct Item {
     Anchor a;                       ///< on the tool
@@ -29,7 +29,7 @@ struct VirtualCoupling : Bilateral<6> {
     double angular_damping = 0;     ///< c_θ ≥ 0, N·m·s/rad
   };
 
-  static constexpr auto refines = Bilateral<6>::refines | refine::check;
+  static constexpr auto refines = Bilateral<6, 0b111000>::refines | refine::check;
 
   static void check(const Item& item) {
     DELASSUS_EXPECT(item.a.has_frame && item.b.has_frame,

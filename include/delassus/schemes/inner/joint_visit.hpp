@@ -69,7 +69,8 @@ class JointVisit {
       }
     }
   }
-  double trace() const { return W_.trace() + yield_.sum(); }
+  /// W_kk + R_k.
+  double own(int k) const { return W_(k, k) + yield_[k]; }
   /// f(set, block) for the ends that answer to impulses.
   template <class F>
   void each_moving(const World& world, F&& f) const {

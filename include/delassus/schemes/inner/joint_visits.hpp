@@ -6,9 +6,11 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/unrolled.hpp>
+#include <delassus/rows/row_kind.hpp>
 #include <delassus/schemes/inner/item_rows.hpp>
 #include <delassus/schemes/inner/joint_visit.hpp>
 #include <delassus/schemes/inner/point_visit.hpp>
+#include <delassus/solvers/inner/length_of_island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/drop_constraints.hpp>
 #include <delassus/step/linearize.hpp>
@@ -28,6 +30,14 @@
 #include <utility>
 
 namespace delassus {
+namespace inner {
+
+template <class Laws>
+inline constexpr bool has_turns = true;
+template <class... Laws>
+inline constexpr bool has_turns<Constraints<Laws...>> = ((turning_rows<Laws>() != 0) || ...);
+
+}  // namespace inner
 
 /// The visits of a step:
 ///
@@ -38,6 +48,8 @@ namespace delassus {
 /// visits leave is measured once more. Nothing is kept of a joint between its visits.
 template <class World, class Laws>
 class JointVisits {
+  static constexpr bool can_turn = inner::has_turns<Laws>;
+
  public:
   /// Leaves v_next, which is v_free on entry, and the impulses of the joints. `scheme` says `sweeps` and
   /// `tolerance`.
@@ -64,31 +76,49 @@ class JointVisits {
   void memory(auto& archive) { archive(are_shared_); }
 
  private:
-  /// What is measured of a step: squares of the largest velocities, of what is left, and of the impulses.
-  struct Sums {
+  /// What is measured of rows in one unit: squares of the velocities, of what is left, and of the impulses.
+  struct Squares {
     double d = 0, u = 0, lambda = 0, worst = 0;
+  };
+  /// The same of rows in m/s and of those in rad/s, which `Measure` counts at the length L.
+  struct Sums {
+    Squares motion, turn;
+    inner::LengthOfRows length;
     double violation = 0;  ///< m or rad, at the start
     Index rows = 0;
 
-    double velocity() const { return std::max(d, u); }
-    template <int R>
-    void add(const Vec<R>& d_, const Vec<R>& u_, const Vec<R>& lambda_) {
-      double own = 0;
+    template <unsigned turns, int R>
+    void add(const Vec<R>& d, const Vec<R>& u, const Vec<R>& lambda, const auto& visit) {
+      double own[2] = {};
       unrolled<R>([&]<int k>() {
-        d += d_[k] * d_[k];
-        own += u_[k] * u_[k];
-        lambda += lambda_[k] * lambda_[k];
+        constexpr bool is_turn = turns >> k & 1;
+        Squares& of = is_turn ? turn : motion;
+        of.d += d[k] * d[k];
+        own[is_turn] += u[k] * u[k];
+        of.lambda += lambda[k] * lambda[k];
+        if constexpr (can_turn) length.add(is_turn, visit.own(k));
       });
-      u += own;
-      worst = std::max(worst, own);
+      motion.u += own[0], turn.u += own[1];
+      motion.worst = std::max(motion.worst, own[0]);
+      turn.worst = std::max(turn.worst, own[1]);
+    }
+    /// All in m/s. `worst` is no less than it is where one joint has rows of either unit.
+    Squares all() const {
+      if constexpr (!can_turn) return motion;
+      const double square = length.square();
+      return {motion.d + square * turn.d, motion.u + square * turn.u, motion.lambda + turn.lambda / square,
+              motion.worst + square * turn.worst};
     }
     void give(Measure& m) const {
-      const double whole = u > 0 ? velocity() : 1;
-      m.residual = std::sqrt(u / whole);
-      m.siconos = std::sqrt(u / std::max(whole, lambda));
-      m.worst = std::sqrt(worst / whole);
+      const Squares s = all();
+      const double whole = s.u > 0 ? std::max(s.d, s.u) : 1;
+      m.residual = std::sqrt(s.u / whole);
+      m.siconos = std::sqrt(s.u / std::max(whole, s.lambda));
+      m.worst = std::sqrt(s.worst / whole);
     }
   };
+  template <class Pool>
+  static constexpr unsigned turns_of = turning_rows<std::remove_cvref_t<decltype(std::declval<Pool&>().law)>>();
 
   void begin(const World& world) {
     ++now_;
@@ -153,7 +183,7 @@ class JointVisits {
       const Row d = visit.template velocity<VisitVelocity::next>(), lambda = visit.against(d);
       visit.push(lambda);
       keep(pool, place, lambda);
-      if (answers) sums.add(d, Row(d + visit.response(lambda)), lambda);
+      if (answers) sums.template add<turns_of<decltype(pool)>>(d, Row(d + visit.response(lambda)), lambda, visit);
       note(visit, sums);
     });
     return sums;
@@ -188,19 +218,34 @@ class JointVisits {
   [[gnu::noinline]] Sums measure(World& world, Laws& laws, const S& stabilisation, double h) {
     constexpr double far = 0.05;  // of the largest velocity
     Sums sums;
-    inner::ImpulseLoads loads;  // as in `forget_lost_islands`
     each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
       using Row = Vec<rows_of<decltype(visit)>>;
       if (!visit.answers()) return;
       const Row lambda = pool.impulse[place], d = visit.template velocity<VisitVelocity::free>();
-      sums.add(d, Row(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda)), lambda);
-      loads.add(visit.trace() / int(Row::RowsAtCompileTime), d.data(), lambda.data(), int(Row::RowsAtCompileTime));
+      sums.template add<turns_of<decltype(pool)>>(d, Row(visit.template velocity<VisitVelocity::next>() + visit.yields(lambda)), lambda, visit);
     });
-    if (sums.u > far * far * sums.velocity() && loads.are_exceeded())
+    const Squares all = sums.all();
+    if (all.u > far * far * std::max(all.d, all.u) && are_loads_exceeded(world, laws, stabilisation, h, sums.length.length()))
       each_pool(laws, [&](auto, auto& pool) {
         for (const Index place : pool.slots.active()) pool.starts_cold[place] = 1;
       });
     return sums;
+  }
+  /// As in `forget_lost_islands`.
+  template <class S>
+  [[gnu::noinline]] bool are_loads_exceeded(World& world, Laws& laws, const S& stabilisation, double h, double length) {
+    inner::ImpulseLoads loads;
+    each(world, laws, stabilisation, h, [&](auto& pool, Index place, const auto& visit) {
+      constexpr int R = rows_of<decltype(visit)>;
+      constexpr unsigned turns = turns_of<decltype(pool)>;
+      if (!visit.answers()) return;
+      const Vec<R> lambda = pool.impulse[place], d = visit.template velocity<VisitVelocity::free>();
+      double sum[2] = {}, count[2] = {}, w[R];
+      for (int k = 0; k < R; ++k) sum[turns >> k & 1] += visit.own(k), ++count[turns >> k & 1];
+      for (int k = 0; k < R; ++k) w[k] = sum[turns >> k & 1] / count[turns >> k & 1];
+      loads.add(w, d.data(), lambda.data(), R, turns, length);
+    });
+    return loads.are_exceeded();
   }
 
   template <class Set>

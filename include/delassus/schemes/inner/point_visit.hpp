@@ -67,7 +67,7 @@ class PointVisit {
     push_end<sa>(a_, lambda);
     push_end<sb>(b_, -lambda);
   }
-  double trace() const { return w_[0] + w_[2] + w_[5] + 3 * yield_; }
+  double own(int k) const { return w_[k == 0 ? 0 : k == 1 ? 2 : 5] + yield_; }
   template <class F>
   void each_moving(const World&, F&& f) const {
     if constexpr (sa >= 0)

@@ -21,7 +21,7 @@ template <class T, class System, class Laws>
 class BodySpace : public System {
  public:
   using Constraint = typename System::Constraint;
-  using System::best, System::centre, System::compliance, System::lambda, System::slope, System::velocity;
+  using System::best, System::centre, System::compliance, System::lambda, System::slope, System::velocity, System::weight;
   using System::width;
 
   Laws laws;
@@ -34,7 +34,7 @@ class BodySpace : public System {
     return true;
   }
 
-  /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ |H F|²/w: the velocities the rows
+  /// λ(u) and F one step of length `fraction` further along δ. Returns √Σ (H F)²/w: the velocities the rows
   /// see, in units of energy.
   double evaluate(Island<T>& island, double epsilon, double fraction) {
     for (std::size_t b = 0; b < residual_.size(); ++b)
@@ -52,7 +52,7 @@ class BodySpace : public System {
     for (const Constraint& c : this->constraints_) {
       if (island.is_cut_off(1)) break;
       this->add_rates(c, residual_, &error[c.at]);
-      square += square_of(&error[c.at], c.rows) / c.weight;
+      square += over_weights(c, &error[c.at]);
     }
     return std::sqrt(square);
   }
@@ -67,7 +67,8 @@ class BodySpace : public System {
       if (kinds[0] == RowKind::equality) continue;
       for (int k = 0; k < c.rows; ++k) {
         d[k] = trial[c.at + k];
-        if (kinds[k] == RowKind::lower || kinds[k] == RowKind::upper) d[k] += (kinds[k] == RowKind::lower ? -1e-3 : 1e-3) * closer;
+        const double nearer = 1e-3 * closer / (c.span->pool->turn(k) ? island.length() : 1);
+        if (kinds[k] == RowKind::lower || kinds[k] == RowKind::upper) d[k] += kinds[k] == RowKind::lower ? -nearer : nearer;
       }
       for (int k = 0; k < c.rows; ++k) ignored[k] = centre[c.at + k];
       find_slope(c, epsilon, d, ignored);
@@ -102,12 +103,12 @@ class BodySpace : public System {
 
   /// The measure of λ(u), whose own velocity is d + W λ = u − H F + R (λ − λ̂).
   Measure measure(Island<T>& island) {
-    MeasureSums sums;
+    MeasureSums sums{.length = island.length()};
     T u[most_rows], x[most_rows];
     for (const Constraint& c : this->constraints_) {
       if (island.is_cut_off(1)) break;
       for (int k = 0; k < c.rows; ++k) u[k] = T(own_velocity(c.at + k)), x[k] = T(lambda[c.at + k]);
-      c.span->pool->table->add_share(*c.span->pool, c.item, T(c.weight), u, x, sums);
+      c.span->pool->table->add_share(*c.span->pool, c.item, u, x, sums);
     }
     error_ = std::sqrt(sums.residual);
     return sums.finish(double(std::numeric_limits<T>::epsilon()));
@@ -156,9 +157,10 @@ class BodySpace : public System {
   }
 
  protected:
-  static double square_of(const double* x, int rows) {
-    double sum = x[0] * x[0];
-    for (int k = 1; k < rows; ++k) sum += x[k] * x[k];
+  /// Σ x²/w over the rows of a constraint.
+  double over_weights(const Constraint& c, const double* x) const {
+    double sum = 0;
+    for (int k = 0; k < c.rows; ++k) sum += x[k] * x[k] / weight[c.at + k];
     return sum;
   }
 
@@ -173,7 +175,7 @@ class BodySpace : public System {
   /// S and the impulse that meets the law of diag(R + ε w) at velocity d around λ̂, which `answer` has before.
   void find_slope(const Constraint& c, double epsilon, const double* d, double* answer) {
     double w[most_rows];
-    for (int k = 0; k < c.rows; ++k) w[k] = compliance[c.at + k] + epsilon * c.weight;
+    for (int k = 0; k < c.rows; ++k) w[k] = compliance[c.at + k] + epsilon * weight[c.at + k];
     laws.tangent(c, w, d, answer, &slope[c.slope]);
   }
   double own_velocity(Index k) const { return velocity[k] - error[k] + compliance[k] * (lambda[k] - centre[k]); }

@@ -17,11 +17,11 @@ namespace delassus::inner {
 ///   W z = 0,   dᵀz < 0.
 ///
 /// Velocities u = d + W λ that meet the rows have zᵀu ≥ 0, but zᵀu = dᵀz < 0 whatever λ is: there are none.
-/// In numbers W z is not zero, and what is proved is that λ would have to be large: with y_i = √w_i λ_i,
+/// In numbers W z is not zero, and what is proved is that λ would have to be large: with y = √w λ by row,
 ///
-///   |y| ≥ −dᵀz/√(Σ |(W z)_i|²/w_i),
+///   |y| ≥ −dᵀz/√(Σ (W z)²/w),
 ///
-/// which must be `margin` times √(Σ |d_i|²/w_i), with W z known to no more than the rounding of d, since z is
+/// which must be `margin` times √(Σ d²/w), with W z known to no more than the rounding of d, since z is
 /// scaled to be as large as d. A mass ratio r needs y of r times that, so that the margin is beyond any ratio
 /// that sweeps get through. Joints that contradict each other through a body that contacts hold are found
 /// without the contacts, which would let W z fall slowly. In single precision there is no such margin:
@@ -131,16 +131,15 @@ class Contradiction {
     T u[most_rows];
     for (const Span<T>& span : island_)
       for (const Index i : span) {
-        const double w = span.pool->weight(i);
-        if (!(w > 0)) continue;
+        double w[most_rows];
+        span.pool->weights(i, w);
         island_.velocity(span, i, u);
         const T *d = island_.free_of_impulses(span, i), *z = island_.impulse(span, i);
-        double work = 0, moved = 0, free = 0, size = 0;
         for (int k = 0; k < span.pool->rows; ++k) {
-          const double Wz = double(u[k] - d[k]);
-          work += double(d[k]) * double(z[k]), moved += Wz * Wz, free += double(d[k]) * double(d[k]), size += double(z[k]) * double(z[k]);
+          if (!(w[k] > 0)) continue;
+          const double Wz = double(u[k] - d[k]), free = double(d[k]), along = double(z[k]);
+          s.work -= free * along, s.moved += Wz * Wz / w[k], s.free += free * free / w[k], s.size += w[k] * along * along;
         }
-        s.work -= work, s.moved += moved / w, s.free += free / w, s.size += w * size;
       }
     return s;
   }

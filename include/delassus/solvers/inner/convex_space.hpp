@@ -34,10 +34,10 @@ template <class T, int width>
 class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
   using Base = BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>>;
   using Constraint = typename Base::Constraint;
-  using Base::constraints_, Base::laws, Base::error, Base::move, Base::slope, Base::square_of;
+  using Base::constraints_, Base::laws, Base::error, Base::move, Base::over_weights, Base::slope;
 
  public:
-  using Base::best, Base::centre, Base::lambda, Base::velocity;
+  using Base::best, Base::centre, Base::lambda, Base::velocity, Base::weight;
   using Base::evaluate, Base::hand_over;
 
   bool gather(Island<T>& island) {
@@ -109,10 +109,8 @@ class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
   double distance(double epsilon) const {
     double left = 0, whole = 0;
     for (const Constraint& c : constraints_) {
-      double square = 0;
-      for (Index k = c.at; k < c.at + c.rows; ++k) square += (lambda[k] - centre[k]) * (lambda[k] - centre[k]);
-      left += c.weight * square;
-      whole += square_of(&velocity[c.at], c.rows) / c.weight;
+      for (Index k = c.at; k < c.at + c.rows; ++k) left += weight[k] * (lambda[k] - centre[k]) * (lambda[k] - centre[k]);
+      whole += over_weights(c, &velocity[c.at]);
     }
     return epsilon * std::sqrt(left / whole);
   }
@@ -126,8 +124,8 @@ class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
       island.velocity(*c.span, c.item, numbers);
       for (int k = 0; k < c.rows; ++k) u[k] = double(numbers[k]);
       const double apart = slip_of(c, u) - laws.slip[std::size_t(c.number)];
-      moved += apart * apart / c.weight;
-      whole += square_of(u, c.rows) / c.weight;
+      moved += apart * apart / weight[c.at];
+      whole += over_weights(c, u);
     }
     return std::sqrt(moved / whole);
   }
@@ -155,8 +153,8 @@ class ConvexSpace : public BodySpace<T, WholeSystem<T, width>, LawsOfSlips<T>> {
   double reach(double epsilon) const {
     double speeds = 0, impulses = 0;
     for (const Constraint& c : constraints_) {
-      speeds += square_of(&velocity[c.at], c.rows) / c.weight;
-      impulses += square_of(&centre[c.at], c.rows) * c.weight;
+      speeds += over_weights(c, &velocity[c.at]);
+      for (Index k = c.at; k < c.at + c.rows; ++k) impulses += centre[k] * centre[k] * weight[k];
     }
     return std::numeric_limits<double>::epsilon() * (std::sqrt(speeds) / epsilon + std::sqrt(impulses));
   }

@@ -10,7 +10,7 @@ namespace delassus::inner {
 /// Sweeps of which λ's way is taken.
 inline constexpr int drift_sweeps = 16;
 
-/// √Σ w_i |z_i|² of a way z, zero where it was not straight or the pace not even, and √Σ w_i |λ_i|² at its
+/// √Σ w_k z_k² of a way z, zero where it was not straight or the pace not even, and √Σ w_k λ_k² at its
 /// end.
 struct SlowDirection {
   double length, size;
@@ -25,15 +25,11 @@ template <class T>
   const T* at = before.data();
   for (const Span<T>& span : island)
     for (const Index i : span) {
-      const double root = island.root_of_weight(span, i);
       const T* lambda = island.impulse(span, i);
-      double way = 0, impulse = 0;
-      for (int k = 0; k < span.pool->rows; ++k) {
-        const double x = double(lambda[k]), z = double(lambda[k] - *at++);
-        way += z * z, impulse += x * x;
-      }
-      square += root * root * way;
-      size += root * root * impulse;
+      T way[most_rows];
+      for (int k = 0; k < span.pool->rows; ++k) way[k] = lambda[k] - *at++;
+      square += island.energy(span, i, way);
+      size += island.energy(span, i, lambda);
     }
   const double length = std::sqrt(square), even = drift_sweeps * std::sqrt(moved);
   return {std::abs(length - even) < 0.02 * even ? length : 0, std::sqrt(size)};
@@ -41,7 +37,7 @@ template <class T>
 
 /// The largest β < `most` with λ + β z in the cones of all laws but for a small share of β |z|, which is how
 /// near an impulse that slides follows its cone; zero where no law ends the way, or one ends it here.
-/// `length` is √Σ w_i |z_i|².
+/// `length` is √Σ w_k z_k².
 template <class T>
 double reach(const Island<T>& island, const Array<T>& before, double length, double most) {
   constexpr double share = 1e-4;
@@ -53,14 +49,12 @@ double reach(const Island<T>& island, const Array<T>& before, double length, dou
       const T *lambda = island.impulse(span, i), *start = at;
       at += R;
       if (!span.pool->table->clamp) continue;
-      const double root = island.root_of_weight(span, i);
       const auto is_outside = [&](double t) {
         T there[most_rows], inside[most_rows];
         for (int k = 0; k < R; ++k) there[k] = inside[k] = lambda[k] + T(t) * (lambda[k] - start[k]);
         island.clamp(span, i, inside);
-        double square = 0;
-        for (int k = 0; k < R; ++k) square += double(there[k] - inside[k]) * double(there[k] - inside[k]);
-        return !(root * std::sqrt(square) <= share * t * length);
+        for (int k = 0; k < R; ++k) there[k] -= inside[k];
+        return !(std::sqrt(island.energy(span, i, there)) <= share * t * length);
       };
       if (!(beta > 1) || !is_outside(beta)) continue;
       double low = 1, high = beta;

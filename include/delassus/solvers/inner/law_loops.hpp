@@ -8,6 +8,7 @@
 #include <delassus/rows/free_velocity.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/inner/row_weights.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
 
@@ -22,6 +23,7 @@ struct LawItems {
   using Item = typename Law::Item;
   using Memory = memory_of_t<innermost_t<Law>, double>;
   static constexpr int R = Law::rows;
+  using Weights = RowWeights<R, turning_rows<Law>()>;
 
   const Law& law;
   const Item* items;
@@ -53,14 +55,26 @@ struct LawItems {
   }
   [[gnu::always_inline]] void clamp(Index i, Vec<R, double>& lambda) const { inner::clamp(law, item(i), lambda, memory[i]); }
   /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
-  [[gnu::always_inline]] Vec<R, double> natural_map(Index i, const auto* own, const Vec<R, double>& lambda, const Vec<R, double>& u, double scale) const {
+  [[gnu::always_inline]] Vec<R, double> natural_map(Index i, const auto* own, const Vec<R, double>& lambda, const Vec<R, double>& u,
+                                                    const Weights& scale) const {
     if constexpr (refines<Law>(refine::natural_map)) {
-      return who_refines<refine::natural_map>(law).natural_map(given<Law>(item(i)), lambda, u, scale);
+      const auto& asked = who_refines<refine::natural_map>(law);
+      if constexpr (Weights::is_mixed && requires { asked.natural_map(given<Law>(item(i)), lambda, u, 1.0, 1.0); })
+        return asked.natural_map(given<Law>(item(i)), lambda, u, scale.motion, scale.turn);
+      else
+        return asked.natural_map(given<Law>(item(i)), lambda, u, scale.motion);
     } else {
       const Mat<R, R, double> W = load_square<R>(own);
       Memory m = memory[i];
       const Vec<R, double> change = lambda - solve_local(i, own, u - W * lambda, m, lambda);
-      return (scale * R / trace(W)) * (W * change);
+      if constexpr (Weights::is_mixed) {
+        const Weights own_scale = Weights::of(own);
+        Vec<R, double> out = W * change;
+        for (int k = 0; k < R; ++k) out[k] *= scale[k] / own_scale[k];
+        return out;
+      } else {
+        return (scale.motion * R / trace(W)) * (W * change);
+      }
     }
   }
 };
@@ -82,6 +96,8 @@ struct LawLoops {
   using Items = LawItems<Law, T>;
   static constexpr int R = Law::rows;
   static constexpr auto kinds = row_kinds<Law>();
+  static constexpr unsigned turns = turning_rows<Law>();
+  using Weights = typename Items::Weights;
 
   static void prepare(const Span<T>& span, double h) {
     const Items of(*span.pool);
@@ -121,8 +137,8 @@ struct LawLoops {
       const Index i = span.items[k];
       const Vec<R, double> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
       const T* own = block_of(pool, i);
-      const double s = norm(load_square<R>(own));
-      const Vec<R, double> next = lambda - of.natural_map(i, own, lambda, inner::velocity<R>(pool, i), s) / s;
+      const Weights s = majorant(own);
+      const Vec<R, double> next = lambda - over(of.natural_map(i, own, lambda, inner::velocity<R>(pool, i), s), s);
       sums.energy += accept(pool, i, k, lambda, next, own, sums_more, sums);
     }
   }
@@ -134,7 +150,7 @@ struct LawLoops {
     for (Index k = 0; k < span.count; ++k) {
       const Index i = span.items[k];
       const T* own = block_of(pool, i);
-      add(of, i, own, weight_of(own), inner::velocity<R>(pool, i), load<R>(pool.lambda + std::ptrdiff_t(R) * i),
+      add(of, i, own, Weights::of(own), inner::velocity<R>(pool, i), load<R>(pool.lambda + std::ptrdiff_t(R) * i),
           load<R>(pool.d + std::ptrdiff_t(R) * i), here);
     }
     sums = here;
@@ -165,9 +181,11 @@ struct LawLoops {
     impulse_changed<R>(pool, i, load<R>(change));
   }
   static void velocity(const PoolView<T>& pool, Index i, T* u) { store(inner::velocity<R>(pool, i), u); }
-  static void add_share(const PoolView<T>& pool, Index i, T w, const T* u, const T* lambda, MeasureSums& sums) {
-    const Mat<R, R, double> own = diagonal_of<R>(double(w));
-    add(Items(pool), i, own.data(), double(w), load<R>(u), load<R>(lambda), load<R>(pool.d + std::ptrdiff_t(R) * i), sums);
+  static void add_share(const PoolView<T>& pool, Index i, const T* u, const T* lambda, MeasureSums& sums) {
+    const Weights w = Weights::of(block_of(pool, i));
+    auto own = zero<Mat<R, R, double>>();
+    for (int k = 0; k < R; ++k) own(k, k) = w[k];
+    add(Items(pool), i, own.data(), w, load<R>(u), load<R>(lambda), load<R>(pool.d + std::ptrdiff_t(R) * i), sums);
   }
   static double friction(const PoolView<T>& pool, Index i) {
     if constexpr (is_round_cone<Law>()) return double(Items(pool).item(i).parameters.friction);
@@ -184,10 +202,20 @@ struct LawLoops {
 
  private:
   [[gnu::always_inline]] static const T* block_of(const PoolView<T>& pool, Index i) { return pool.diagonal + std::ptrdiff_t(R * R) * i; }
-  [[gnu::always_inline]] static double weight_of(const T* own) {
-    double sum = double(own[0]);
-    for (int k = 1; k < R; ++k) sum += double(own[k * (R + 1)]);
-    return sum * (1.0 / R);
+  /// s ≥ λ_max(W_ii) in rows in m/s, s/ℓ² in those in rad/s, which weigh as much at the length ℓ.
+  [[gnu::always_inline]] static Weights majorant(const T* own) {
+    Mat<R, R, double> W = load_square<R>(own);
+    if constexpr (Weights::is_mixed) {
+      const Weights w = Weights::of(own);
+      const double square = w.motion > 0 && w.turn > 0 ? w.motion / w.turn : 1, length = std::sqrt(square);
+      for (int i = 0; i < R; ++i)
+        for (int j = 0; j < R; ++j) W(i, j) *= (Weights::is_turn(i) ? length : 1) * (Weights::is_turn(j) ? length : 1);
+      const double s = norm(W);
+      return {s, s / square};
+    } else {
+      const double s = norm(W);
+      return {s, s};
+    }
   }
 
   /// Without impulse, and it goes on opening, of which its normal row tells.
@@ -205,37 +233,72 @@ struct LawLoops {
     const Vec<R, double> change = next - lambda;
     store(next, pool.lambda + std::ptrdiff_t(R) * i);
     impulse_changed<R>(pool, i, change);
-    const double weight = weight_of(own), square = squared_norm(change);
+    const Weights weight = Weights::of(own);
     if (sums_more) {
-      if (sums.x) sums.along += weight * dot(change, Vec<R, double>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
+      if (sums.x) sums.along += weighed(weight, change, Vec<R, double>(next - load<R>(sums.x + std::ptrdiff_t(R) * k)));
       if (sums.tells_change) {
-        const double share = weight * std::sqrt(square);
+        const double share = motion(weight, change, sums.length);
         sums.displacement += share;
         sums.most = std::max(sums.most, share);
       }
     }
-    return weight * square;
+    return weighed(weight, change, change);
+  }
+
+  [[gnu::always_inline]] static Vec<R, double> over(const Vec<R, double>& x, const Weights& s) {
+    if constexpr (!Weights::is_mixed) return x / s.motion;
+    Vec<R, double> out;
+    for (int k = 0; k < R; ++k) out[k] = x[k] / s[k];
+    return out;
+  }
+  /// |w x|, m/s.
+  [[gnu::always_inline]] static double motion(const Weights& w, const Vec<R, double>& x, double length) {
+    if constexpr (turns == 0) return w.motion * std::sqrt(squared_norm(x));
+    Vec<R, double> out;
+    for (int k = 0; k < R; ++k) out[k] = w[k] * x[k];
+    return std::sqrt(square_of<turns>(out, length));
+  }
+
+  /// A contact that sticks has μ |u_t| in its map, and so μ times the rounding of u_t.
+  [[gnu::always_inline]] static double amplification(double friction) { return friction > 1 ? friction * friction : 1; }
+
+  /// Σ u_k² over the rows that go on into what they bound, of a law that says its `kinds`.
+  [[gnu::always_inline]] static double square_of_closing(const Vec<R, double>& u, double length) {
+    double sum = 0;
+    if constexpr (requires { Law::kinds; }) {
+      for (int k = 0; k < R; ++k) {
+        if (kinds[k] != RowKind::lower && kinds[k] != RowKind::upper) continue;
+        const double scale = Weights::is_turn(k) ? length : 1, x = scale * (kinds[k] == RowKind::lower ? std::min(u[k], 0.0) : std::max(u[k], 0.0));
+        sum += x * x;
+      }
+    }
+    return sum;
   }
 
   /// |F_i(w)|² and |F_i(1)|² of `Measure`, at once where the law knows them so, and what else it sums.
   template <class Own>
-  [[gnu::always_inline]] static void add(const Items& of, Index i, const Own* own, double weight, const Vec<R, double>& u, const Vec<R, double>& lambda,
+  [[gnu::always_inline]] static void add(const Items& of, Index i, const Own* own, const Weights& weight, const Vec<R, double>& u, const Vec<R, double>& lambda,
                                          const Vec<R, double>& d, MeasureSums& sums) {
     Vec<2, DoubleIn<T>> squares;
-    if constexpr (refines<Law>(refine::natural_squares)) {
-      squares = who_refines<refine::natural_squares>(of.law).natural_squares(given<Law>(of.item(i)), lambda, u, weight);
+    if constexpr (refines<Law>(refine::natural_squares) && turns == 0) {
+      squares = who_refines<refine::natural_squares>(of.law).natural_squares(given<Law>(of.item(i)), lambda, u, weight.motion);
     } else {
-      squares[0] = squared_norm(of.natural_map(i, own, lambda, u, weight));
-      squares[1] = squared_norm(of.natural_map(i, own, lambda, u, 1.0));
+      squares[0] = square_of<turns>(of.natural_map(i, own, lambda, u, weight), sums.length);
+      squares[1] = square_of<turns>(of.natural_map(i, own, lambda, u, Weights{}), sums.length);
     }
-    const double square = squares[0], size = squared_norm(lambda);
+    const double closing = square_of_closing(u, sums.length), square = std::max(double(squares[0]), closing);
     sums.residual += square;
     sums.worst = std::max(sums.worst, square);
     sums.siconos += double(squares[1]);
-    sums.d += double(squared_norm(d));
-    sums.u += double(squared_norm(u));
-    sums.lambda += size;
-    sums.reach = std::max(sums.reach, double(weight * weight) * size);
+    sums.closing += closing;
+    sums.d += square_of<turns>(d, sums.length);
+    sums.u += square_of<turns>(u, sums.length);
+    sums.lambda += square_of<turns>(lambda, 1 / sums.length);
+    double reach = 0;
+    if constexpr (turns == 0) reach = weight.motion * weight.motion * squared_norm(lambda);
+    else reach = motion(weight, lambda, sums.length), reach *= reach;
+    if constexpr (is_round_cone<Law>()) reach *= amplification(of.item(i).parameters.friction);
+    sums.reach = std::max(sums.reach, reach);
   }
 };
 

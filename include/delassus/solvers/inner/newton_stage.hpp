@@ -115,13 +115,7 @@ class NewtonStage {
   double energy() const {
     double sum = 0;
     for (const Span<T>& span : problem_)
-      for (const Index i : span) {
-        const double root = problem_.root_of_weight(span, i);
-        const T* lambda = problem_.impulse(span, i);
-        double square = 0;
-        for (int k = 0; k < span.pool->rows; ++k) square += double(lambda[k]) * double(lambda[k]);
-        sum += root * root * square;
-      }
+      for (const Index i : span) sum += problem_.energy(span, i, problem_.impulse(span, i));
     return sum;
   }
   void open_after(double sweeps) { opening_ = sweeps < never ? std::max(least, int(sweeps)) : never; }

@@ -30,7 +30,6 @@ struct NewtonConstraint {
   Index first, last;  ///< its sides
   Index at, slope;    ///< where its rows begin among those of the island, and its rows × rows numbers
   int rows;
-  double weight;  ///< w = tr(W_ii)/rows
   Index number;   ///< among the constraints
 };
 
@@ -95,15 +94,12 @@ class NewtonSystem {
     mass_.assign(blocks(), 0.0);
     for (const Constraint& c : constraints_) {
       if (island.is_cut_off(1)) break;
-      weights += c.weight;
-      const T* d = Island<T>::free_of_impulses(*c.span, c.item);
-      T square = d[0] * d[0];
-      for (int k = 1; k < c.rows; ++k) square += d[k] * d[k];
-      fastest = std::max(fastest, double(square));
+      for (int k = 0; k < c.rows; ++k) weights += square_of_length(island, c, k) * weight[c.at + k] / c.rows;
+      fastest = std::max(fastest, island.square_of_velocity(*c.span, Island<T>::free_of_impulses(*c.span, c.item)));
       for (Index s = c.first; s < c.last; ++s) {
         double trace = 0;
         for (int k = 0; k < c.rows; ++k)
-          for (int j = 0; j < width; ++j) trace += H(s)[k + c.rows * j] * G(s)[j + width * k];
+          for (int j = 0; j < width; ++j) trace += square_of_length(island, c, k) * H(s)[k + c.rows * j] * G(s)[j + width * k];
         if (trace > 0) mass_[sides_[s].block] = std::max(mass_[sides_[s].block], c.rows / trace);
       }
     }
@@ -135,6 +131,7 @@ class NewtonSystem {
     }
   }
 
+  Array<double> weight;            ///< by row: w
   Array<double> compliance;        ///< by row: on W's diagonal, beside H A⁻¹ Hᵀ
   Array<double> best;              ///< by row: λ of the smallest measured error
   Array<double> centre;            ///< by row: λ̂
@@ -158,7 +155,7 @@ class NewtonSystem {
     constraints_.clear(), sides_.clear(), pairs_.clear();
     numbers_ = 0;
     for (auto* sums : {&unit_, &moved_}) sums->assign(count, zero<Velocity>());
-    for (auto* list : {&compliance, &best, &centre, &lambda, &velocity}) list->assign(std::size_t(island.row_count()), 0.0);
+    for (auto* list : {&weight, &compliance, &best, &centre, &lambda, &velocity}) list->assign(std::size_t(island.row_count()), 0.0);
     std::size_t squares = 0;
     for (const Span<T>& span : island) squares += std::size_t(span.pool->rows * span.pool->rows) * std::size_t(span.count);
     slope.assign(squares, 0.0);
@@ -174,12 +171,13 @@ class NewtonSystem {
   /// The next constraint, without sides yet.
   Constraint& add(const Span<T>& span, Index i) {
     const int R = span.pool->rows;
-    Constraint c{&span, i, Index(sides_.size()), Index(sides_.size()), 0, 0, R, span.pool->weight(i), Index(constraints_.size())};
+    Constraint c{&span, i, Index(sides_.size()), Index(sides_.size()), 0, 0, R, Index(constraints_.size())};
     if (!constraints_.empty()) {
       const Constraint& last = constraints_.back();
       c.at = last.at + last.rows;
       c.slope = last.slope + last.rows * last.rows;
     }
+    span.pool->weights(i, &weight[c.at]);
     T u[most_rows];
     Island<T>::velocity(span, i, u);
     const T* impulse = Island<T>::impulse(span, i);
@@ -198,18 +196,24 @@ class NewtonSystem {
     ++constraints_.back().last;
     return sides_.emplace_back(Side{block, at});
   }
-  static bool is_sound(const Constraint& c) { return c.weight > 0 && std::isfinite(c.weight); }
+  bool is_sound(const Constraint& c) const {
+    for (int k = 0; k < c.rows; ++k)
+      if (!(weight[c.at + k] > 0 && std::isfinite(weight[c.at + k]))) return false;
+    return true;
+  }
 
   const double* H(Index side) const { return &H_[sides_[side].at]; }
   const double* G(Index side) const { return &G_[sides_[side].at]; }
   double* H(Index side) { return &H_[sides_[side].at]; }
   double* G(Index side) { return &G_[sides_[side].at]; }
 
-  /// What a side of a constraint with 1/w = `over` adds to the sums.
-  void add_to_balance(Index side, int rows, double over) {
+  /// What a side of a constraint adds to the sums.
+  void add_to_balance(Index side, const Constraint& c) {
     double *unit = unit_[sides_[side].block].data(), *moved = moved_[sides_[side].block].data();
-    if (rows == 3) add_squares(3, H(side), G(side), over, unit, moved);
-    else add_squares(rows, H(side), G(side), over, unit, moved);
+    double over[most_rows];
+    for (int k = 0; k < c.rows; ++k) over[k] = 1 / weight[c.at + k];
+    if (c.rows == 3) add_squares(3, H(side), G(side), over, unit, moved);
+    else add_squares(c.rows, H(side), G(side), over, unit, moved);
   }
   static bool is_zero(const double* x, int count) {
     for (int k = 0; k < count; ++k)
@@ -225,13 +229,16 @@ class NewtonSystem {
 
  private:
   // Three rows, the contacts', are written with a constant.
-  [[gnu::always_inline]] static void add_squares(int rows, const double* H, const double* G, double over, double* unit, double* moved) {
-    for (int k = 0; k < width; ++k) {
-      double of_H = 0, of_G = 0;
-      for (int j = 0; j < rows; ++j) of_H += H[j + rows * k] * H[j + rows * k], of_G += G[k + width * j] * G[k + width * j];
-      unit[k] += over * of_H;
-      moved[k] += over * of_G;
-    }
+  [[gnu::always_inline]] static void add_squares(int rows, const double* H, const double* G, const double* over, double* unit, double* moved) {
+    for (int k = 0; k < width; ++k)
+      for (int j = 0; j < rows; ++j) {
+        unit[k] += over[j] * H[j + rows * k] * H[j + rows * k];
+        moved[k] += over[j] * G[k + width * j] * G[k + width * j];
+      }
+  }
+  /// By which the weight of row k becomes one in 1/kg.
+  static double square_of_length(const Island<T>& island, const Constraint& c, int k) {
+    return c.span->pool->turn(k) ? island.length() * island.length() : 1;
   }
   [[gnu::always_inline]] static void scale(int rows, const double* of_H, const double* of_G, double* H, double* G) {
     for (int k = 0; k < width; ++k)
@@ -316,7 +323,7 @@ class NewtonSystem {
         const Index last = Index(sides_.size()) - 1;
         for (Index t = c.first; t < last; ++t)
           if (sides_[t].block != side.block) pairs_.push_back(std::minmax({sides_[t].block, side.block}));
-        add_to_balance(last, R, 1 / c.weight);
+        add_to_balance(last, c);
       }
     }
     return is_sound(c);
@@ -360,7 +367,7 @@ class NewtonSystem {
   BlockLu<width, double>* matrix_ = nullptr;
   Array<Index> count_;  ///< of sides on each block
   Array<double> mass_;
-  Velocities unit_, moved_;  ///< of each unknown Σ |H_k|²/w and Σ |G_k|²/w, then √A_kk and its inverse
+  Velocities unit_, moved_;  ///< of each unknown Σ H_k²/w and Σ G_k²/w over the rows, then √A_kk and its inverse
 };
 
 }  // namespace delassus::inner

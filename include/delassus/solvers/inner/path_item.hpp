@@ -10,7 +10,7 @@
 namespace delassus::inner {
 
 /// Every constraint has an unknown x in units of velocity, which holds both its sides. With P = diag(1, μ, μ)
-/// in a contact, 1 elsewhere, and w = tr(P W_ii P)/rows,
+/// in a contact, the island's length in rows in rad/s, 1 elsewhere, and w = tr(P W_ii P)/rows,
 ///
 ///   λ = P a/w,   a = p(x),   z = p(−x),   a − z = x,   a ∘ z = τ e,
 ///

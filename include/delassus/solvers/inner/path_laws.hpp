@@ -40,7 +40,7 @@ class PathLaws {
       weight = 0;
       for (int k = 0; k < R; ++k) {
         double& shape = rows.shape[c.at + k];
-        shape = is_cone(c) && k > 0 ? pool.table->friction(pool, c.item) : 1;
+        shape = is_cone(c) && k > 0 ? pool.table->friction(pool, c.item) : pool.turn(k) ? island.length() : 1;
         weight += double(own[k * (R + 1)]) * shape * shape / R;
       }
       is_known = is_known && weight > 0;

@@ -148,7 +148,7 @@ class PathImpulses {
     if (pool.rows != R || !pool.is_matrix() || !pool.table->friction || span.count != pool.items) return false;
     for (Index i = 0; i < span.count; ++i) {
       if (span.items[i] != i || !(pool.table->friction(pool, i) > 0)) return false;
-      constraints_.push_back({&span, i, 0, 0, R * i, R * R * i, R, pool.weight(i), i});
+      constraints_.push_back({&span, i, 0, 0, R * i, R * R * i, R, i});
       own_.push_back(block_of(pool.own_block(i)));
       if (pool.block_rows == 0) continue;
       const BlockRowsView<T>& W = pool.blocks[0];

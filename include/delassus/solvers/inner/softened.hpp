@@ -8,7 +8,7 @@
 
 namespace delassus::inner {
 
-/// The island on W + ε diag(w_i 1), w_i = tr(W_ii)/rows, begun from λ = 0, with the time of the whole; nobody hears of its
+/// The island on W + ε diag(w), w the weights of the rows, begun from λ = 0, with the time of the whole; nobody hears of its
 /// sweeps. Where rows contradict each other λ is bounded on it, by |d|/ε w, not ten times
 /// what stops one of them, and the velocities differ by ε/(1 + ε) of theirs, not a tenth, from those that miss the rows
 /// least. Less ε would trade the first for the second, and take more sweeps, √(1/ε) with momentum.
@@ -52,8 +52,9 @@ class Softened {
   static std::size_t squares(const PoolView<T>& pool) { return std::size_t(pool.rows * pool.rows) * std::size_t(pool.items); }
   static void lift(const PoolView<T>& pool, Index i, T* to) {
     const T* own = pool.own_block(i);
-    const T added = share * pool.trace(i) / T(pool.rows);
-    for (int k = 0; k < pool.rows * pool.rows; ++k) to[k] = own[k] + (k % (pool.rows + 1) == 0 ? added : T(0));
+    double w[most_rows];
+    pool.weights(i, w);
+    for (int k = 0; k < pool.rows * pool.rows; ++k) to[k] = own[k] + (k % (pool.rows + 1) == 0 ? share * T(w[k % pool.rows]) : T(0));
   }
 
   Island<T>& whole_;

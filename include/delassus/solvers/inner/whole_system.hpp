@@ -77,19 +77,19 @@ class WholeSystem : public NewtonSystem<T, width_> {
     T present[most_rows], pushed[most_rows];
     for (int k = 0; k < R; ++k) present[k] = pushed[k] = island.impulse(span, i)[k];
     for (int k = 0; k < R; ++k) {
-      pushed[k] = present[k] + T(1 / c.weight);
+      pushed[k] = present[k] + T(1 / this->weight[c.at + k]);
       island.assign(span, i, pushed);
       pushed[k] = present[k];
       each_velocity(island, [&](Index j, int l, double u) {
-        this->G(c.first + j)[l + width * k] = c.weight * (u - before[std::size_t(j)][l]);
+        this->G(c.first + j)[l + width * k] = this->weight[c.at + k] * (u - before[std::size_t(j)][l]);
       });
       island.assign(span, i, present);
     }
     for (Index j = 0; j < count; ++j) {
       if (j != block) pairs_.push_back(std::minmax(j, block));
-      this->add_to_balance(c.first + j, R, 1 / c.weight);
+      this->add_to_balance(c.first + j, c);
     }
-    return Base::is_sound(c);
+    return this->is_sound(c);
   }
 };
 
