@@ -124,8 +124,9 @@ TEST_CASE("the reach of a way is to where it leaves a cone first") {
   book.prepare(p.W, p.rows, p.h);
   NoObserver nobody;
   const IslandProblem problem(book, p.rows, p.W, p.islands, 0, p.h, nobody);
+  const double way[] = {0, 0.001, 0};
   double length = 0;
-  for (int i = 0; i < 2; ++i) length += std::pow(problem.root_of_weight(*problem.begin(), i) * 0.001, 2);
+  for (int i = 0; i < 2; ++i) length += problem.energy(*problem.begin(), i, way);
   length = std::sqrt(length);
   // To 1e-4 of the way beyond the edge, across which the cone leans, and 1e-4 of the bisection.
   REQUIRE(inner::reach(problem, before, length, 1e15) == Approx(399).epsilon(4e-4));

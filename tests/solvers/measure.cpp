@@ -169,15 +169,15 @@ void sees_penetration(const Law& law) {
 // over |q| = √5: 4e-4 for μ = 1000, though the contact goes on at 1 m/s. The solution is λ = (1, −2, 0), u = 0.
 TEST_CASE("a contact that goes on into the other body is not solved, however steep its cone is") {
   const Vec3 q(-1, 2, 0);
-  for (const double mu : {1e3, 1e4, 1e6}) {
-    CAPTURE(mu);
-    auto at_rest = one_contact(mu, q);
+  for (const double steep : {1e3, 1e4, 1e6}) {
+    CAPTURE(steep);
+    auto at_rest = one_contact(steep, q);
     const Measure m = solve(at_rest, only_measure).measure;
-    CHECK(m.siconos == Approx(1 / std::sqrt(1 + mu * mu) / std::sqrt(5)).epsilon(1e-6));
+    CHECK(m.siconos == Approx(1 / std::sqrt(1 + steep * steep) / std::sqrt(5)).epsilon(1e-6));
     CHECK(m.closing == Approx(1 / std::sqrt(5)).epsilon(1e-14));
     CHECK(m.residual == m.closing);
     const auto ends_right = [&](const auto& solver) {
-      auto p = one_contact(mu, q);
+      auto p = one_contact(steep, q);
       CHECK(solve(p, solver).status == Status::converged);
       const Vec3 u = p.rows.pool<0>().lambda[0] + q;
       CHECK(u[0] >= -1e-3 * std::sqrt(5));
