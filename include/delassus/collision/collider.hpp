@@ -57,7 +57,11 @@ struct ContactPoint {
   double gap = 0;                                       ///< m, negative when the bodies overlap
   std::uint64_t pair = 0;                               ///< key of a · 2³² + key of b
   std::uint32_t feature = 0;  ///< names the point within its pair, kept from step to step
+  double area = 0;            ///< m², of the faces that touch what this point stands for; 0: no more than itself
+  Vec3 middle = zero<Vec3>();  ///< of that, on average, m: its place where friction brakes a spin
 
+  /// Between the witnesses.
+  Vec3 point() const { return 0.5 * (point_a + point_b); }
   /// The same contact with B named first.
   void exchange_bodies() {
     std::swap(a, b);

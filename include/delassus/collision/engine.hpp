@@ -9,6 +9,7 @@
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/resting_pair.hpp>
+#include <delassus/collision/inner/share_area.hpp>
 #include <delassus/collision/inner/snap_normal.hpp>
 #include <delassus/collision/manifold.hpp>
 #include <delassus/collision/pair_memory.hpp>
@@ -134,6 +135,7 @@ class CollisionEngine {
                          out.push_back(inner::contact_of(job, a.pose, patch_.point[i], now.normal,
                                                          settings.contact_distance, id));
                        });
+    inner::share_area(now.area, a.pose, now.count, out);
     sort_last(now.count, out);
     now.keep(shapes, b_in_a, r.normal, margin);
   }
@@ -219,6 +221,7 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
   for (int k = 0; k < pair.count; ++k)
     out.push_back(inner::contact_of(job, a.pose, repeated_[k], pair.normal, settings.contact_distance,
                                     repeated_[k].name));
+  inner::share_area(pair.area, a.pose, pair.count, out);
 }
 
 }  // namespace delassus

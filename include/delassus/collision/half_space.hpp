@@ -37,14 +37,18 @@ inline SignedPair half_space_patch(const Shape& a, const Shape& b, const Pose& b
   };
   const PatchPoint lowest = contact(pose.to_world(support(s, down)), Patch::witness);
   const Face face = face_towards(s, down);
-  patch.count = 0;
+  const bool is_line = face.count == 2;
+  patch.clear();
   for (int k = 0; k < face.count; ++k) {
-    const PatchPoint p =
-        contact(pose.to_world(face.point[k]), inner::corner_name(!plane_is_a, face.corner[k]));
+    Vec3 corner = face.point[k];
+    double way = 0;
+    if (is_line && inner::leave_side(s, corner, down, way)) corner += way * down;
+    const PatchPoint p = contact(pose.to_world(corner), inner::corner_name(!plane_is_a, face.corner[k]));
     if (p.gap <= margin) patch.add(p);
   }
   inner::drop_twins(scale, patch);
-  inner::add_witness(lowest, scale, patch);
+  patch.area = inner::area_of_patch(patch, plane.normal, inner::round_face(s, inner::posed(face, pose), pose.position));
+  inner::add_witness(lowest, scale, inner::face_slack * scale, patch);
   return {.status = lowest.gap > margin ? PairStatus::far : PairStatus::near,
           .distance = lowest.gap,
           .normal = plane_is_a ? plane.normal : Vec3(-plane.normal),

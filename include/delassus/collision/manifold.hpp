@@ -2,41 +2,17 @@
 #pragma once
 
 #include <delassus/collision/inner/clip.hpp>
+#include <delassus/collision/inner/round_side.hpp>
+#include <delassus/collision/patch.hpp>
 #include <delassus/collision/signed_pair.hpp>
 #include <delassus/core/cmath.hpp>
-#include <delassus/core/fixed_array.hpp>
 
 #include <algorithm>
 #include <limits>
 
 namespace delassus {
 
-/// One point of a patch. b − a = gap · normal; `name` says which corners or edges make it.
-struct PatchPoint {
-  Vec3 a, b;
-  double gap;
-  std::uint32_t name;
-};
-
-struct Patch {
-  static constexpr int capacity = inner::ClipPolygon::capacity + 1;
-  static constexpr std::uint32_t witness = 0;  ///< the name of the kernel's own witness
-  FixedArray<PatchPoint, capacity> point;
-  int count = 0;
-  void add(const PatchPoint& p) {
-    if (count < capacity) point[count++] = p;
-  }
-};
-
 namespace inner {
-
-/// Of a patch that is not empty.
-inline int deepest(const Patch& patch) {
-  int best = 0;
-  for (int i = 1; i < patch.count; ++i)
-    if (patch.point[i].gap < patch.point[best].gap) best = i;
-  return best;
-}
 
 inline Face posed(Face face, const Pose& pose) {
   for (int k = 0; k < face.count; ++k) face.point[k] = pose.to_world(face.point[k]);
@@ -52,6 +28,12 @@ inline void reverse(Face& face) {
 
 inline bool is_cap(const Shape& s, const Face& face) {
   return (s.kind == ShapeKind::cylinder || s.kind == ShapeKind::cone) && face.count >= 8;
+}
+
+/// The cap that the face is, with a point of its axis; else none.
+inline RoundFace round_face(const Shape& s, const Face& face, const Vec3& on_axis) {
+  if (!is_cap(s, face)) return {};
+  return {on_axis + face.normal * dot(face.normal, face.point[0] - on_axis), s.size[0]};
 }
 
 /// Of two round caps, gives the other one corners where the first has its own. The caps have none, and equal caps one on the
@@ -86,9 +68,10 @@ inline void overlap_of_faces(const Face& subject, const Face& clip, const Vec3& 
   }
 }
 
-/// Two nearly parallel lines overlap in a stretch, whose ends are the contacts.
+/// Two nearly parallel lines overlap in a stretch, whose ends are the contacts. Where they are beside each other
+/// a contact is on the line that ends there, or on a where that is an edge and `is_sharp`.
 inline void overlap_of_lines(const Face& a, const Face& b, const Vec3& n, double margin, double scale,
-                             Patch& patch) {
+                             Patch& patch, bool is_sharp = false) {
   const Vec3 u = a.point[1] - a.point[0], v = b.point[1] - b.point[0];
   const double length = norm(u);
   if (std::abs(dot(cross(u, v), n)) > line_slope * length * norm(v)) return;
@@ -100,11 +83,12 @@ inline void overlap_of_lines(const Face& a, const Face& b, const Vec3& n, double
     const Vec3 on_a = a.point[0] + s * e, on_b = b.point[0] + v * ((s - b0) / (b1 - b0));
     const double gap = dot(n, on_b - on_a);
     if (gap > margin) continue;
-    const Vec3 middle = 0.5 * (on_a + on_b);
+    const Vec3 beside = on_b - on_a - gap * n;
     const bool is_end_of_a = s == 0.0 || s == length;
     const std::uint32_t name = is_end_of_a ? corner_name(true, a.corner[s == 0.0 ? 0 : 1])
                                            : corner_name(false, b.corner[s == b0 ? 0 : 1]);
-    patch.add({middle - 0.5 * gap * n, middle + 0.5 * gap * n, gap, name});
+    const bool is_on_a = is_end_of_a || is_sharp;
+    patch.add({is_on_a ? on_a : Vec3(on_a + beside), is_on_a ? Vec3(on_b - beside) : on_b, gap, name});
   }
 }
 
@@ -120,16 +104,19 @@ inline void drop_twins(double scale, Patch& patch) {
   patch.count = kept;
 }
 
-/// Adds the witness when the corners miss its depth by more than 5e-5 of the scale; a corner it coincides
-/// with goes.
-inline void add_witness(const PatchPoint& witness, double scale, Patch& patch) {
+/// By how much (of the scale) the corners of a patch may miss the depth: those of faces, so that none comes and goes on what
+/// rests, and of lines.
+inline constexpr double face_slack = 5e-5, line_slack = 1e-10;
+
+/// Adds the witness when the corners miss its depth by more than `slack` (m); a corner it coincides with goes.
+inline void add_witness(const PatchPoint& witness, double scale, double slack, Patch& patch) {
   int twin = -1;
   double deepest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < patch.count; ++i) {
     deepest = std::min(deepest, patch.point[i].gap);
     if (squared_norm(patch.point[i].a - witness.a) < 1e-6 * scale * scale) twin = i;
   }
-  if (deepest <= witness.gap + 5e-5 * scale) return;
+  if (deepest <= witness.gap + slack) return;
   if (twin >= 0)
     patch.point[twin] = witness;
   else
@@ -139,18 +126,19 @@ inline void add_witness(const PatchPoint& witness, double scale, Patch& patch) {
 }  // namespace inner
 
 /// The patch in the frame of A, for the certified answer `r`. It has all corners with a gap up to `margin`, and the witness
-/// when they miss its depth by more than 5e-5 of the scale. (They do for a round rim between two corners, a vertex, crossing
-/// edges.)
+/// when they miss its depth by more than 5e-5 of the scale, of two lines 1e-10. (They do for a round rim between two corners,
+/// a vertex, lines that cross.)
 inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, const SignedPair& r,
                           double margin, double scale, Patch& patch) {
   const Vec3& n = r.normal;
-  patch.count = 0;
+  patch.clear();
   Face face_a = face_towards(a, n);
   Face face_b = inner::posed(face_towards(b, Vec3(-transposed_times(b_in_a.rotation, n))), b_in_a);
   if (face_b.count >= 3) inner::reverse(face_b);
   const double slope_a = dot(face_a.normal, n), slope_b = -dot(face_b.normal, n), steepest = 0.2;
-  const double slack = 1e-7 * scale;
-  if (face_a.count == 2 && face_b.count == 2) {
+  const double slack = 1e-10 * scale;
+  const bool are_lines = face_a.count == 2 && face_b.count == 2;
+  if (are_lines) {
     inner::overlap_of_lines(face_a, face_b, n, margin, scale, patch);
   } else if (face_a.count >= 2 && face_b.count >= 2 && std::max(slope_a, slope_b) > steepest) {
     const bool clip_is_a = slope_a >= slope_b;
@@ -160,8 +148,12 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
     inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
                             slack, patch);
   }
+  if (face_a.count == 2) inner::lay_on_side(a, Pose{}, n, true, patch);
+  if (face_b.count == 2) inner::lay_on_side(b, b_in_a, n, false, patch);
   inner::drop_twins(scale, patch);
-  inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale, patch);
+  patch.area = inner::area_of_patch(patch, n, inner::round_face(a, face_a, zero<Vec3>()), inner::round_face(b, face_b, b_in_a.position));
+  inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale,
+                     (are_lines ? inner::line_slack : inner::face_slack) * scale, patch);
 }
 
 }  // namespace delassus

@@ -23,6 +23,7 @@ struct PairMemory {
   FixedArray<RememberedPoint, capacity> point;
   std::uint8_t count = 0;
   inner::NormalOwner owner = inner::NormalOwner::kernel;
+  ContactArea area;  ///< of the whole patch, in the frame of A
 };
 
 namespace inner {

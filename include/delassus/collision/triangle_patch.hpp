@@ -97,7 +97,7 @@ enum class PatchTrust : std::uint8_t { none, sure, doubtful };
 ///      latter case the answer is `doubtful`: It holds on a plain and not at the rim of a cliff.
 inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& pose, double margin,
                                  double scale, Patch& patch, Vec3& normal) {
-  patch.count = 0;
+  patch.clear();
   const Vec3 centre = pose.to_world(middle(s));
   if (!(t.height(centre) >= 0)) return PatchTrust::none;
   const Vec3 lowest = pose.to_world(support(s, Vec3(-transposed_times(pose.rotation, t.normal))));
@@ -136,17 +136,19 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
   } else {
     const Face rim = inner::face_of(t, inner::Rim(t, n));
     if (rim.count == 2 && face.count == 2)
-      inner::overlap_of_lines(rim, face, n, margin, scale, patch);
+      inner::overlap_of_lines(rim, face, n, margin, scale, patch, true);
     else if (rim.count == 2 && face.count >= 3 && -dot(face.normal, n) > 0.2)
       inner::overlap_of_faces(rim, face, n, true, margin, slack, patch);
   }
+  if (face.count == 2) inner::lay_on_side(s, pose, n, false, patch);
   inner::drop_twins(scale, patch);
+  if (is_flat && face.count >= 3) patch.corners = patch.count;
   // A round shape over an edge that is nearly flat is beside both its triangles: the shortest way is its
   // contact.
   if (is_flat && !is_over && !is_doubtful && patch.count == 0)
     r = shortest, normal = r.normal, is_flat = false;
   if (!is_flat || is_over)
-    inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale, patch);
+    inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale, inner::face_slack * scale, patch);
   if (patch.count == 0) return PatchTrust::none;
   return is_doubtful ? PatchTrust::doubtful : PatchTrust::sure;
 }

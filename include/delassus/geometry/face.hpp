@@ -10,7 +10,8 @@ namespace delassus {
 
 /// Up to 16 corners in order around the face; 2 for an edge, 0 when the shape only offers a point. Body
 /// frame, m. `corner` names each corner: the same material point keeps its name in every face it belongs to.
-/// The lowest point of a rim, which moves on the body as that leans, has a name of its own.
+/// The lowest point of a rim, which moves on the body as that leans, has a name of its own. The line of a leaning capsule
+/// reaches beyond its end to over the point where the ball there is touched.
 struct Face {
   static constexpr int capacity = 16;
   static constexpr int lowest_of_rim = 0x8000;
@@ -50,6 +51,13 @@ inline void mantle_line(double radius, double half, const Vec3& d, int name, Fac
   const double x = d[0] / across * radius, y = d[1] / across * radius;
   face.add({x, y, half}, name);
   face.add({x, y, -half}, name + 1);
+}
+
+/// The line of the mantle of a capsule, for the unit vector d. The line along d through the ball's farthest point meets it
+/// r tan(lean) beyond the end.
+inline void capsule_line(double radius, double half, const Vec3& d, Face& face) {
+  mantle_line(radius, half, d, 16, face);
+  face.point[d[2] < 0 ? 1 : 0][2] += radius * d[2] / std::hypot(d[0], d[1]);
 }
 
 /// A cap that leans by less lies on its face: its corners stay where they are on the body.
@@ -140,7 +148,7 @@ inline Face face_towards(const Shape& s, const Vec3& d) {
       inner::hull_face(*s.hull, d, face);
       break;
     case ShapeKind::capsule:
-      if (std::abs(d[2]) <= inner::line_slope) inner::mantle_line(s.size[0], s.size[1], d, 16, face);
+      if (std::abs(d[2]) <= inner::line_slope) inner::capsule_line(s.size[0], s.size[1], d, face);
       break;
     default:
       break;

@@ -5,6 +5,7 @@
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/geometry/face.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace delassus::inner {
@@ -60,7 +61,7 @@ class FaceClipper {
     const Vec3 out = cross(along, n_);
     const double length = norm(out);
     for (int i = 0; i < polygon_.count; ++i)
-      height[i] = length > 0 ? dot(out, polygon_.corner[i].point - clip_.point[j]) / length - slack_ : -slack_;
+      height[i] = length > 0 ? dot(out, polygon_.corner[i].point - clip_.point[j]) / length : 0;
   }
 
   void cut(int j) {
@@ -71,12 +72,12 @@ class FaceClipper {
     for (int i = 0; i < count; ++i) {
       const int next = (i + 1) % count;
       const ClipCorner& p = polygon_.corner[i];
-      if (height[i] <= 0) kept.add(p);
-      if (i >= lines || (height[i] <= 0) == (height[next] <= 0)) continue;
-      const Vec3 x =
-          p.point + (polygon_.corner[next].point - p.point) * (height[i] / (height[i] - height[next]));
-      const bool leaves = height[i] <= 0;
-      kept.add({x, meeting(p.edge, j), leaves ? std::int8_t(-1 - j) : p.edge});
+      const bool is_inside = height[i] <= slack_;
+      if (is_inside) kept.add(p);
+      if (i >= lines || is_inside == (height[next] <= slack_)) continue;
+      const double share = std::clamp(height[i] / (height[i] - height[next]), 0.0, 1.0);
+      const Vec3 x = p.point + (polygon_.corner[next].point - p.point) * share;
+      kept.add({x, meeting(p.edge, j), is_inside ? std::int8_t(-1 - j) : p.edge});
     }
     polygon_ = kept;
   }

@@ -24,21 +24,24 @@ struct SurfaceContact {
 class HullOfPatch {
  public:
   /// Fills `patch` from the points, and `source` with the place of each in `points`: the convex hull of those
-  /// within 1e-3 of the scale of the deepest, and of all of them when these are fewer than four.
-  void choose(std::span<const SurfaceContact> points, const Vec3& n, double scale, Patch& patch,
+  /// within 1e-3 of the scale of the deepest, and of all of them when these are fewer than four. The hull is the area that
+  /// touches; sides that are chords of `round` stand for its rim.
+  void choose(std::span<const SurfaceContact> points, const Vec3& n, double scale, const RoundFace& round, Patch& patch,
               FixedArray<Index, Patch::capacity>& source) {
     project(points, n);
     Index deepest = 0;
     for (Index i = 1; i < Index(points.size()); ++i)
       if (points[i].point.gap < points[deepest].point.gap) deepest = i;
-    patch.count = 0;
+    patch.clear();
     for (const double reach : {1e-3 * scale, std::numeric_limits<double>::infinity()}) {
       order_.clear();
       for (Index i = 0; i < Index(points.size()); ++i)
         if (points[i].point.gap <= points[deepest].point.gap + reach) order_.push_back(i);
       find_hull();
       straighten(1e-5 * scale);
-      take(points, deepest, scale, patch, source);
+      take(points, scale, patch, source);
+      patch.area = area_of_patch(patch, n, round);
+      add_deepest(points, deepest, scale, patch, source);
       if (patch.count >= 4) return;
     }
   }
@@ -94,9 +97,8 @@ class HullOfPatch {
     hull_.resize(std::max(kept, std::size_t(1)));
   }
 
-  /// Adds the hull, an even sample of one with too many corners, but for what lies on a point that is there, and
-  /// the deepest point where it is missed.
-  void take(std::span<const SurfaceContact> points, Index deepest, double scale, Patch& patch,
+  /// Adds the hull, an even sample of one with too many corners, but for what lies on a point that is there.
+  void take(std::span<const SurfaceContact> points, double scale, Patch& patch,
             FixedArray<Index, Patch::capacity>& source) const {
     const std::size_t room = std::size_t(Patch::capacity - 1 - patch.count);
     const std::size_t count = std::min(hull_.size(), room);
@@ -109,6 +111,10 @@ class HullOfPatch {
       source[patch.count] = i;
       patch.add(points[i].point);
     }
+  }
+  /// The deepest point, where it is missed.
+  static void add_deepest(std::span<const SurfaceContact> points, Index deepest, double scale, Patch& patch,
+                          FixedArray<Index, Patch::capacity>& source) {
     for (int j = 0; j < patch.count; ++j)
       if (patch.point[j].gap <= points[deepest].point.gap + 5e-5 * scale) return;
     source[patch.count] = deepest;

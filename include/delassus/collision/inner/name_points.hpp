@@ -51,6 +51,7 @@ void name_points(const Patch& patch, const PairMemory& last, const Pose& b_in_a,
                  const Add& add) {
   const Continuation continues(patch, last, b_in_a, scale);
   const Choice choice = reduce(patch, continues, n, scale, std::clamp(most, 1, PairMemory::capacity));
+  now.area = patch.area;
   for (const bool is_old : {true, false})
     for (int k = 0; k < choice.count; ++k) {
       const int i = choice.index[k], before = continues.of[i];

@@ -16,7 +16,7 @@ namespace delassus::inner {
 /// both. On a plain, however many its triangles, no push off one takes it off those where it is deeper.
 class PatchDoubts {
  public:
-  /// Calls add(t, point, normal) for the contacts of the triangles that the shape, posed in their frame, comes
+  /// Calls add(t, patch, normal) for the triangles that the shape, posed in their frame, comes
   /// as near as `reach` m, and judges them. Returns how many triangles were looked at.
   template <class Surface, class Add>
   Index collect(const Surface& surface, const Shape& shape, const Pose& pose, double reach, double scale,
@@ -34,7 +34,7 @@ class PatchDoubts {
       Vec3 n;
       const PatchTrust trust = triangle_patch(triangle, shape, pose, reach, scale, patch_, n);
       if (trust == PatchTrust::none) return;
-      for (int i = 0; i < patch_.count; ++i) add(t, patch_.point[i], n);
+      add(t, patch_, n);
       answers_.push_back({t, n, patch_.point[deepest(patch_)].gap, trust});
     });
     judge(surface, shape, pose, scale);

@@ -26,7 +26,9 @@ class SoftPairs {
   Index collide(const SoftSurface& soft, const Shape& shape, const Pose& pose, double reach, double scale) {
     found.clear();
     found_on_.clear();
-    const auto add_to_found = [&](Index t, const PatchPoint& p, const Vec3& n) { add(soft, t, p, n); };
+    const auto add_to_found = [&](Index t, const Patch& patch, const Vec3& n) {
+      for (int i = 0; i < patch.count; ++i) add(soft, t, patch.point[i], n);
+    };
     const Index queries = doubts_.collect(soft, shape, pose, reach, scale, add_to_found);
     for (std::size_t i = 0; i < found.size(); ++i) found[i].is_dropped = doubts_.is_false(found_on_[i]);
     drop();

@@ -4,10 +4,12 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/deep_surfaces.hpp>
+#include <delassus/collision/inner/face_pieces.hpp>
 #include <delassus/collision/inner/hull_of_patch.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/patch_doubts.hpp>
+#include <delassus/collision/inner/share_area.hpp>
 #include <delassus/collision/inner/surface_crossing.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
@@ -39,11 +41,16 @@ class SurfacePairs {
     const bool is_plane = b.shape.kind == ShapeKind::half_space;
     const Pair pair(job, a, b, length_scale(is_plane ? a.shape : b.shape), h, settings);
     points_.clear();
+    pieces_.clear();
     Index queries = 0;
     if (is_plane) {
       queries = collect_on_plane(surface, plane_of(b.shape, pair.b_in_a), pair.reach);
     } else {
-      const auto add = [&](Index t, const PatchPoint& p, const Vec3& n) { add_within_margin(pair, p, n, t); };
+      const auto add = [&](Index t, const Patch& patch, const Vec3& n) {
+        for (int i = 0; i < patch.count; ++i) add_within_margin(pair, patch.point[i], n, t);
+        const auto corner = [&](int k) -> const Vec3& { return patch.point[k].a; };
+        if (patch.corners >= 3) pieces_.add(patch.corners, corner, n, patch.point[deepest(patch)].gap);
+      };
       queries = doubts_.collect(surface, b.shape, pair.b_in_a, pair.reach, pair.scale, add);
       erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
     }
@@ -68,6 +75,7 @@ class SurfacePairs {
     if (std::none_of(features_.begin(), features_.end(), overlaps))
       collect_deep(posed_a, posed_b, scale, cuts_, features_);
     points_.clear();
+    pieces_.clear();
     for (const FeatureContact& f : features_) add_within_margin(pair, f.point, f.normal, -1);
     emit(pair, out);
     return queries;
@@ -108,6 +116,14 @@ class SurfacePairs {
     surface.visit(meets, [&](Index t) {
       ++queries;
       const Triangle triangle = surface.triangle(t);
+      if (dot(triangle.normal, plane.normal) <= -0.9962) {
+        double lowest = reach, highest = -reach;
+        for (const Vec3& corner : triangle.point) {
+          const double gap = dot(plane.normal, corner) - plane.offset;
+          lowest = std::min(lowest, gap), highest = std::max(highest, gap);
+        }
+        if (highest <= reach) pieces_.add(3, [&](int k) -> const Vec3& { return triangle.point[k]; }, -plane.normal, lowest);
+      }
       for (int k = 0; k < 3; ++k) {
         const Vec3& corner = triangle.point[k];
         const double gap = dot(plane.normal, corner) - plane.offset;
@@ -163,9 +179,27 @@ class SurfacePairs {
     return memory_[last_ + std::size_t(best)];
   }
 
+  /// The cap with which B meets a surface whose normal is n, or none.
+  static RoundFace round_face_against(const Pair& pair, const Vec3& n) {
+    const Shape& s = pair.b.shape;
+    if (s.kind != ShapeKind::cylinder && s.kind != ShapeKind::cone) return {};
+    const Face face = face_towards(s, Vec3(-transposed_times(pair.b_in_a.rotation, n)));
+    return round_face(s, posed(face, pair.b_in_a), pair.b_in_a.position);
+  }
+
+  /// The area is that of the pieces, where they are known, and not of the hull.
+  void find_area(const Vec3& n, double reach) {
+    double least = group_[0].point.gap;
+    for (const SurfaceContact& p : group_) least = std::min(least, p.point.gap);
+    const ContactArea area = pieces_.area(n, least + reach);
+    if (area.size > 0) patch_.area = area;
+  }
+
   void emit_group(const Pair& pair, std::size_t first_out, std::vector<ContactPoint>& out) {
     const Vec3 n = group_[0].normal;
-    hull_.choose(group_, n, pair.scale, patch_, source_);
+    const RoundFace round = round_face_against(pair, n);
+    hull_.choose(group_, n, pair.scale, round, patch_, source_);
+    if (!(round.radius > 0)) find_area(n, 1e-3 * pair.scale);
     PairMemory now;
     now.pair = pair.job.pair;
     now.normal = n;
@@ -176,6 +210,7 @@ class SurfacePairs {
     };
     name_points(patch_, remembered(n), pair.b_in_a, n, pair.scale, pair.settings.max_points, first_out, out, now,
                 add);
+    share_area(now.area, pair.a.pose, now.count, out);
     next_.push_back(now);
   }
 
@@ -186,6 +221,7 @@ class SurfacePairs {
   PatchDoubts doubts_;
   FixedArray<Index, Patch::capacity> source_{};
   HullOfPatch hull_;
+  FacePieces pieces_;
   Array<PairMemory> memory_, next_;
   std::size_t last_ = 0;
   Array<char> is_claimed_;
