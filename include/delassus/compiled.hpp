@@ -165,6 +165,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND struct inner::DefinedOnce<ContactCache>;                                                                                   \
   KIND struct inner::DefinedOnce<Materials>;                                                                                      \
   KIND class BasicContactMemory<double>;                                                                                          \
+  KIND class BasicFrictionPlaces<double>;                                                                                         \
   KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                   \
   KIND class inner::OnDemand<CollisionEngine<GjkEpa, BoxTree>>;                                                                     \
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \

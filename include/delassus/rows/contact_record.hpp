@@ -20,9 +20,14 @@ struct ContactRecord {
   std::uint32_t feature = 0;   ///< the point within its pair, kept from step to step
   /// A number that `Materials` gave; 0: none was given.
   Index material_a = 0, material_b = 0;  ///< of B
+  /// From `point()` to where friction acts, across the normal, m. Zero but in patches, whose friction acts at their mean distance
+  /// from the middle of the load, and their normal impulses at their corners.
+  Vec3 friction_arm = zero<Vec3>();
 
   /// The one world point at which the impulse acts on both bodies, so that momentum is kept exactly.
   Vec3 point() const { return 0.5 * (point_a + point_b); }
+  /// Where its part across the normal acts, on both.
+  Vec3 friction_point() const { return point() + friction_arm; }
 };
 
 }  // namespace delassus

@@ -9,19 +9,13 @@
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/contact_record.hpp>
 #include <delassus/step/contact_memory.hpp>
+#include <delassus/step/contact_result.hpp>
+#include <delassus/step/friction_places.hpp>
 
 #include <span>
 #include <vector>
 
 namespace delassus {
-
-/// A contact as a host reads it after the step: `impulse` (N·s, world) is what body B received from A.
-struct ContactResult {
-  ContactRecord record;  ///< where they meet
-  Vec3 impulse = zero<Vec3>();  ///< world, N·s, on B
-  bool starts_cold = false;  ///< the impulse is no start for the next step
-  bool is_sliding = false;   ///< the friction impulse is as large as the cone allows
-};
 
 /// The contacts of a loop: records of this step, their impulses, and those of the last one by contact id.
 template <class Scalar>
@@ -92,6 +86,9 @@ class BasicContactCache {
     });
   }
 
+  /// Lets friction of patches act where it does.
+  void place_friction() { friction_places_.find(points, results, memory_); }
+
   /// Keeps this step's impulses for the next one.
   void remember() {
     const auto entries = memory_.renew(results.size());
@@ -113,6 +110,7 @@ class BasicContactCache {
   Array<Anchor> anchors_;
   Array<Index> materials_;
   BasicContactMemory<Scalar> memory_;
+  BasicFrictionPlaces<Scalar> friction_places_;
 };
 
 using ContactCache = BasicContactCache<double>;  ///< with impulses remembered in double

@@ -64,6 +64,16 @@ class BasicContactMemory {
     return nearest ? claim(*nearest) : zero<Vec3>();
   }
 
+  /// What is remembered of a pair, by feature.
+  inner::Slice<const Entry> of_pair(std::uint64_t pair) const {
+    const auto is_before = [](const Entry& e, std::uint64_t p) { return e.pair < p; };
+    const Entry *const end = entries_.data() + entries_.size(),
+                *const first = inner::lower_bound(entries_.data(), end, pair, is_before);
+    const Entry* last = first;
+    while (last != end && last->pair == pair) ++last;
+    return {first, std::size_t(last - first)};
+  }
+
   void memory(auto& archive) {
     archive(entries_);
     ordered_begin_ = ordered_end_ = 0;

@@ -16,6 +16,16 @@
 
 namespace delassus {
 
+namespace inner {
+
+/// Whether some contact law has rows across the normal.
+template <class Laws>
+inline constexpr bool has_friction = false;
+template <class... L>
+inline constexpr bool has_friction<Constraints<L...>> = ((ContactLaw<L> && L::rows > 1) || ...);
+
+}  // namespace inner
+
 /// Refuses a body whose material nobody added. Materials may come after the bodies: a step is the first to know.
 template <class World>
 void check_materials(const World& world, const Materials& materials) {

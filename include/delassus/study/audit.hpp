@@ -182,7 +182,7 @@ class Audit {
       const auto& item = pool.item(i);
       const Vec3 tangent = item.frame.template bottomRows<2>().transpose() *
                            rows.lambda[i].template cast<double>().template segment<2>(1);
-      const Vec3 arm = item.point - centre;
+      const Vec3 arm = item.point + item.record->friction_arm - centre;
       sum += tangent;
       moment += arm.cross(tangent).dot(item.record->normal);
       radius = std::max(radius, arm.norm());

@@ -39,8 +39,8 @@ Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
 
 }  // namespace inner
 
-/// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the next two tangent; a law with
-/// six rows goes on with (t₁, t₂, n) · (ω_B − ω_A). The law inside is solved and asked for what it refines, with
+/// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the next two tangent, and those of
+/// a patch are taken `friction_arm` beside; a law with six rows goes on with (t₁, t₂, n) · (ω_B − ω_A). The law inside is solved and asked for what it refines, with
 /// `item.parameters`.
 template <class Law = inner::Absent>
 struct Contact {
@@ -77,10 +77,13 @@ struct Contact {
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < along; ++j) axes(j, k) = item.frame(j, k);
     auto a = row.end(item.record->a, point);
+    const bool is_of_patch = along > 1 && !is_zero(item.record->friction_arm);
     a.along(axes, -1);
+    if (is_of_patch) shift(a, item, -1);
     if constexpr (rows > along) turn(a, item.frame, -1);
     auto b = row.end(item.record->b, point);
     b.along(axes, 1);
+    if (is_of_patch) shift(b, item, 1);
     if constexpr (rows > along) turn(b, item.frame, 1);
     row.phi(0, item.gap);
     inner::who_refines<refine::soften>(law).soften(row, item.gap);
@@ -95,6 +98,11 @@ struct Contact {
   double restitution(const Item& item) const { return item.parameters.restitution; }
 
  private:
+  /// From the velocity of a point to that of one beside it by r: t · (ω × r) = (r × t) · ω.
+  static void shift(auto& end, const Item& item, double sign) {
+    for (int k = 1; k < inner::rows_along<rows>; ++k)
+      end.about(k, Vec3(sign * cross(item.record->friction_arm, Vec3(item.frame(k, 0), item.frame(k, 1), item.frame(k, 2)))));
+  }
   /// The rows behind those of the velocity: t₁, t₂, n.
   static void turn(auto& end, const Mat3& frame, double sign) {
     for (int k = 3; k < rows; ++k) {

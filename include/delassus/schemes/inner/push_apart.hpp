@@ -19,7 +19,7 @@ void each_block_of(World& world, const Item& item, F&& f) {
       for (int k = 0; k < set.anchor_blocks(anchor); ++k) {
         Mat<rows, std::remove_reference_t<decltype(set)>::width> J;
         for (int r = 0; r < rows; ++r)
-          J.row(r) = set.along(anchor, k, item.point, item.frame.row(r).transpose()).template cast<double>().transpose();
+          J.row(r) = set.along(anchor, k, r == 0 ? item.point : Vec3(item.point + item.record->friction_arm), item.frame.row(r).transpose()).template cast<double>().transpose();
         f(side, set, set.anchor_block(anchor, k), J);
       }
     });
@@ -59,9 +59,11 @@ void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
         const Vec3 force = item.frame.template topRows<rows>().transpose() * f;
         inner::each_block_of<rows>(world, item, [&](double side, auto& set, Index b, const auto& J) {
           if (!set.moves(b)) return;
-          if constexpr (requires { set.apply_force(set.handle(b), force, item.point); })
-            set.apply_force(set.handle(b), side * force, item.point);
-          else
+          if constexpr (requires { set.apply_force(set.handle(b), force, item.point); }) {
+            const Vec3 normal = f[0] * item.record->normal;
+            set.apply_force(set.handle(b), side * normal, item.point);
+            set.apply_force(set.handle(b), side * (force - normal), item.point + item.record->friction_arm);
+          } else
             set.apply_force(set.handle(b), side * Vec3(J.transpose() * f));
         });
         book.results[item.result].impulse = h * force;
