@@ -195,9 +195,7 @@ TriangleMesh ring_mesh(double Ri, double Ro) {
 
 TEST_CASE("a mesh that spins flat is braked at the mean distance of its face") {
   const double Ri = 0.2, Ro = 0.3;
-  const auto ground = [](Detection& d) -> Shape { return d.backend.add(HeightField(9, 9, 0.25, 0.25, std::vector<double>(81, 0.0))); };
   const double on_plane = arm([&](Detection& d) { return d.backend.add(ring_mesh(Ri, Ro)); }, 0.01, plane, 0);
-  const double on_mesh = arm([&](Detection& d) { return d.backend.add(ring_mesh(Ri, Ro)); }, 0.01, ground, 0);
   const double right = 2 * (Ro * Ro * Ro - Ri * Ri * Ri) / (3 * (Ro * Ro - Ri * Ri));
   const auto table = [](Detection&) -> Shape { return Box{2, 2, 1}; };
   const double on_box = arm([&](Detection& d) { return d.backend.add(ring_mesh(Ri, Ro)); }, 0.01, table, 0.5);

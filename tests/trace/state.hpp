@@ -229,6 +229,7 @@ class Memory {
     text_(p.margin);
     if (p.margin < 0) return;
     text_(p.shapes), part(p.normal_a), part(p.normal_b);
+    text_(p.area.size), part(p.area.middle), text_(p.area.mean_distance);
     for (int k = 0; k < p.count; ++k) text_(p.gap[k]), text_(p.by_id[k]);
   }
   /// Meshes and filters are the scene's.

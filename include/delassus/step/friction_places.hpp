@@ -29,6 +29,7 @@ class BasicFrictionPlaces {
 
   /// Fills `friction_arm` of the results, which belong to the points, both by pair and then by feature.
   void find(inner::Slice<const ContactPoint> points, inner::Slice<ContactResult> results, const Memory& memory) {
+    make_room(points.size());
     for (std::size_t first = 0, last; first < points.size(); first = last) {
       double least = points[first].gap;
       for (last = first; last < points.size() && points[last].pair == points[first].pair; ++last)
@@ -48,6 +49,14 @@ class BasicFrictionPlaces {
   }
 
  private:
+  /// For a pair that has all contacts: as seldom as there are more of them than ever.
+  void make_room(std::size_t contacts) {
+    if (weight_.capacity() >= contacts) return;
+    rest_.reserve(2 * contacts);
+    patch_.reserve(2 * contacts);
+    weight_.reserve(2 * contacts);
+  }
+
   /// What hangs above the deepest point of the pair bears nothing.
   static bool is_touched(const ContactPoint& p, double least) {
     return p.area > 0 && p.gap - least <= 5e-3 * std::sqrt(p.area);
