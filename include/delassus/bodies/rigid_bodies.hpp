@@ -7,6 +7,7 @@
 #include <delassus/bodies/inner/rigid_path.hpp>
 #include <delassus/bodies/inner/rigid_state.hpp>
 #include <delassus/bodies/inner/shapes.hpp>
+#include <delassus/bodies/inner/surface_velocities.hpp>
 #include <delassus/bodies/inner/targets.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/slice.hpp>
@@ -15,6 +16,7 @@
 #include <delassus/math/rotation.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/body_set.hpp>
+#include <delassus/rows/surface_motion.hpp>
 
 #include <concepts>
 #include <string>
@@ -60,6 +62,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   void remove(Handle body) {
     slots_.release(checked(body));
     shapes_.drop(body.index);
+    surfaces_.drop(body.index);
     motion_[body.index] = Motion::fixed;
     set_mass(body.index);
   }
@@ -87,6 +90,17 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     v_[b] = twist<T>(converted<T>(velocity), converted<T>(angular_velocity));
   }
 
+  /// Its surface runs beside it from now on, as that of a belt, track or roller does: at r from the centre of mass by
+  /// `linear` + `angular` × r, in the axes of the body, m/s and rad/s. Friction alone sees it, along the surfaces in contact.
+  /// Zero ends it.
+  void set_surface_velocity(Handle body, const Vec3& linear, const Vec3& angular = zero<Vec3>()) {
+    const Index b = checked(body);
+    DELASSUS_EXPECT(is_finite(linear) && is_finite(angular), who(b) + ": surface velocity is not finite; give m/s and rad/s");
+    DELASSUS_EXPECT(inner::fits<T>(linear), who(b) + ": surface velocity " + inner::beyond<T>(linear, "m/s"));
+    DELASSUS_EXPECT(inner::fits<T>(angular), who(b) + ": angular surface velocity " + inner::beyond<T>(angular, "rad/s"));
+    surfaces_.set(b, linear, angular);
+  }
+
   /// Where a kinematic body shall be at the end of the next step; its velocity is (q(t+h) ⊖ q(t)) / h.
   void move_to(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
     const Index b = checked(body);
@@ -112,6 +126,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   Vec3 velocity(Handle body) const { return converted<double>(linear_part(v_[checked(body)])); }
   /// World, rad/s.
   Vec3 angular_velocity(Handle body) const { return converted<double>(angular_part(v_[checked(body)])); }
+  /// Of the surface beside the body, at a point of the world (m), in its axes, m/s; see `set_surface_velocity`.
+  Vec3 surface_velocity(Handle body, const Vec3& point) const { return surface_velocity(checked(body), point); }
   double mass(Handle body) const { return state_.mass[checked(body)]; }  ///< kg; 0 of one that is not dynamic
   /// About the centre of mass, in the axes of the body, kg·m²; zero of one that is not dynamic.
   const Mat<3, 3, T>& inertia(Index b) const { return state_.inertia[b]; }
@@ -180,6 +196,26 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   Quat frame(const Anchor& a) const { return converted<double>(state_.q[a.block]) * a.frame; }
   /// The same as a matrix whose columns are the axes.
   Mat3 axes(const Anchor& a) const { return converted<double>(state_.R[a.block]) * a.frame.toRotationMatrix(); }
+
+  /// How it moves under a contact.
+  SurfaceMotion surface(const Anchor& a, const Vec3& point) const {
+    const Index b = a.block;
+    return {.centre = position_of(b),
+            .velocity = converted<double>(linear_part(v_[b])),
+            .turn = converted<double>(angular_part(v_[b])),
+            .running = surfaces_.are_any() ? surface_velocity(b, point) : Vec3(zero<Vec3>()),
+            .is_led = motion_[b] != Motion::dynamic,
+            .is_rigid = true};
+  }
+  const auto& surface_velocities() const { return surfaces_; }  ///< of all bodies
+  /// Whether a kinematic body turns by more than 1e-6 rad in a step of h (s): where it does not, its circles are straight.
+  bool has_turning_carriers(double h) const {
+    if (!has_kinematic_) return false;
+    const double least = 1e-6 / h;
+    for (const Index b : slots_.active())
+      if (motion_[b] == Motion::kinematic && double(squared_norm(angular_part(v_[b]))) > least * least) return true;
+    return false;
+  }
 
   /// Kick and drift: x₊ = x + h v_next, and free rotation from ω_next. A body whose state after it is not finite stays
   /// as it is.
@@ -258,11 +294,15 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   /// What outlives a step, shapes included; handles of the set that wrote it stay with that set.
   void memory(auto& archive) {
     BodyStorage::memory(archive);
-    archive(state_, motion_, targets_, shapes_);
+    archive(state_, motion_, targets_, shapes_, surfaces_, has_kinematic_);
   }
 
  private:
   Vec3 position_of(Index b) const { return state_.x[b]; }
+  Vec3 surface_velocity(Index b, const Vec3& point) const {
+    const Mat3 R = converted<double>(state_.R[b]);
+    return R * surfaces_.at(b, transposed_times(R, point - position_of(b)));
+  }
   void check_velocity(const Vec3& velocity, const Vec3& angular_velocity, Index b) const {
     DELASSUS_EXPECT(is_finite(velocity) && is_finite(angular_velocity), who(b) + ": velocity is not finite");
     DELASSUS_EXPECT(inner::fits<T>(velocity), who(b) + ": velocity " + inner::beyond<T>(velocity, "m/s"));
@@ -301,6 +341,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   Array<Motion> motion_;
   inner::Targets targets_;
   inner::Shapes shapes_;
+  inner::SurfaceVelocities surfaces_;
+  bool has_kinematic_ = false;  ///< one was added, at some time
 };
 
 using RigidBodies = BasicRigidBodies<double>;  ///< in double
@@ -330,6 +372,7 @@ typename BasicRigidBodies<T>::Handle BasicRigidBodies<T>::add(const Body& body) 
   if (is_dynamic) state_.inverse_inertia[b] = Mat<3, 3, T>(converted<T>(inner::inverse_of_inertia(mass.inertia)));
   state_.place(b, body.position, orientation);
   motion_[b] = body.motion;
+  has_kinematic_ = has_kinematic_ || body.motion == Motion::kinematic;
   targets_.drop(b);
   shapes_.give(b, body.shape);
   set_mass(b);

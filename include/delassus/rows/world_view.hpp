@@ -9,6 +9,7 @@
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/body_set.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/rows/surface_motion.hpp>
 
 #include <string>
 #include <type_traits>
@@ -34,6 +35,8 @@ struct SetTable {
   void (*along_axes)(const void* set, const Anchor&, const Vec3& point, double sign, T* H, int R);
   /// Row k of H += that of the rate of turn about `axis`; null: nothing turns.
   void (*about)(const void* set, const Anchor&, const Vec3& axis, T* H, int R, int k);
+  /// How the surface behind the anchor moves at `point`; null: it is of no rigid body.
+  SurfaceMotion (*surface)(const void* set, const Anchor&, const Vec3& point);
 };
 
 namespace inner {
@@ -121,10 +124,17 @@ struct SetFunctions {
     }
   }
 
+  static constexpr bool has_surface = requires(const Set& set, const Anchor& a, Vec3 point) { set.surface(a, point); };
+  static SurfaceMotion surface([[maybe_unused]] const void* set, [[maybe_unused]] const Anchor& a, [[maybe_unused]] const Vec3& point) {
+    if constexpr (has_surface) return of(set).surface(a, point);
+    else return {};
+  }
+
   /// Those of the functions that a set has.
   static constexpr SetTable<T> make_table() {
     return {owns,       is_current, point,       has_frame ? frame : nullptr, has_axes ? axes : nullptr,
-            add_blocks, along,      along_three, along_axes,                  turns ? about : nullptr};
+            add_blocks, along,      along_three, along_axes,                  turns ? about : nullptr,
+            has_surface ? surface : nullptr};
   }
   static const SetTable<T> table;
 };
@@ -166,6 +176,10 @@ class WorldView {
   Mat3 axes(const Anchor& a) const {
     if (a.set >= 0 && set(a).table->axes) return set(a).table->axes(set(a).set, a);
     return frame(a).toRotationMatrix();
+  }
+  /// How the surface behind an anchor moves at a point of the world, m; unknown but of a rigid body.
+  SurfaceMotion surface(const Anchor& a, const Vec3& point) const {
+    return set(a).table->surface ? set(a).table->surface(set(a).set, a, point) : SurfaceMotion{};
   }
   /// Whether the body behind an anchor is still there; the world always is.
   bool is_current(const Anchor& a) const { return a.set < 0 || set(a).table->is_current(set(a).set, a); }

@@ -6,6 +6,7 @@
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/world_view.hpp>
 #include <delassus/step/law_rows.hpp>
+#include <delassus/step/moving_surfaces.hpp>
 
 #include <cstddef>
 
@@ -99,12 +100,14 @@ void drive(const RowArrays<T>& pool, std::size_t first, double speed, double h) 
 }
 
 template <class T, class S>
-void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T* const* v, const S& stabilisation, double h, double theta) {
+void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T* const* v, const MovingSurfaces<T>& moving, const S& stabilisation,
+               double h, double theta) {
   for (std::size_t p = 0; p < laws.size(); ++p) {
     const RowArrays<T>& pool = rows[p];
     const LawSteps<T>& law = *laws[p].law;
     const Index items = pool.items();
     const int height = pool.rows, sets = pool.sets;
+    const bool sees_surfaces = moving && law.place;
     const T nothing[most_rows] = {};
     T of_start[most_rows];
     for (Index i = 0; i < items; ++i) {
@@ -113,10 +116,11 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
       const T *u = nothing, *start = nothing;
       for (int s = 0; s < sets; ++s, u = d) {
         pool.set[s].products->rate(pool.set[s], i, v_free[s], u, d);
-        if (theta == 1) continue;
+        if (theta == 1 && !sees_surfaces) continue;
         pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
         start = of_start;
       }
+      if (sees_surfaces) see_moving_surfaces(moving, law.place(laws[p].pool, i), h, theta, of_start, d);
       make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta);
       if (law.speed) drive(pool, first, law.speed(laws[p].pool, i), h);
       const T* const bias = pool.bias->data() + first;
@@ -129,11 +133,11 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
 
 /// Makes bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias. Equalities hold for the mean
 /// velocity, as do springs that ask for it and the direction of friction (`inner::rotated_slip`). All other rows hold
-/// for v_next.
+/// for v_next. Friction sees how surfaces move besides (`inner::see_moving_surfaces`).
 template <class World, class T, class S>
-void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const S& stabilisation, double h, double theta) {
+void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const MovingSurfaces<T>& moving, const S& stabilisation, double h, double theta) {
   const inner::BodyVelocities<World> v(world);
-  inner::make_bias(laws, rows, v.free, v.start, stabilisation, h, theta);
+  inner::make_bias(laws, rows, v.free, v.start, moving, stabilisation, h, theta);
 }
 
 }  // namespace delassus

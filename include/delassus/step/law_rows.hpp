@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
+#include <delassus/rows/contact_place.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/world_view.hpp>
@@ -29,6 +30,8 @@ struct LawSteps {
   void (*linearize)(const void* pool, const WorldView<T>&, const RowArrays<T>&);
   /// The speed that the rows of item i shall have, m/s or rad/s; null: zero.
   double (*speed)(const void* pool, Index i);
+  /// Where item i acts; null: it has no slip.
+  ContactPlace (*place)(const void* pool, Index i);
   /// e of item i, in [0, 1]; null: zero.
   double (*restitution)(const void* pool, Index i);
   /// λ ← `ratio` · λ of the last step, by contact id or by item; h in s.
@@ -100,6 +103,11 @@ struct LawRows {
     if constexpr (refines<Law>(refine::speed)) return of(pool).law.speed(of(pool).item(i));
     else return 0;
   }
+  static constexpr bool has_slip = ContactLaw<Law> && inner::has_slip(kinds);
+  static ContactPlace place(const void* pool, Index i) {
+    const auto& item = of(pool).item(i);
+    return {item.record->a, item.record->b, item.point, item.frame};
+  }
   static double restitution([[maybe_unused]] const void* pool, [[maybe_unused]] Index i) {
     if constexpr (refines<Law>(refine::restitution)) return of(pool).law.restitution(of(pool).item(i));
     else return 0;
@@ -149,6 +157,10 @@ struct LawRows {
     else (void)cache, pool.starts_cold[pool.slots.active()[i]] = 1;
   }
 
+  static constexpr auto place_if_it_slips() -> ContactPlace (*)(const void*, Index) {
+    if constexpr (has_slip) return place;
+    else return nullptr;
+  }
   static constexpr LawSteps<T> make_table() {
     return {kinds.data(),
             inner::has_slip(kinds),
@@ -157,6 +169,7 @@ struct LawRows {
             refines<Law>(refine::follow) ? follow : nullptr,
             linearize,
             refines<Law>(refine::speed) ? speed : nullptr,
+            place_if_it_slips(),
             refines<Law>(refine::restitution) ? restitution : nullptr,
             warm_start,
             keep_impulses,

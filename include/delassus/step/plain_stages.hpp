@@ -83,7 +83,9 @@ struct PlainStages : StagesWithoutConstraints {
 
   static void make_bias(auto& step) {
     using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
-    delassus::make_bias(std::as_const(step).world(), step.pools.all(), step.arrays.all(), step.stabilisation(), step.h, theta<Integrator>());
+    const auto& world = std::as_const(step).world();
+    delassus::make_bias(world, step.pools.all(), step.arrays.all(), moving_surfaces(world, step.view, step.h), step.stabilisation(), step.h,
+                        theta<Integrator>());
   }
 
   static void build(auto& step) {

@@ -26,7 +26,7 @@ class Supports {
           const Pose pose = set.pose(b);
           now_.push_back({s, b, set.handle(b).generation, pose, Dormant<World, Laws>::box_of(set, b, pose)});
           const auto& v = set.velocity()[b];
-          if (is_zero(v)) continue;
+          if (is_zero(v) && !runs(set, b)) continue;
           Aabb box = now_.back().box;
           const Vec3 way = h * converted<double>(linear_part(v));
           near(box.is_empty() ? box : box.extend(Aabb(box.min() + way, box.max() + way)));
@@ -55,6 +55,12 @@ class Supports {
     Aabb box;  ///< empty for a half-space
   };
 
+  /// Whether its surface moves though it does not.
+  template <class Set>
+  static bool runs([[maybe_unused]] const Set& set, [[maybe_unused]] Index b) {
+    if constexpr (requires { set.surface_velocities(); }) return set.surface_velocities().runs(b);
+    else return false;
+  }
   static bool before(const Support& x, const Support& y) {
     return std::tie(x.set, x.block, x.generation) < std::tie(y.set, y.block, y.generation);
   }

@@ -7,8 +7,10 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/body_set.hpp>
+#include <delassus/rows/contact_place.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/rate.hpp>
+#include <delassus/rows/world_view.hpp>
 
 #include <algorithm>
 #include <type_traits>
@@ -39,12 +41,17 @@ class ImpactRows {
   using T = typename Rows::Scalar;
   static constexpr int R = Rows::template rows_of<p>;
 
-  ImpactRows(World& world, const Laws& laws, Rows& rows, Index i)
-      : world_(world), laws_(laws), rows_(rows), i_(i) {}
+  ImpactRows(World& world, const WorldView<T>& view, const Laws& laws, Rows& rows, Index i)
+      : world_(world), view_(view), laws_(laws), rows_(rows), i_(i) {}
 
+  /// Of the surfaces that meet.
   Vec<R, T> velocity() const {
-    return rate(
+    Vec<R, T> u = rate(
         rows_.template pool<p>(), i_, world_, [](const auto& set) -> const auto& { return set.velocity(); });
+    const auto& item = laws_.template pool<p>().item(i_);
+    const ContactPlace place{item.record->a, item.record->b, item.point, item.frame};
+    for (int k = 1; k < rows_along<R>; ++k) u[k] += T(dot(place.axis(k), place.running(view_)));
+    return u;
   }
   /// v ← v + M⁻¹ Hᵀ λ; returns λ.
   Vec<R, T> hit(const Vec<R, T>& u, double h) {
@@ -82,6 +89,7 @@ class ImpactRows {
   }
 
   World& world_;
+  const WorldView<T>& view_;
   const Laws& laws_;
   Rows& rows_;
   Index i_;
@@ -95,6 +103,7 @@ template <class World, class Laws, class Rows>
 void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec3>& impulses,
                      std::size_t contacts, double h) {
   impulses.assign(contacts, zero<Vec3>());
+  const ViewOf<World> view(world);
   double fastest = 0;  // what closes below its rounding does not: a stack at rest has no impacts
   world.each([&](auto& set, auto) {
     set.factor({.mass = 1});
@@ -109,7 +118,7 @@ void pass_on_impacts(World& world, const Laws& laws, Rows& rows, std::vector<Vec
       if constexpr (inner::hits_in_turn<Law>)
         for (Index i = 0; i < pool.count(); ++i) {
           if (!(inner::restitution_of(pool.law, pool.item(i)) > 0)) continue;
-          inner::ImpactRows<p, World, Laws, Rows> impact(world, laws, rows, i);
+          inner::ImpactRows<p, World, Laws, Rows> impact(world, view, laws, rows, i);
           const auto u = impact.velocity();
           const double closing = -double(u[0]), gap = double(rows.template pool<p>().phi[i][0]);
           if (!(closing > 1e-12 * fastest) || !(gap < h * closing)) continue;

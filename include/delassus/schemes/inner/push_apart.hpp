@@ -2,7 +2,9 @@
 #pragma once
 
 #include <delassus/core/cmath.hpp>
+#include <delassus/rows/contact_place.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/rows/world_view.hpp>
 #include <delassus/step/detect.hpp>
 
 namespace delassus {
@@ -32,6 +34,7 @@ void each_block_of(World& world, const Item& item, F&& f) {
 /// stands in the list of contacts.
 template <class World, class Laws>
 void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
+  const ViewOf<World> view(world);
   each_pool(laws, [&](auto, auto& pool) {
     if constexpr (requires { pool.law.law.stiffness; pool.items.clear(); }) {
       constexpr int rows = std::remove_cvref_t<decltype(pool.law)>::rows;
@@ -44,6 +47,8 @@ void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
         inner::each_block_of<rows>(world, item, [&](double side, auto& set, Index b, const auto& J) {
           u += side * J * set.velocity()[b].template cast<double>();
         });
+        const ContactPlace place{item.record->a, item.record->b, item.point, item.frame};
+        for (int k = 1; k < rows; ++k) u[k] += dot(place.axis(k), place.running(view));
         // w = t · J A⁻¹ Jᵀ t along the slip t.
         Vec<rows> t = u;
         t[0] = 0;
