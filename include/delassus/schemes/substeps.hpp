@@ -1,4 +1,4 @@
-/// One detection and several solves a step.
+/// Several steps in one.
 #pragma once
 
 #include <delassus/core/expect.hpp>
@@ -6,15 +6,12 @@
 #include <delassus/schemes/inner/step_parts.hpp>
 #include <delassus/step/plain_step.hpp>
 
-#include <algorithm>
-
 namespace delassus {
 
-/// Detect once, then `count` times Linearize to Advance with h/count. What falls with the step falls as it would with smaller
-/// steps, at one detection: the error of the method, joint drift, the mass ratio that sweeps can take. Contacts go with their
-/// bodies, with the normals of the start. Loads act over the whole step, kinematic bodies arrive at its end. The sum of the
-/// parts is in `impulse` and `contacts`, their worst status, residual, sweeps and joint violation in the report. Listeners hear
-/// a stage once a part. Takes every integrator; no activity.
+/// `count` times Detect to Advance with h/count. What falls with the step falls as it would with smaller steps: the error of the
+/// method, joint drift, the mass ratio that sweeps can take. To the host they are one: loads act over the whole step, kinematic
+/// bodies arrive at its end, the sum of the parts is in `impulse` and `contacts`, and their worst status, residual, sweeps and
+/// violations in the report. Listeners hear a stage once a part. Takes every integrator; no activity.
 struct Substeps {
   using plays = role::Scheme;
   static constexpr bool takes_whole_steps = true;  ///< read by the checks: suits integrators that make a whole step at once
@@ -25,17 +22,13 @@ struct Substeps {
 
   void check() const { inner::expect_at_least_one("Substeps: count", count); }
   void run(auto& step) const {
-    stage::detect(step);
     auto& parts = step.template state<role::Scheme>();
     parts.begin(step, count);
-    Index quarantined = 0;  // of one part: each names the same bodies again
     for (int left = count; left-- > 0;) {
-      step.summary.quarantined = 0;
+      stage::detect(step);
       stage::move(step);
-      quarantined = std::max(quarantined, step.summary.quarantined);
       parts.end_part(step, left);
     }
-    step.summary.quarantined = quarantined;
   }
 };
 

@@ -54,11 +54,11 @@ struct Contact {
 
   Law law{};  ///< solved at each point, with its numbers where no pair has others
 
-  /// One point; Detect and the scheme fill it.
+  /// One point; Detect fills it.
   struct Item {
     const ContactRecord* record = nullptr;  ///< in the loop's list of contacts, until the next Detect
-    Vec3 point{0, 0, 0};                   ///< where the rows are taken, m, world: the record's, until a scheme moves it on
-    double gap = 0;                         ///< m, negative in overlap; likewise
+    Vec3 point{0, 0, 0};                   ///< where the rows are taken, m, world
+    double gap = 0;                         ///< m, negative in overlap
     Mat3 frame = diagonal_of<3>(1.0);  ///< rows n, t₁, t₂: unit vectors of the world
     typename Law::Parameters parameters{};
     Index result = -1;  ///< its place in the loop's list of contacts
