@@ -104,9 +104,13 @@ struct LawRows {
     else return 0;
   }
   static constexpr bool has_slip = ContactLaw<Law> && inner::has_slip(kinds);
-  static ContactPlace place(const void* pool, Index i) {
-    const auto& item = of(pool).item(i);
-    return {item.record->a, item.record->b, item.point, item.frame};
+  static ContactPlace place([[maybe_unused]] const void* pool, [[maybe_unused]] Index i) {
+    if constexpr (has_slip) {
+      const auto& item = of(pool).item(i);
+      return {item.record, &item.point, &item.frame};
+    } else {
+      return {};
+    }
   }
   static double restitution([[maybe_unused]] const void* pool, [[maybe_unused]] Index i) {
     if constexpr (refines<Law>(refine::restitution)) return of(pool).law.restitution(of(pool).item(i));
@@ -157,10 +161,6 @@ struct LawRows {
     else (void)cache, pool.starts_cold[pool.slots.active()[i]] = 1;
   }
 
-  static constexpr auto place_if_it_slips() -> ContactPlace (*)(const void*, Index) {
-    if constexpr (has_slip) return place;
-    else return nullptr;
-  }
   static constexpr LawSteps<T> make_table() {
     return {kinds.data(),
             inner::has_slip(kinds),
@@ -169,7 +169,7 @@ struct LawRows {
             refines<Law>(refine::follow) ? follow : nullptr,
             linearize,
             refines<Law>(refine::speed) ? speed : nullptr,
-            place_if_it_slips(),
+            has_slip ? place : nullptr,
             refines<Law>(refine::restitution) ? restitution : nullptr,
             warm_start,
             keep_impulses,

@@ -41,7 +41,7 @@ namespace inner {
 ///   θ = ½:   e^{hω^} (ω × x) tan(α/2)/(α/2),   whose mean with that of the step before is the chord,   α = h |ω|.
 inline Vec3 bend_of_circle(const Vec3& x, const Vec3& turn, double h, double theta) {
   const double rate = norm(turn), angle = h * rate;
-  if (!(angle > 0)) return zero<Vec3>();
+  if (!(angle > 1e-9)) return zero<Vec3>();  // straight to rounding; squares of less may vanish
   const Vec3 along = cross(turn, x), inwards = cross(turn, along);
   const double sine = std::sin(angle), half = std::sin(0.5 * angle);
   if (theta == 1) return (sine / angle - 1) * along + (2 * half * half / (angle * rate)) * inwards;
@@ -67,11 +67,11 @@ inline Vec3 turn_of_carrier(const SurfaceMotion& a, const SurfaceMotion& b, cons
 inline Vec3 turned_away(SurfaceMotion a, SurfaceMotion b, const ContactPlace& c, const Vec3& u, double h, double theta) {
   if (!a.is_rigid && !b.is_rigid) return zero<Vec3>();
   // A node has no turn: it is where the contact is, and goes as that says.
-  if (!a.is_rigid) a.centre = c.point, a.velocity = b.velocity + cross(b.turn, c.point - b.centre) - u;
-  if (!b.is_rigid) b.centre = c.point, b.velocity = a.velocity + cross(a.turn, c.point - a.centre) + u;
+  if (!a.is_rigid) a.centre = *c.point, a.velocity = b.velocity + cross(b.turn, *c.point - b.centre) - u;
+  if (!b.is_rigid) b.centre = *c.point, b.velocity = a.velocity + cross(a.turn, *c.point - a.centre) + u;
   const bool are_alike =
       4 * squared_norm(Vec3(b.turn - a.turn)) <= std::max(squared_norm(a.turn), squared_norm(b.turn));
-  const Vec3 turn = turn_of_carrier(a, b, c.point, c.axis(0), are_alike);
+  const Vec3 turn = turn_of_carrier(a, b, *c.point, c.axis(0), are_alike);
   if (are_alike) return -bend_of_circle(b.centre - a.centre, turn, h, theta);
   return (-0.5 * h / theta) * cross(turn, b.velocity - a.velocity);
 }
@@ -79,7 +79,7 @@ inline Vec3 turned_away(SurfaceMotion a, SurfaceMotion b, const ContactPlace& c,
 /// Adds to the friction rows of one contact. d: its velocities without impulses; start: H v, where the step begins.
 template <class T>
 void see_moving_surfaces(const MovingSurfaces<T>& moving, const ContactPlace& c, double h, double theta, T* start, T* d) {
-  const SurfaceMotion a = moving.world->surface(c.a, c.point), b = moving.world->surface(c.b, c.point);
+  const SurfaceMotion a = moving.world->surface(c.record->a, *c.point), b = moving.world->surface(c.record->b, *c.point);
   Vec3 away = zero<Vec3>();
   if (moving.turn) {
     const Vec3 u = double(start[0]) * c.axis(0) + double(start[1]) * c.axis(1) + double(start[2]) * c.axis(2);

@@ -49,7 +49,7 @@ class ImpactRows {
     Vec<R, T> u = rate(
         rows_.template pool<p>(), i_, world_, [](const auto& set) -> const auto& { return set.velocity(); });
     const auto& item = laws_.template pool<p>().item(i_);
-    const ContactPlace place{item.record->a, item.record->b, item.point, item.frame};
+    const ContactPlace place{item.record, &item.point, &item.frame};
     for (int k = 1; k < rows_along<R>; ++k) u[k] += T(dot(place.axis(k), place.running(view_)));
     return u;
   }

@@ -47,7 +47,7 @@ void push_apart(World& world, Laws& laws, ContactCache& book, double h) {
         inner::each_block_of<rows>(world, item, [&](double side, auto& set, Index b, const auto& J) {
           u += side * J * set.velocity()[b].template cast<double>();
         });
-        const ContactPlace place{item.record->a, item.record->b, item.point, item.frame};
+        const ContactPlace place{item.record, &item.point, &item.frame};
         for (int k = 1; k < rows; ++k) u[k] += dot(place.axis(k), place.running(view));
         // w = t · J A⁻¹ Jᵀ t along the slip t.
         Vec<rows> t = u;
