@@ -20,9 +20,9 @@ namespace inner {
 
 /// Whether some contact law has rows across the normal.
 template <class Laws>
-inline constexpr bool has_friction = false;
+inline constexpr bool some_have_friction = false;
 template <class... L>
-inline constexpr bool has_friction<Constraints<L...>> = ((ContactLaw<L> && L::rows > 1) || ...);
+inline constexpr bool some_have_friction<Constraints<L...>> = ((ContactLaw<L> && L::rows > 1) || ...);
 
 }  // namespace inner
 

@@ -51,7 +51,7 @@ struct PlainStages : StagesWithoutConstraints {
       const CollisionReport found = Step::Stages::find_contacts(step);
       step.contact_cache.record();
       inner::place_ends(step.collision(), step.contact_cache.results);
-      if constexpr (inner::has_friction<typename Step::Laws>) step.contact_cache.place_friction();
+      if constexpr (inner::some_have_friction<typename Step::Laws>) step.contact_cache.place_friction();
       const Index unclaimed = route_contacts(step.laws(), step.contact_cache, step.material_pairs);
       report_contacts(found, step.contact_cache.points, unclaimed, step.summary);
     }
