@@ -29,10 +29,10 @@ struct Patch {
   }
   static double mean_distance() { return (std::sqrt(2.0) + std::log(1 + std::sqrt(2.0))) / 3; }
 
-  void remember(const std::vector<double>& loads) {
+  void remember(const std::vector<double>& loads, const Vec<2>& friction = {0.1, 0.2}) {
     const auto entries = memory.renew(loads.size());
     for (std::size_t k = 0; k < loads.size(); ++k)
-      entries[k] = {7, points[k].feature, false, points[k].point(), Vec3(0.1, 0.2, loads[k])};
+      entries[k] = {7, points[k].feature, false, points[k].point(), Vec3(friction[0], friction[1], loads[k])};
     memory.sort();
   }
   std::vector<Vec3> arms() {
@@ -76,6 +76,15 @@ TEST_CASE("what one corner carries alone acts at that corner, and what an edge c
   for (const int k : {0, 1}) CHECK(std::abs(arms[std::size_t(k)].y()) < 1e-15);
   CHECK(arms[0].x() < 0);
   CHECK(arms[1].x() > 0);
+}
+
+TEST_CASE("a patch that hardly rubbed is left as it is, one that nothing is known of is not") {
+  for (const double friction : {0.0, 5e-4, 2e-3}) {
+    Patch patch;
+    patch.remember({1, 1, 1, 1}, {friction, 0});
+    for (const Vec3& arm : patch.arms()) CHECK((arm.norm() > 0) == (friction > 1e-3));
+  }
+  for (const Vec3& arm : Patch().arms()) CHECK(arm.norm() > 0);
 }
 
 TEST_CASE("two contacts, those without an area and what hangs above the deepest are no patch") {

@@ -21,7 +21,8 @@ namespace delassus {
 ///
 /// with the λ_i of the last step, or the areas where nothing pushed, and no farther from c than the farthest corner. (f is
 /// above 1 where the inner corners of several parts carry more than their share.) What one corner carries alone acts there. Contacts of a
-/// pair with areas and normals within 5° are one patch, as those of the parts of a compound. Two contacts are none.
+/// pair with areas and normals within 5° are one patch, as those of the parts of a compound. Two contacts are none. A patch
+/// that hardly rubs is left as it is, so that what rests is solved as points are.
 template <class Scalar>
 class BasicFrictionPlaces {
  public:
@@ -42,8 +43,7 @@ class BasicFrictionPlaces {
       while (!rest_.empty()) {
         split_patch(points);
         if (patch_.size() < 3) continue;
-        weigh(points, remembered);
-        place(points, results);
+        if (weigh(points, remembered)) place(points, results);
       }
     }
   }
@@ -73,21 +73,34 @@ class BasicFrictionPlaces {
     rest_.resize(left);
   }
 
-  /// The shares of the load.
-  void weigh(inner::Slice<const ContactPoint> points, inner::Slice<const typename Memory::Entry> remembered) {
-    Scalar sum = 0;
+  /// The shares of the load. False of a patch that pushed and whose friction, as a whole, was less than 1e-3 of the load: it
+  /// sticks, wherever friction acts. (That of its corners may press against each other.)
+  bool weigh(inner::Slice<const ContactPoint> points, inner::Slice<const typename Memory::Entry> remembered) {
+    Scalar sum = 0, moment = 0, reach = 0;
+    Vec3 friction = zero<Vec3>(), loaded = zero<Vec3>();
+    const Vec3 n = points[patch_[0]].normal, from = points[patch_[0]].point();
     weight_.clear();
     auto at = remembered.begin();
     for (const Index i : patch_) {
       while (at != remembered.end() && at->feature < points[i].feature) ++at;
       const bool is_known = at != remembered.end() && at->feature == points[i].feature;
-      weight_.push_back(is_known ? std::max(Scalar(0), dot(at->impulse, points[i].normal)) : Scalar(0));
-      sum += weight_.back();
+      const Scalar load = is_known ? std::max(Scalar(0), dot(at->impulse, points[i].normal)) : Scalar(0);
+      const Vec3 arm = points[i].point() - from;
+      if (is_known) friction += at->impulse - load * n, moment += dot(n, cross(arm, at->impulse));
+      loaded += load * arm;
+      reach = std::max(reach, norm(arm));
+      weight_.push_back(load);
+      sum += load;
+    }
+    if (sum > 0) {
+      moment -= dot(n, cross(loaded / sum, friction));
+      if (norm(friction) <= Scalar(1e-3) * sum && std::abs(moment) <= Scalar(1e-3) * sum * reach) return false;
     }
     if (!(sum > 0)) {
       for (std::size_t k = 0; k < patch_.size(); ++k) weight_[k] = points[patch_[k]].area, sum += weight_[k];
     }
     for (Scalar& w : weight_) w /= sum;
+    return true;
   }
 
   void place(inner::Slice<const ContactPoint> points, inner::Slice<ContactResult> results) const {
