@@ -161,7 +161,7 @@ TEST_CASE("bad problem files are refused with file, line and reason") {
   const std::string symmetric = with(two, "gen", "sym");
   REQUIRE(refusal(symmetric) == at + "6: W_10 of contact 0 is 0.2 and W_01 is 0.1, but a file of the form 'sym' is symmetric; "
                                      "write 'gen' if W is not");
-  REQUIRE(refusal(with(two, "1 1 5", "1 0 5")).find("line 9: the diagonal block of contact 1 is missing") != std::string::npos);
+  REQUIRE(refusal(with(two, "1 1 5", "1 0 5")) == at + "8: block (1, 0) is given twice, first on line 7; take one of them out");
   REQUIRE(refusal(with(two, "1 1 5", "1 1 0")) == at + "7: W_00 of contact 1 is 0 and must be > 0");
   REQUIRE(refusal(with(two, " 0.9\n", "\n")) ==
           at + "9: the file ends where an entry of a block should stand");

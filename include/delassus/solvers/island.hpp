@@ -216,9 +216,15 @@ class Island {
   static const T* free_of_impulses(const Span<T>& span, Index i) { return span.pool->d + std::ptrdiff_t(span.pool->rows) * i; }
   /// Σ w_k x_k² of the rows of one item.
   static double energy(const Span<T>& span, Index i, const T* x) {
-    double w[most_rows], sum = 0;
-    span.pool->weights(i, w);
-    for (int k = 0; k < span.pool->rows; ++k) sum += w[k] * double(x[k]) * double(x[k]);
+    const PoolView<T>& pool = *span.pool;
+    double sum = 0;
+    if (!inner::are_mixed(pool.rows, pool.turns)) {
+      for (int k = 0; k < pool.rows; ++k) sum += double(x[k]) * double(x[k]);
+      return pool.weight(i) * sum;
+    }
+    double w[most_rows];
+    pool.weights(i, w);
+    for (int k = 0; k < pool.rows; ++k) sum += w[k] * double(x[k]) * double(x[k]);
     return sum;
   }
   /// |u|² of one item, (m/s)².
