@@ -3,6 +3,7 @@
 
 #include <delassus/collision/contact_area.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 
 namespace delassus::inner {
