@@ -9,7 +9,8 @@ namespace delassus {
 /// (M + h/2 D + h²/4 K) (v⁺ − v) = h (f − h/2 K v),  q⁺ = q ⊕ h (v + v⁺)/2. Second order where K = −∂f/∂q; first order
 /// where a set leaves terms out of K to keep A definite, as pressed and damped springs do. Keeps quadratic invariants of
 /// linear forces. Bilateral rows hold for the mean velocity, H taken at q ⊕ h v/2, and what v has
-/// across them fades by a tenth a step.
+/// across them fades by a tenth a step. Rigid bodies that they hold turn by that mean, gyroscopic term included, however slender
+/// they are: see `inner::HeldTurn`.
 struct ImplicitMidpoint {
   using plays = role::Integrator;
   using each_block_alone = ImplicitMidpoint;

@@ -24,6 +24,12 @@ struct RigidState {
   Array<Eigen::Quaternion<T>> q;
   Array<Matrix> R, inertia, inverse_inertia, inverse_inertia_world;  ///< the last is R I⁻¹ Rᵀ
   Array<T> mass, inverse_mass;
+  /// t of a step's turn cay(t), in the axes of the body: of one whose joints have found it already.
+  struct GivenTurn {
+    Vector t;
+    bool is_given;
+  };
+  Array<GivenTurn> given_turn;  ///< empty where nobody gives any
   Array<Vec3> kept_x;
   Array<Eigen::Quaternion<T>> kept_q;
 
@@ -133,7 +139,12 @@ bool RigidState<T>::drift(Index b, Velocity& v, const Velocity& next, T h, T old
   if (old_share > T(0)) {
     const Vector start = transposed_times(R[b], angular_part(v));
     x[b] += converted<double>(Vector(h * mean<Vector>(linear_part(v), linear_part(next), old_share)));
-    q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h)));
+    if (!given_turn.empty() && given_turn[b].is_given) {
+      given_turn[b].is_given = false;
+      q[b] = unit_again(product(q[b], cayley<T>(given_turn[b].t)));
+    } else {
+      q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], start, inertia[b] * start, impulse, h)));
+    }
   } else {
     x[b] += converted<double>(Vector(h * linear_part(next)));
     q[b] = unit_again(product(q[b], midpoint_turn<T>(inertia[b], kicked, impulse, impulse, h)));

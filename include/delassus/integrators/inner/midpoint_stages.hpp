@@ -1,7 +1,8 @@
-/// What the midpoint rule changes in a step: rows of the mid-configuration, and joints whose velocity fades.
+/// What the midpoint rule changes in a step: rows of the mid-configuration, joints whose velocity fades, and how what they hold turns.
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/integrators/inner/held_turns.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/rate.hpp>
@@ -121,13 +122,23 @@ template <class P>
 struct MidpointState {
   typename P::Rows at_start;       ///< the rows of the start, where the step has others
   Impulses<typename P::Rows> fade;  ///< what fades of the velocity across the joints
+  typename P::World::template PerSet<HeldTurns> turns;  ///< of bodies with joints
 };
 
 template <class Base>
 struct MidpointStages : Base {
   static void linearize(auto& step) {
     Base::linearize(step);
+    const bool are_slender = begin_turns(step);
     linearize_at_midpoint(step.world(), step.laws(), step.rows, own(step).at_start, step.h);
+    if (are_slender) act_at_own_points(step);
+    each_turning_set(step, [&](auto&, auto& held, auto s) {
+      each_joint_pool(step.laws(), step.rows, [&](auto, auto& pool) { turn_back(inner::part<s>(pool.sets), held.bodies); });
+    });
+  }
+  static void free_motion(auto& step) {
+    Base::free_motion(step);
+    each_held(step, [&](auto& set, auto& held, Index b) { add_gyration(set, b, held.bodies[b]); });
   }
   static void make_bias(auto& step) {
     Base::make_bias(step);
@@ -138,9 +149,69 @@ struct MidpointStages : Base {
     Base::solve_island(step, island);
     if (reject_damping(step.rows, step.W, step.islands, island.island(), own(step).fade)) Base::solve_island(step, island);
   }
+  static void advance(auto& step) {
+    sum_moments(step);
+    each_held(step, [&](auto& set, auto& held, Index b) { end_turn(set, b, held.bodies[b], angular_part(held.moment[b])); });
+    Base::advance(step);
+  }
 
  private:
   static auto& own(auto& step) { return step.template state<role::Integrator>(); }
+
+  static void each_turning_set(auto& step, auto&& f) {
+    step.world().each([&](auto& set, auto s) {
+      if constexpr (TurnsRigidly<std::remove_cvref_t<decltype(set)>>) f(set, std::get<s>(own(step).turns), s);
+    });
+  }
+  static void each_held(auto& step, auto&& f) {
+    each_turning_set(step, [&](auto& set, auto& held, auto) {
+      for (const Index b : set.active())
+        if (held.bodies[b].is_held) f(set, held, b);
+    });
+  }
+  /// Of bodies with joints; true where one is slender.
+  static bool begin_turns(auto& step) {
+    bool are_slender = false;
+    each_turning_set(step, [&](auto& set, auto& held, auto s) {
+      using T = typename std::remove_cvref_t<decltype(set)>::Scalar;
+      held.bodies.resize(set.blocks());
+      held.moment.resize(set.blocks());
+      set.state().given_turn.resize(set.blocks());
+      for (auto& body : held.bodies) body.is_held = false;
+      for (auto& turn : set.state().given_turn) turn.is_given = false;
+      each_joint_pool(step.laws(), step.rows, [&](auto, auto& pool) {
+        for (const Index b : inner::part<s>(pool.sets).block)
+          if (auto& body = held.bodies[b]; !body.is_held && set.moves(b)) {
+            begin_turn(set, b, body, T(step.h));
+            are_slender = are_slender || (body.is_held && body.is_slender);
+          }
+      });
+    });
+    return are_slender;
+  }
+  static void act_at_own_points(auto& step) {
+    step.world().each([&](auto& set, auto) { set.shift(step.h / 2); });
+    each_turning_set(step, [&](auto& set, auto& held, auto s) {
+      each_joint_pool(step.laws(), step.rows, [&](auto p, auto& rows) {
+        const auto& pool = step.laws().template pool<p>();
+        if constexpr (JoinsPoints<std::remove_cvref_t<decltype(pool.law)>>)
+          inner::act_at_own_points(set, pool, step.view, inner::part<s>(rows.sets), held.bodies);
+      });
+    });
+    step.world().each([&](auto& set, auto) { set.restore(); });
+  }
+  /// Hᵀ λ of the joints.
+  static void sum_moments(auto& step) {
+    const auto all = step.arrays.all();
+    each_turning_set(step, [&](auto& set, auto& held, auto s) {
+      using T = typename std::remove_cvref_t<decltype(set)>::Scalar;
+      for (auto& x : held.moment) set_zero(x);
+      each_joint_pool(step.laws(), step.rows, [&](auto p, auto& pool) {
+        const SetArrays<T>& blocks = all[p].set[s];
+        blocks.products->add_impulse(blocks, pool.items(), all[p].lambda->data(), reinterpret_cast<T*>(held.moment.data()));
+      });
+    });
+  }
 };
 
 }  // namespace inner
