@@ -7,6 +7,7 @@
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/pool_rows.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/rows/soft.hpp>
 
 #include <cstddef>
 #include <type_traits>
@@ -79,7 +80,7 @@ struct RowArrays {
 
   Index items() const { return Index(phi->size()) / rows; }
   /// Row k of item i is a spring, or a damper.
-  bool is_soft(std::size_t row) const { return (*stiffness)[row] > 0 || (*damping)[row] > 0; }
+  bool is_soft(std::size_t row) const { return inner::is_spring((*stiffness)[row], (*damping)[row]); }
 
   /// Room for the rows of `items` items, which are begun and closed one by one, in order.
   void reset(Index items) const {

@@ -4,6 +4,7 @@
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/rows/world_view.hpp>
 #include <delassus/step/law_rows.hpp>
 #include <delassus/step/moving_surfaces.hpp>
@@ -72,7 +73,7 @@ template <class T, class S>
     const RowKind kind = law.kinds[k];
     const double phi = double(all_phi[k]);
     if (kind == RowKind::friction) continue;
-    if (stiffness[k] > 0 || damping[k] > 0) {
+    if (inner::is_spring(stiffness[k], damping[k])) {
       soften(pool, row, h, law.has_mean_springs ? theta : 1.0);
       if (law.has_mean_springs) u[k] += before * start[k];
     } else if (kind == RowKind::equality) {

@@ -3,6 +3,7 @@
 
 #include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_arrays.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/rows/world_view.hpp>
 #include <delassus/step/law_rows.hpp>
 
@@ -44,7 +45,7 @@ double worst_equality(AllLaws<T> laws, AllRows<T> rows) {
     const T *phi = pool.phi->begin(), *const end = pool.phi->end(), *stiffness = pool.stiffness->begin(), *damping = pool.damping->begin();
     for (; phi != end; phi += height, stiffness += height, damping += height)
       for (int k = 0; k < height; ++k)
-        if (kinds[k] == RowKind::equality && !(stiffness[k] > 0 || damping[k] > 0)) worst = std::max(worst, double(std::abs(phi[k])));
+        if (kinds[k] == RowKind::equality && !inner::is_spring(stiffness[k], damping[k])) worst = std::max(worst, double(std::abs(phi[k])));
   }
   return worst;
 }

@@ -42,7 +42,7 @@ struct DistanceJoint : Bilateral<1> {
     row.end(item.a, xa).along(0, e);
     row.end(item.b, xb).along(0, -e);
     row.phi(0, distance - item.length);
-    if (item.stiffness > 0 || item.damping > 0) row.soft(0, item.stiffness, item.damping);
+    if (inner::is_spring(item.stiffness, item.damping)) row.soft(0, item.stiffness, item.damping);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <delassus/rows/rate.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/theta.hpp>
 
@@ -40,6 +41,22 @@ V joint_velocity_damping(const V& u, const V& s) {
   return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
 }
 
+/// The bodies at q ⊕ h v while it lives, and back where they were after it: also when a law throws.
+template <class World>
+class Shifted {
+ public:
+  Shifted(World& world, double h) : world_(world) {
+    world.each([&](auto& set, auto) { set.shift(h); });
+  }
+  Shifted(const Shifted&) = delete;
+  ~Shifted() {
+    world_.each([](auto& set, auto) { set.restore(); });
+  }
+
+ private:
+  World& world_;
+};
+
 }  // namespace inner
 
 /// H at the guess q ⊕ h v/2 of the mid-configuration, φ and λ where the step starts. Contacts keep the rows of the start:
@@ -48,9 +65,10 @@ V joint_velocity_damping(const V& u, const V& s) {
 template <class World, class Laws, class Rows>
 void linearize_at_midpoint(World& world, const Laws& laws, Rows& rows, Rows& at_start, double h) {
   std::swap(rows, at_start);
-  world.each([&](auto& set, auto) { set.shift(h / 2); });
-  linearize(std::as_const(world), laws, rows);
-  world.each([&](auto& set, auto) { set.restore(); });
+  {
+    const inner::Shifted moved(world, h / 2);
+    linearize(std::as_const(world), laws, rows);
+  }
   for_each_index<Laws::pool_count>([&](auto p) {
     auto &middle = rows.template pool<p>(), &start = at_start.template pool<p>();
     if constexpr (ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) {
@@ -79,7 +97,7 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
       const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
       const auto fades = inner::joint_velocity_damping(inner::rate_at_start(at_start.template pool<p>(), i, world), u);
       for (int k = 0; k < Law::rows; ++k) {
-        if (kinds[k] != RowKind::equality || pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0) continue;
+        if (kinds[k] != RowKind::equality || inner::is_spring(pool.stiffness[i][k], pool.damping[i][k])) continue;
         own[k] = T((1 - theta) / theta) * fades[k];
         pool.d[i][k] -= own[k];
       }

@@ -3,6 +3,7 @@
 
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/anchor.hpp>
+#include <delassus/rows/writer.hpp>
 
 #include <array>
 #include <type_traits>
@@ -73,6 +74,7 @@ class ItemEnd {
  private:
   template <class F>
   void add(int k, const F& row) {
+    inner::expect_row(k, R);
     with_set_of_body(world_, anchor_, [&](auto s) {
       const auto& set = world_.template set<s>();
       rows_[std::size_t(k)].template head<std::remove_cvref_t<decltype(set)>::width>() += row(set).template cast<double>();
@@ -95,8 +97,14 @@ class ItemWriter {
   ItemEnd<World, R> end(const Anchor& anchor, const Vec3& point) {
     return {world_, is_a(anchor) ? rows_.a : rows_.b, anchor, point};
   }
-  void phi(int k, double value) { rows_.phi[k] = value; }
-  void soft(int k, double stiffness, double damping) { rows_.stiffness[k] = stiffness, rows_.damping[k] = damping; }
+  void phi(int k, double value) {
+    inner::expect_row(k, R);
+    rows_.phi[k] = value;
+  }
+  void soft(int k, double stiffness, double damping) {
+    inner::expect_row(k, R);
+    rows_.stiffness[k] = stiffness, rows_.damping[k] = damping;
+  }
 
  private:
   /// By its address, or, where a law copies its anchors, by its body: the two ends are never on one.

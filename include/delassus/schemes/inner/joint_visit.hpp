@@ -115,7 +115,7 @@ class JointVisit {
   template <class Law, class S>
   void make_bias(const Law& law, const typename Law::Item& item, const ItemRows<R>& H, int k, const S& stabilisation, double h) {
     yield_[k] = 0;
-    if (H.stiffness[k] > 0 || H.damping[k] > 0) {
+    if (inner::is_spring(H.stiffness[k], H.damping[k])) {
       const inner::SoftRow row = inner::soft_row(H.stiffness[k], H.damping[k], H.phi[k], h, 1);
       yield_[k] = row.compliance;
       bias_[k] = row.bias;

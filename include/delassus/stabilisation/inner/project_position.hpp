@@ -7,6 +7,7 @@
 #include <delassus/rows/islands.hpp>
 #include <delassus/rows/rate.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/stabilisation/inner/position_laws.hpp>
 #include <delassus/step/linearize.hpp>
@@ -32,7 +33,7 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
       pool.d[i].setZero();
       for (int k = 0; k < Law::rows; ++k) {
         const double phi = double(pool.phi[i][k]), sign = kinds[k] == RowKind::upper ? -1 : 1;
-        const bool is_soft = pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0;
+        const bool is_soft = inner::is_spring(pool.stiffness[i][k], pool.damping[i][k]);
         if (kinds[k] == RowKind::equality) {
           double asked = stabilisation.close(phi, h) + double(u[k]);
           if (at_end) asked = stabilisation.close(double(at_end->template pool<p>().phi[i][k]), h);
@@ -65,7 +66,7 @@ double share_that_closes(Step& step, const typename Step::Rows& at_end, Index is
     const auto u = inner::rate(pool, i, w);
     for (int k = 0; k < Law::rows; ++k) {
       const double W = double(step.W.template diagonal<p>(i)(k, k));
-      const bool is_soft = pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0;
+      const bool is_soft = inner::is_spring(pool.stiffness[i][k], pool.damping[i][k]);
       if (kinds[k] != RowKind::equality || is_soft || !(W > 0)) continue;
       closed -= step.stabilisation().close(double(pool.phi[i][k]), step.h) * double(u[k]) / W;
       square += double(u[k]) * double(u[k]) / W;

@@ -6,6 +6,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/rows/impulses.hpp>
 #include <delassus/rows/rate.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/linearize.hpp>
@@ -58,7 +59,7 @@ class Equalities {
 
   template <class Pool>
   static bool is_soft(const Pool& pool, Index i, int k) {
-    return pool.stiffness[i][k] > 0 || pool.damping[i][k] > 0;
+    return inner::is_spring(pool.stiffness[i][k], pool.damping[i][k]);
   }
 
   /// The largest |φ| of the rows that are not soft, m or rad; NaN where one is none.

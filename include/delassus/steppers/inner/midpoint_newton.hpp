@@ -7,6 +7,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/impulses.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/steppers/inner/direct_rows.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/linearize.hpp>
@@ -224,7 +225,7 @@ class MidpointNewton {
   template <class Pool>
   static void soften(Pool& pool, Index i, int k, double start, double h) {
     const double stiffness = h / 2 * double(pool.stiffness[i][k]), damping = double(pool.damping[i][k]);
-    if (!(stiffness + damping > 0)) return;
+    if (!inner::is_spring(stiffness, damping)) return;
     pool.compliance[i][k] = T(1 / (stiffness + damping));
     pool.bias[i][k] = T(start * (stiffness - damping) / (stiffness + damping));
   }
