@@ -86,4 +86,17 @@ TEST_CASE("who asks without the backend is told so; groups leave meshes out") {
   CHECK_FALSE(ray_cast(w.meshed, {0, 0, 5}, {0, 0, -1}, 10., 2u));
 }
 
+TEST_CASE("a compound is refused by every question, with the backend named or not; groups leave it out") {
+  World<RigidBodies> world;
+  bodies<RigidBodies>(world).add({.shape = KeptShape{ShapeKind::compound, 0, {1, 1, 1}}, .motion = Motion::fixed});
+  WithMeshes<> meshes;
+  std::vector<SurfacePoint> found;
+  const auto refused = Catch::Matchers::Contains("a compound is known to its backend alone, and no question sees its parts");
+  CHECK_THROWS_WITH(ray_cast(world, {0, 0, 5}, {0, 0, -1}), refused);
+  CHECK_THROWS_WITH(ray_cast(world, meshes, {0, 0, 5}, {0, 0, -1}), refused);
+  CHECK_THROWS_WITH(closest_point(world, meshes, {0, 0, 5}), refused);
+  CHECK_THROWS_WITH(overlaps(world, meshes, Sphere{1}, {}, found), refused);
+  CHECK_FALSE(ray_cast(world, meshes, {0, 0, 5}, {0, 0, -1}, 10., 2u));
+}
+
 }  // namespace mesh_queries_tests

@@ -1,5 +1,5 @@
 /// The questions of queries.hpp where some bodies are meshes: name the backend that keeps them after the
-/// world.
+/// world. Compounds are refused here too.
 #pragma once
 
 #include <delassus/collision/queries.hpp>
@@ -42,7 +42,7 @@ inline double way_to(const Triangle& t, const Vec3& origin, const Vec3& d) {
 template <class World, class Backend>
 SurfacePoint ray_cast(const World& world, const WithMeshes<Backend>& meshes, const Vec3& origin,
                       const Vec3& direction, double reach = inner::forever, std::uint32_t groups = ~0u) {
-  SurfacePoint first = ray_cast(world, origin, direction, reach, groups, inner::PassKept{});
+  SurfacePoint first = ray_cast(world, origin, direction, reach, groups, inner::PassMeshes{});
   const Vec3 along = inner::direction_of(direction);
   double nearest = first ? first.distance : reach;
   inner::each_surface(world, meshes, groups,
@@ -68,7 +68,7 @@ SurfacePoint ray_cast(const World& world, const WithMeshes<Backend>& meshes, con
 template <class World, class Backend>
 SurfacePoint closest_point(const World& world, const WithMeshes<Backend>& meshes, const Vec3& point,
                            double reach = inner::forever, std::uint32_t groups = ~0u) {
-  SurfacePoint best = closest_point(world, point, reach, groups, inner::PassKept{});
+  SurfacePoint best = closest_point(world, point, reach, groups, inner::PassMeshes{});
   double limit = best ? best.distance : reach;
   inner::each_surface(
       world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& pose) {
@@ -92,7 +92,7 @@ SurfacePoint closest_point(const World& world, const WithMeshes<Backend>& meshes
 template <class World, class Backend>
 void overlaps(const World& world, const WithMeshes<Backend>& meshes, const Shape& shape, const Pose& pose,
               std::vector<SurfacePoint>& found, double margin = 0, std::uint32_t groups = ~0u) {
-  overlaps(world, shape, pose, found, margin, groups, inner::PassKept{});
+  overlaps(world, shape, pose, found, margin, groups, inner::PassMeshes{});
   Patch patch;
   inner::each_surface(
       world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& at) {

@@ -97,17 +97,21 @@ inline bool ray_meets(const Aabb& box, const Vec3& origin, const Vec3& direction
   return first <= last;
 }
 
+/// Meshes are asked elsewhere; the parts of a compound nowhere.
+struct PassMeshes {
+  void operator()(const auto& set, Index, Index b, const Shape& shape, const Pose&) const {
+    if (shape.kind == ShapeKind::compound)
+      refuse(set.who(b) + ": a compound is known to its backend alone, and no question sees its parts; leave its group out of the mask");
+  }
+};
 /// What is asked of a body whose shape a backend keeps: nothing can be.
 struct RefuseKept {
-  void operator()(const auto& set, Index, Index b, const Shape& shape, const Pose&) const {
+  void operator()(const auto& set, Index s, Index b, const Shape& shape, const Pose& pose) const {
+    PassMeshes{}(set, s, b, shape, pose);
     refuse(set.who(b) + ": a " + name(shape.kind) +
            " is known to its backend alone; name it in the question (" +
            "delassus/collision/mesh_queries.hpp), or leave the group out of the mask");
   }
-};
-/// Those are asked elsewhere.
-struct PassKept {
-  void operator()(const auto&...) const {}
 };
 
 /// f(set, s, b, shape, pose) for body b of set s when it has a shape and its group meets the mask. When a backend keeps the
