@@ -66,6 +66,12 @@ TEST_CASE("a tolerance below rounding ends at the floor and says stalled") {
   REQUIRE(r.sweeps < 100000);
 }
 
+TEST_CASE("each of the two solvers refuses a number by its own name") {
+  REQUIRE_THROWS_WITH(AcceleratedSweeps{.relaxation = 3}.check(), Catch::StartsWith("delassus: AcceleratedSweeps: relaxation 3 must lie"));
+  REQUIRE_THROWS_WITH(AcceleratedSweeps{.tolerance = -1}.check(), Catch::StartsWith("delassus: AcceleratedSweeps: tolerance -1"));
+  REQUIRE_THROWS_WITH(AcceleratedGaussSeidel{.max_iterations = -1}.check(), Catch::StartsWith("delassus: AcceleratedGaussSeidel: max_iterations -1"));
+}
+
 TEST_CASE("every iterate that momentum returns lies in the cone") {
   for (const int limit : {1, 3, 10, 30, 100}) {
     auto p = ten;

@@ -80,10 +80,10 @@ struct BasicAcceleratedGaussSeidel {
 
   SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
   void check() const {
-    inner::expect_at_least_zero("AcceleratedGaussSeidel: tolerance", tolerance);
-    inner::expect_at_least_zero("AcceleratedGaussSeidel: max_iterations", max_iterations);
-    inner::expect_number(relaxation > 0 && relaxation < 2, "AcceleratedGaussSeidel: relaxation", relaxation,
-                         "must lie in (0, 2)");
+    const auto name = [](const char* number) { return std::string(Newton::solver) + ": " + number; };
+    if (!(tolerance >= 0)) inner::expect_at_least_zero(name("tolerance"), tolerance);
+    if (!(max_iterations >= 0)) inner::expect_at_least_zero(name("max_iterations"), max_iterations);
+    if (!(relaxation > 0 && relaxation < 2)) inner::expect_number(false, name("relaxation"), relaxation, "must lie in (0, 2)");
   }
 
   /// Sweeps in which the error must halve, at first. Momentum may stand for a thousand before it goes on:

@@ -136,6 +136,7 @@ namespace delassus {
 
 /// A chain that sweeps and no more.
 struct SweepsAlone {
+  static constexpr const char* solver = "AcceleratedSweeps";  ///< its name in refusals
   static constexpr Needs needs = Needs::sweeps;
   template <class T, int width>
   struct Space {
@@ -150,6 +151,7 @@ struct SweepsAlone {
 /// A chain that turns to Newton's method in the velocities of the bodies where a problem has any and stops on
 /// a measured error.
 struct ThenNewton {
+  static constexpr const char* solver = "AcceleratedGaussSeidel";  ///< its name in refusals
   static constexpr Needs needs = Needs::tangents;
   template <class T, int width>
   using Space = std::conditional_t<(width > 0), inner::NewtonSpace<T, width>, SweepsAlone::Space<T, width>>;
