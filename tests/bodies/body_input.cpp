@@ -108,6 +108,7 @@ TEST_CASE("a shape of no size is refused with its measure") {
   refused(Cylinder{infinity, 1}, "cylinder radius inf");
   refused(Cone{1, -2}, "cone height -2");
   refused(Ellipsoid{1, 1, 0}, "ellipsoid semi-axis c 0");
+  CHECK_THROWS_WITH(set.add_fixed(Sphere{1e200}), Contains("sphere radius 1e+200 m must be <= 1e100 m"));
   CHECK_THROWS_WITH(set.add_fixed(HalfSpace{.normal = Vec3::Zero()}),
                     Contains("half-space normal is zero or not finite"));
   CHECK_THROWS_WITH(set.add_fixed(HalfSpace{.offset = no_number}),

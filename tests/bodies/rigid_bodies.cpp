@@ -35,6 +35,23 @@ TEST_CASE("a kinematic body reaches the pose it is told, to the bit") {
   REQUIRE(set.position(body).x() == 0.1 * 50);
 }
 
+TEST_CASE("a body that is moved or placed without an orientation keeps its own") {
+  AnimationLoop loop{World{RigidBodies{}}};
+  auto& set = rigid_bodies(loop);
+  const Quat turn(Eigen::AngleAxisd(0.7, Vec3(1, 2, 2) / 3));
+  const auto led = set.add({.orientation = turn, .motion = Motion::kinematic});
+  const auto free = set.add({.orientation = turn, .mass = 1.0, .shape = Box{1, 1, 1}});
+  const Quat before = set.orientation(led);
+  set.move_to(led, {1, 0, 0});
+  set.place(free, {0, 2, 0});
+  CHECK(set.orientation(free).coeffs() == before.coeffs());
+  CHECK(set.position(free) == Vec3(0, 2, 0));
+  loop.step(1e-2);
+  CHECK(set.position(led) == Vec3(1, 0, 0));
+  // The target is made a unit quaternion once more, which moves each coefficient by a rounding.
+  CHECK((set.orientation(led).coeffs() - before.coeffs()).norm() <= 4e-16);
+}
+
 TEST_CASE("a kinematic body with a velocity and no target moves with it") {
   AnimationLoop loop{World{RigidBodies{}}};
   auto& set = rigid_bodies(loop);

@@ -24,7 +24,7 @@ enum class Motion : std::uint8_t { dynamic, kinematic, fixed };
 /// comes from the shape unless `inertia` (about the centre of mass, body frame) is given.
 struct RigidBody {
   Vec3 position = zero<Vec3>();
-  Quat orientation = Quat::Identity();
+  Quat orientation = Quat::Identity();  ///< of any length but zero: it is made a unit quaternion
   Vec3 velocity = zero<Vec3>();
   Vec3 angular_velocity = zero<Vec3>();
   std::optional<double> mass{};

@@ -101,19 +101,28 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     surfaces_.set(b, linear, angular);
   }
 
-  /// Where a kinematic body shall be at the end of the next step; its velocity is (q(t+h) ⊖ q(t)) / h.
-  void move_to(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
+  /// Where a kinematic body shall be at the end of the next step; its velocity is (q(t+h) ⊖ q(t)) / h. The orientation may
+  /// have any length but zero.
+  void move_to(Handle body, const Vec3& position, const Quat& orientation) {
     const Index b = checked(body);
     DELASSUS_EXPECT(motion_[b] == Motion::kinematic, who(b) + ": only a kinematic body can be moved along a path");
     check_pose(position, orientation, b);
     targets_.set(b, position, orientation);
   }
+  /// The same, turned as it is now.
+  void move_to(Handle body, const Vec3& position) { move_to(body, position, orientation(body)); }
 
-  /// Puts a body somewhere else at once, its velocity unchanged.
-  void place(Handle body, const Vec3& position, const Quat& orientation = Quat::Identity()) {
+  /// Puts a body somewhere else at once, its velocity unchanged. The orientation may have any length but zero.
+  void place(Handle body, const Vec3& position, const Quat& orientation) {
     const Index b = checked(body);
     check_pose(position, orientation, b);
     state_.place(b, position, unit(orientation));
+  }
+  /// The same, turned as it is.
+  void place(Handle body, const Vec3& position) {
+    const Index b = checked(body);
+    check_pose(position, Quat::Identity(), b);
+    state_.x[b] = position;
   }
 
   // --- reading -------------------------------------------------------------------------------------------------
@@ -141,6 +150,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     if (is_held) state_.inverse_mass[b] = T(0), set_all(state_.inverse_inertia_world[b], T(0));
     else set_mass(b);
   }
+  /// Impulses move it at no time: it is fixed or kinematic.
+  bool never_yields(Index b) const { return motion_[b] != Motion::dynamic; }
   Motion motion(Index b) const { return motion_[b]; }  ///< as it was added; fixed once it is removed
 
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }

@@ -151,6 +151,7 @@ inline void check(const Shape& s, const std::string& where) {
   using enum ShapeKind;
   const auto check_length = [&](double value, const std::string& what) {
     inner::expect_positive(where + ": " + what, value, "m");
+    inner::expect_number(value <= 1e100, where + ": " + what, value, "must be <= 1e100 m, so that volumes are numbers", "m");
   };
   if (s.kind == sphere || s.kind == capsule || s.kind == cylinder || s.kind == cone)
     check_length(s.size[0], name(s.kind) + std::string(" radius"));
