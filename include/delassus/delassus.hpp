@@ -48,6 +48,7 @@
 #include <delassus/listeners/stopwatch.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/reaction.hpp>
+#include <delassus/loop/what_is_odd.hpp>
 #include <delassus/loop/why_quarantined.hpp>
 #include <delassus/schemes/collisions_first.hpp>
 #include <delassus/schemes/predictive_scheme.hpp>

@@ -114,10 +114,10 @@ TEST_CASE("a copy of a loop has items of its own") {
   Hoist hoist;
   hoist.hang(0, long_name);
   hoist.run(50);
-  Hoist copy = hoist;
+  Hoist copy{hoist.loop.clone(), hoist.weights};
   hoist.run(100);
   {
-    const Hoist gone = copy;
+    const Hoist gone{copy.loop.clone(), copy.weights};
   }
   copy.run(100);
   CHECK(copy.height(0) == hoist.height(0));

@@ -28,7 +28,7 @@ class Scene {
   using Handle = Set::Handle;
 
   Scene(Loop loop, AddJoint add_joint, const std::uint8_t* data, std::size_t size)
-      : empty_(loop), loop_(std::move(loop)), add_joint_(add_joint), bytes_(data, size) {
+      : empty_(loop.clone()), loop_(std::move(loop)), add_joint_(add_joint), bytes_(data, size) {
     wild_ = bytes_.chance(100) ? (bytes_.chance(128) ? 64 : 256) : 0;
     unit_ = bytes_.magnitude(-3, 3);
     h_ = bytes_.magnitude(-4, -1);
@@ -217,7 +217,7 @@ class Scene {
   /// What a checkpoint gives goes on to the bit; with one byte changed it is refused, and changes nothing.
   void go_on_from_checkpoint() {
     std::vector<char> kept = checkpoint(loop_);
-    Loop other = empty_;
+    Loop other = empty_.clone();
     restore(other, kept);
     expect(state_hash(other) == state_hash(loop_), "a loop that was restored is not where it was");
     loop_.step(h_), other.step(h_);
@@ -256,7 +256,7 @@ class Scene {
 template <class Loop, class AddJoint>
 int play(const Loop& loop, AddJoint add_joint, const std::uint8_t* data, std::size_t size) {
   for (int tries = 0; tries < 3; ++tries) {
-    const std::string slow = Scene(loop, add_joint, data, size).run();
+    const std::string slow = Scene(loop.clone(), add_joint, data, size).run();
     if (slow.empty()) break;
     expect(tries < 2, slow);
   }

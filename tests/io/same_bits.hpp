@@ -43,7 +43,7 @@ void require_same_bits(double h, const Fresh& fresh, const Fill& fill, const Dri
     auto restored = fresh();
     restore(restored, bytes);
     REQUIRE(restored.time() == loop.time());
-    auto original = loop;
+    auto original = loop.clone();
     for (int n = at; n < at + how.steps; ++n) {
       drive(original, n);
       drive(restored, n);

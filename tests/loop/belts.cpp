@@ -172,7 +172,7 @@ TEST_CASE("a surface velocity goes with a copy and a checkpoint, and not to the 
   auto& set = set_of(loop);
   const auto belt = add_belt(set, 0.5);
   add_parcel(set);
-  auto copy = loop;
+  auto copy = loop.clone();
   auto restored = scene(Coulomb{.friction = mu});
   restore(restored, checkpoint(loop));
   for (auto* each : {&loop, &copy, &restored}) {

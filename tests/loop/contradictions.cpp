@@ -178,7 +178,7 @@ TEST_CASE("the handle of one loop names nothing in another, and its copies share
   const auto joint = add(one);
   add(two);
   REQUIRE_THROWS_WITH(two.remove(joint), Catch::Contains("another loop's"));
-  auto copy = one;
+  auto copy = one.clone();
   REQUIRE_NOTHROW(copy.remove(joint));
 }
 
@@ -207,7 +207,7 @@ TEST_CASE("after something was taken out the last problem is empty, and a copied
     l.each_constraint([&](auto&&...) { ++n; });
     return n;
   };
-  auto copy = std::make_unique<decltype(loop)>(loop);
+  auto copy = std::make_unique<decltype(loop)>(loop.clone());
   REQUIRE(count(*copy) == 5);
   copy->remove(joint);
   REQUIRE(count(*copy) == 0);

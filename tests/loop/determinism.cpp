@@ -96,7 +96,7 @@ TEST_CASE("a law whose items went leaves no row and no bit behind, as one that n
   const ConvexHull hull = cube_of_points(0.7);
   const Vec3 far(50, 20, 1000), hook(50, 20, 1001);  // it falls for longer than this takes
   AnimationLoop never{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, BallJoint{}, DistanceJoint{}}};
-  auto went = never;
+  auto went = never.clone();
   std::vector<RigidBodies::Handle> piles[2];
   int k = 0;
   RigidBodies::Handle bob;

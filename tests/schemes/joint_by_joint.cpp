@@ -22,8 +22,8 @@ struct Apart {
 };
 template <class World, class Laws, class Build>
 Apart apart(World world, Laws laws, const Build& build, int steps, double h, auto scheme, auto solver) {
-  AnimationLoop visits{world, laws, scheme};
-  AnimationLoop plain{world, laws, solver};
+  AnimationLoop visits{world.clone(), laws, scheme};
+  AnimationLoop plain{std::move(world), laws, solver};
   build(visits);
   build(plain);
   Apart out;
@@ -233,10 +233,10 @@ TEST_CASE("joints of bodies that are gone are dropped after a removal was undone
       loop.add(BallJoint::Item{anchor(set, bob, {-1, 0, 0}), world_anchor({0, 3.0 * k, 0})});
     }
     loop.step(1e-3);
-    const auto saved = loop.world();
+    auto saved = loop.world().clone();
     set.remove(set.handle(0));
     CHECK(loop.step(1e-3).rows == 6);
-    loop.world() = saved;
+    loop.world() = std::move(saved);
     set.remove(set.handle(1));
     CHECK(loop.step(1e-3).rows == 3);
   };

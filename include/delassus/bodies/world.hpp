@@ -10,6 +10,7 @@
 #include <delassus/rows/body_set.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -62,6 +63,17 @@ class World {
   = default;
   /// Takes the sets over, in their order.
   explicit World(Sets... sets) : sets_{{static_cast<Sets&&>(sets)}...} {}
+  World(World&&) = default;  ///< handles stay valid
+  World& operator=(World&&) = default;
+  /// A copy that is not meant: bodies of it would be moved, and the loop's own would not.
+  template <std::same_as<World> Copied>
+  World(Copied& world) : World(std::as_const(world)) {
+    static_assert(!std::is_same_v<Copied, World>,
+                  "delassus: a World is not copied silently; write `auto& world` for the one of a loop, std::move(world) to hand "
+                  "one over, or world.clone() for a copy that is meant");
+  }
+  /// A copy with all its bodies. The handles of each are good for both.
+  World clone() const { return World(*this); }
 
   /// Number s of the list of types, from 0.
   template <int s>
@@ -167,6 +179,11 @@ class World {
   void memory(auto& archive) { archive(sets_); }
 
  private:
+  template <std::size_t, class>
+  friend struct inner::PackPart;  // a loop clones its policies
+  World(const World&) = default;
+  World& operator=(const World&) = default;
+
   template <class Set>
   static consteval bool has_one() {
     constexpr int count = (int(std::is_same_v<Set, Sets>) + ... + 0);

@@ -196,7 +196,7 @@ auto BasicFem<E, M, T>::add(const Body& body) -> BodyHandle {
                     body_name(body_slots_.size()) + ": a node at " + inner::beyond<T>(p, "m"));
   }
   inner::check_placed(mesh, body.position, body_name(body_slots_.size()));
-  const Index k = this->take_body();
+  const Index k = this->take_body(body.material);
   Array<Index> blocks;
   for (const Vec3& p : mesh.points) {
     const Index b =

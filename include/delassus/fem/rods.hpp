@@ -277,7 +277,7 @@ auto BasicRods<T>::add(const Rod& rod) -> BodyHandle {
                           inner::without_inverse<T>(inner::text(inertia[k](i, i)), "kg·m²"));
   }
 
-  const Index k = this->take_body();
+  const Index k = this->take_body(rod.material);
   Array<Index> blocks;
   for (Index i = 0; i < n; ++i) {
     const Index b = this->take_node(rod, k, i, twist<T>(converted<T>(rod.velocity), Vec<3, T>::Zero()));

@@ -77,7 +77,7 @@ void restore(Loop& loop, std::span<const char> bytes) {
   bytes = bytes.subspan(sizeof sum.value);
   sum.bytes(bytes.data(), bytes.size());
   DELASSUS_EXPECT(sum.value == said.value, "checkpoint: its bytes are not those that were written");
-  Loop next = loop;
+  Loop next = loop.clone();
   ArchiveReader archive(bytes);
   next.memory(archive);
   DELASSUS_EXPECT(archive.is_at_end(), "checkpoint: it is longer than this loop can read");

@@ -8,6 +8,7 @@
 #include <delassus/step/plain_step.hpp>
 #include <delassus/step/step_data.hpp>
 
+#include <concepts>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -33,6 +34,21 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
 
   /// Takes the policies over. Throws InvalidArgument where a number of one of them is invalid.
   explicit AnimationLoop(Args... policies);
+
+  AnimationLoop(AnimationLoop&&) = default;
+  AnimationLoop& operator=(AnimationLoop&&) = default;
+  /// A copy that is not meant: it would step, and the loop itself would not.
+  template <std::same_as<AnimationLoop> Copied>
+  AnimationLoop(Copied& loop) : AnimationLoop(std::as_const(loop)) {
+    static_assert(!std::is_same_v<Copied, AnimationLoop>,
+                  "delassus: an AnimationLoop is not copied silently; write `auto& loop` for the one that is there, std::move(loop) "
+                  "to hand it over, or loop.clone() for a copy that is meant");
+  }
+  /// A copy with its world, its policies and what they remember. Handles are good for both. Refused while a step runs.
+  AnimationLoop clone() const {
+    DELASSUS_EXPECT(!this->is_under_way, "clone: a step runs and its state is half made; clone the loop after the step");
+    return AnimationLoop(*this);
+  }
 
   /// Moves the scene by so many seconds. Throws InvalidArgument when they are not finite and > 0, a number of a policy was made
   /// invalid, or a body's material was never added; never for what happens inside.
@@ -142,6 +158,8 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
   void memory(auto& archive);
 
  private:
+  AnimationLoop(const AnimationLoop&) = default;
+  AnimationLoop& operator=(const AnimationLoop&) = default;
   static constexpr bool is_sound = inner::loop_policies<Args...>::are_sound;
   using Data::laws;
   auto& activity_state() { return Data::template state<role::Activity>(); }

@@ -20,6 +20,7 @@
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/stabilisation/stabilisation.hpp>
 #include <delassus/step/channels.hpp>
+#include <delassus/step/notify.hpp>
 #include <delassus/step/row_types.hpp>
 #include <delassus/step/stage.hpp>
 
@@ -93,8 +94,15 @@ consteval bool at_most_one() {
 }
 
 template <class... Args>
+consteval bool one_observes_sweeps() {
+  constexpr bool is_one = (0 + ... + int(observes_sweeps<Args>)) <= 1;
+  static_assert(is_one, "delassus: of the listeners with `every_sweep` a solver tells one, as ConvergenceRecord is; take the others out");
+  return is_one;
+}
+
+template <class... Args>
 consteval bool one_of_each() {
-  return at_most_one<role::Integrator, Args...>() && at_most_one<role::Constraints, Args...>() &&
+  return one_observes_sweeps<Args...>() && at_most_one<role::Integrator, Args...>() && at_most_one<role::Constraints, Args...>() &&
          at_most_one<role::Collision, Args...>() && at_most_one<role::Compliance, Args...>() &&
          at_most_one<role::Solver, Args...>() && at_most_one<role::Stabilisation, Args...>() &&
          at_most_one<role::Scheme, Args...>() && at_most_one<role::Activity, Args...>();

@@ -45,11 +45,41 @@ template <class Char>
   refuse(law + ": both ends are in the world; one must be on a body");
 }
 
+/// A joint between bodies that no impulse moves.
+template <class Char>
+[[noreturn]] void refuse_still_ends(const std::basic_string<Char>& law, const std::basic_string<Char>& ends) {
+  refuse(law + ": " + ends + " do not yield, being fixed, kinematic or the world; it would hold nothing, let one end be on a dynamic body");
+}
+/// A constraint that a listener adds.
+template <class Char>
+[[noreturn]] void refuse_during_step(const std::basic_string<Char>& law) {
+  refuse(law + ": it is added while a step runs, whose arrays have no place for it; add it after the step");
+}
+
 template <class World>
 std::string name_of_body(const World& world, const Anchor& end) {
   std::string name;
   world.visit(end.set, [&](const auto& set, auto) { name = set.who(end.block); });
   return name;
+}
+
+/// Whether impulses move none of the bodies that a joint holds, now or later.
+template <class World, class Item>
+bool none_yields(const World& world, Item& item) {
+  bool is_still = true;
+  each_end(item, [&](const Anchor& end) {
+    world.visit(end.set, [&](const auto& set, auto) {
+      if constexpr (requires { set.never_yields(end.block); }) is_still = is_still && set.never_yields(end.block);
+      else is_still = false;
+    });
+  });
+  return is_still;
+}
+/// "rigid body #0 and the world", of its first two ends.
+template <class World, class Item>
+std::string names_of_ends(const World& world, const Item& item) {
+  const auto name = [&](const Anchor& end) { return end.is_world() ? std::string("the world") : name_of_body(world, end); };
+  return name(item.a) + " and " + name(item.b);
 }
 
 /// Items that were read speak of the sets of this world.

@@ -42,7 +42,7 @@ template <class Stage>
     });
 }
 
-/// The first listener that wants every sweep: of the policies' types, and where it is.
+/// The listener that wants every sweep, of which a loop takes one: of the policies' types, and where it is.
 template <class... P>
 struct sweep_observer {
   using type = NoObserver;

@@ -87,6 +87,7 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   double h = 0, last_h = 0;  ///< this step and the one before, s
   double start = 0;          ///< the time when steps of h began, s
   long steps = 0;            ///< since then
+  bool is_under_way = false;  ///< a step of the loop runs: nothing can be added
 
   [[gnu::always_inline]] WorldType& world() { return policy<role::World>(); }
   [[gnu::always_inline]] const WorldType& world() const { return policy<role::World>(); }

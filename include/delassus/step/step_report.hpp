@@ -15,6 +15,8 @@ struct StepReport {
   double natural_map_error = 0;   ///< `Measure::siconos`, largest of the islands
   double max_penetration = 0;     ///< m, at the start of the step
   double max_joint_violation = 0; ///< m or rad, at the start of the step
+  bool starts_apart = false;      ///< of a loop's first step: the ends of a joint are far from each other, see `what_is_odd`
+  bool overlaps_unseen = false;   ///< of a loop's first step: shapes overlap and no contact law is named
   Index contacts = 0;             ///< points, whether a law takes them or not
   Index rows = 0;
   Index islands = 0;              ///< groups that were solved on their own

@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
+#include <delassus/core/known_materials.hpp>
 #include <delassus/core/slots.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/body_set.hpp>
@@ -58,6 +59,9 @@ class BodyStorage {
   Index quarantined() const { return quarantine_.count; }
   const QuarantineRecord& quarantine_record() const { return quarantine_; }
 
+  /// While it is closed, during a step, no body can be added.
+  void close(bool is_closed) { is_closed_ = is_closed; }
+
   Index material(Index b) const { return material_[b]; }
   /// Whether every body that was ever added has a material from 0 to `count`.
   bool keeps_to_materials(Index count) const { return least_material_ >= 0 && most_material_ <= count; }
@@ -74,9 +78,17 @@ class BodyStorage {
     return body.index;
   }
 
+  /// Refuses a body while a step runs, and one of a material that was never added.
+  void check_new(Index material, const std::string& name) const {
+    DELASSUS_EXPECT(!is_closed_, name + ": it is added while a step runs, whose arrays have no place for it; add it after the step");
+    DELASSUS_EXPECT(material >= 0 && material <= largest_material(),
+                    name + ": material " + std::to_string(material) +
+                        " was never added; give it what loop.materials().add({...}) returns, or none");
+  }
   /// A place for a body as the user gave it, with this velocity; the arrays of the state are the set's to fit
   /// to `blocks()`.
   Index take(const auto& body, const Velocity& velocity) {
+    check_new(body.material, who(slots_.size()));
     const Index b = slots_.take();
     const std::size_t n = std::size_t(slots_.size());
     v_.resize(n), load_.resize(n), v_free.resize(n), v_next.resize(n);
@@ -108,6 +120,7 @@ class BodyStorage {
   }
 
   std::uint32_t owner_ = next_owner();
+  bool is_closed_ = false;
   Index least_material_ = 0, most_material_ = 0;
   Array<Index> material_;
   Array<std::uint32_t> group_, collides_with_;

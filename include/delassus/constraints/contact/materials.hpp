@@ -5,6 +5,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/known_materials.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -28,6 +29,7 @@ class Materials {
   Index add(const Material& material) {
     check(material, "material");
     materials_.push_back(material);
+    inner::note_materials(count());
     return count();
   }
 
@@ -62,7 +64,10 @@ class Materials {
   /// Their numbers go from 1 to this.
   Index count() const { return Index(materials_.size()); }
 
-  void memory(auto& archive) { archive(materials_, pairs_); }
+  void memory(auto& archive) {
+    archive(materials_, pairs_);
+    inner::note_materials(count());
+  }
 
  private:
   struct Pair {

@@ -107,7 +107,8 @@ class BodiesOfNodes : public Storage {
   }
 
   /// A place for a new body; `give` puts it there.
-  Index take_body() {
+  Index take_body(Index material) {
+    this->check_new(material, body_name(body_slots_.size()));
     const Index k = body_slots_.take();
     bodies_.resize(body_slots_.size());
     return k;

@@ -5,6 +5,8 @@
 #include <delassus/core/if_it_has.hpp>
 #include <delassus/core/type_text.hpp>
 #include <delassus/loop/animation_loop.hpp>
+#include <delassus/loop/inner/look_at_start.hpp>
+#include <delassus/loop/inner/step_under_way.hpp>
 
 namespace delassus {
 
@@ -41,8 +43,12 @@ StepReport AnimationLoop<Args...>::step(double seconds) {
   if constexpr (is_sound)
     if constexpr (inner::scheme_runs<typename Data::Policies::Scheme, Data>()) {
       check_policies();  // their numbers may have been edited since
+      const bool is_first = this->last_h == 0;
+      const inner::StepUnderWay running(world(), this->is_under_way);
       stage::begin(data(), seconds);
+      if (is_first && !Laws::has_contacts) [[unlikely]] inner::look_for_overlaps(data());
       Data::scheme().run(data());
+      if (is_first) [[unlikely]] inner::look_at_joints(data());
       inner::notify<stage::Step>(data());
     }
   return report();
@@ -58,6 +64,7 @@ auto AnimationLoop<Args...>::add(Item item) {
                 "delassus: the Item of a law that is added to a loop needs two ends, `Anchor a, b`; one in the world is "
                 "world_anchor({0, 0, 0})");
   if constexpr (!std::is_void_v<Law>) {
+    if (this->is_under_way) inner::refuse_during_step(inner::type_text<Law>());
     if constexpr (is_sound) inner::who_refines<refine::check>(laws().template of<Law>().law).check(item);
     if constexpr (HasEnds<Item>) {
       constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
@@ -65,6 +72,7 @@ auto AnimationLoop<Args...>::add(Item item) {
       int k = 0;
       each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
       if (item.a.is_world() && item.b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
+      if (inner::none_yields(world(), item)) inner::refuse_still_ends(inner::type_text<Law>(), inner::names_of_ends(world(), item));
       if (!item.a.is_world() && inner::are_on_one_body(item.a, item.b))
         inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), item.a));
     }
