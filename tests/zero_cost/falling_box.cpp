@@ -5,13 +5,14 @@ using namespace delassus;
 
 using Free = AnimationLoop<World<RigidBodies>>;
 
-// A loop without constraints is its world, the scratch of its sets, the report and the clock; nothing else.
+// A loop without constraints is its world, the scratch of its sets, the report, the clock and whether a step runs; nothing else.
 struct LeastLoop {
   World<RigidBodies> world;
   std::vector<RigidBodies::Velocity> scratch;
   StepReport report;
   double h, last_h, start;
   long steps;
+  bool is_under_way;
 };
 static_assert(sizeof(Free) == sizeof(LeastLoop));
 
