@@ -26,7 +26,7 @@ auto jointed() { return AnimationLoop{World{RigidBodies{}, Particles{}}, Constra
 auto& rigid(auto& loop) { return bodies<RigidBodies>(loop.world()); }
 auto box(auto& loop, const Vec3& at) { return rigid(loop).add({.position = at, .mass = 1.0, .shape = Box{1, 1, 1}}); }
 
-TEST_CASE("a joint between ends that no impulse moves is refused by add") {
+TEST_CASE("a joint between ends that nothing moves is refused by add") {
   auto loop = jointed();
   auto& set = rigid(loop);
   auto& points = bodies<Particles>(loop.world());
@@ -34,12 +34,21 @@ TEST_CASE("a joint between ends that no impulse moves is refused by add") {
   const auto led = set.add({.position = {10, 0, 0}, .motion = Motion::kinematic});
   const auto pin = points.add({.is_fixed = true}), bob = points.add({.mass = 1.0});
   const auto free = box(loop, {0, 0, 5});
-  CHECK_THROWS_WITH(loop.add(BallJoint::Item{anchor(set, wall), anchor(set, led)}),
-                    Contains("rigid body #0 and rigid body #1 do not yield"));
-  CHECK_THROWS_WITH(loop.add(BallJoint::Item{anchor(set, led), world_anchor({0, 0, 0})}), Contains("rigid body #1 and the world do not yield"));
+  const auto pillar = set.add_fixed(Box{1, 1, 1}, {0, 20, 0});
+  CHECK_THROWS_WITH(loop.add(BallJoint::Item{anchor(set, wall), anchor(set, pillar)}),
+                    Contains("rigid body #0 and rigid body #3 never move"));
+  CHECK_THROWS_WITH(loop.add(BallJoint::Item{anchor(set, wall), world_anchor({0, 0, 0})}), Contains("rigid body #0 and the world never move"));
   CHECK_THROWS_AS(loop.add(DistanceJoint::Item{anchor(points, pin), anchor(set, wall)}), InvalidArgument);
   CHECK_NOTHROW(loop.add(BallJoint::Item{anchor(set, led), anchor(set, free)}));
   CHECK_NOTHROW(loop.add(BallJoint::Item{anchor(points, bob), anchor(set, wall)}));
+}
+
+TEST_CASE("a joint between bodies that their user leads is said when they start apart") {
+  auto loop = jointed();
+  auto& set = rigid(loop);
+  const auto a = set.add({.motion = Motion::kinematic}), b = set.add({.position = {10, 0, 0}, .motion = Motion::kinematic});
+  loop.add(BallJoint::Item{anchor(set, a), anchor(set, b)});
+  CHECK(loop.step(h).starts_apart);
 }
 
 // The arm is 0.5 m long: a tenth of it is 5 cm.

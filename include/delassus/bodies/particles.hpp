@@ -132,8 +132,8 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
     return springs_.solve_block(b, x);
   }
 
-  /// Impulses move it at no time: it is fixed.
-  bool never_yields(Index b) const { return !(mass_[b] > T(0)); }
+  /// Nothing moves it at any time.
+  bool never_moves(Index b) const { return !(mass_[b] > T(0)); }
   int anchor_blocks(const Anchor& a) const { return moves(a.block) ? 1 : 0; }
   Index anchor_block(const Anchor& a, int) const { return a.block; }
   Velocity along(const Anchor&, int, const Vec3&, const Vec3& direction) const { return converted<T>(direction); }

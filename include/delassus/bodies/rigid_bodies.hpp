@@ -150,8 +150,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     if (is_held) state_.inverse_mass[b] = T(0), set_all(state_.inverse_inertia_world[b], T(0));
     else set_mass(b);
   }
-  /// Impulses move it at no time: it is fixed or kinematic.
-  bool never_yields(Index b) const { return motion_[b] != Motion::dynamic; }
+  /// Nothing moves it at any time.
+  bool never_moves(Index b) const { return motion_[b] == Motion::fixed; }
   Motion motion(Index b) const { return motion_[b]; }  ///< as it was added; fixed once it is removed
 
   void factor(SystemScale scale) { inverse_scale_ = T(1 / scale.mass); }

@@ -45,10 +45,10 @@ template <class Char>
   refuse(law + ": both ends are in the world; one must be on a body");
 }
 
-/// A joint between bodies that no impulse moves.
+/// A joint between bodies that nothing moves.
 template <class Char>
 [[noreturn]] void refuse_still_ends(const std::basic_string<Char>& law, const std::basic_string<Char>& ends) {
-  refuse(law + ": " + ends + " do not yield, being fixed, kinematic or the world; it would hold nothing, let one end be on a dynamic body");
+  refuse(law + ": " + ends + " never move, being fixed or the world; it would hold nothing, let one end be on a body that moves");
 }
 /// A constraint that a listener adds.
 template <class Char>
@@ -63,13 +63,13 @@ std::string name_of_body(const World& world, const Anchor& end) {
   return name;
 }
 
-/// Whether impulses move none of the bodies that a joint holds, now or later.
+/// Whether nothing moves the bodies that a joint holds, now or later.
 template <class World, class Item>
-bool none_yields(const World& world, Item& item) {
+bool none_moves(const World& world, Item& item) {
   bool is_still = true;
   each_end(item, [&](const Anchor& end) {
     world.visit(end.set, [&](const auto& set, auto) {
-      if constexpr (requires { set.never_yields(end.block); }) is_still = is_still && set.never_yields(end.block);
+      if constexpr (requires { set.never_moves(end.block); }) is_still = is_still && set.never_moves(end.block);
       else is_still = false;
     });
   });

@@ -12,12 +12,12 @@ template <class Step>
 [[gnu::cold, gnu::noinline]] SolidPair find_overlap(const Step& step) {
   Array<Solid> solids;
   step.world().each([&](const auto& set, auto s) {
-    if constexpr (requires { set.never_yields(0); })
+    if constexpr (requires { set.never_moves(0); })
       for (const Index b : set.active()) {
         if (!set.has_collider(b)) continue;
         const Shape shape = set.shape(b);
         if (shape.is_kept() || !is_finite(set.pose(b).position)) continue;
-        solids.push_back({shape, set.pose(b), outer_radius(shape), set.group(b), set.collides_with(b), Index(s), b, !set.never_yields(b)});
+        solids.push_back({shape, set.pose(b), outer_radius(shape), set.group(b), set.collides_with(b), Index(s), b, !set.never_moves(b)});
       }
   });
   return first_overlap(solids, [&](const Solid& a, const Solid& b) {

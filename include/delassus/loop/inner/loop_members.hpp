@@ -72,7 +72,7 @@ auto AnimationLoop<Args...>::add(Item item) {
       int k = 0;
       each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
       if (item.a.is_world() && item.b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
-      if (inner::none_yields(world(), item)) inner::refuse_still_ends(inner::type_text<Law>(), inner::names_of_ends(world(), item));
+      if (inner::none_moves(world(), item)) inner::refuse_still_ends(inner::type_text<Law>(), inner::names_of_ends(world(), item));
       if (!item.a.is_world() && inner::are_on_one_body(item.a, item.b))
         inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), item.a));
     }

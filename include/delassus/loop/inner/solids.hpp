@@ -21,7 +21,7 @@ struct Solid {
   double radius;  ///< of a ball around it, m; 0 of a half-space
   std::uint32_t group, collides_with;
   Index set, block;
-  bool yields;  ///< to impulses
+  bool moves;  ///< or may be moved
 
   bool is_endless() const { return shape.kind == ShapeKind::half_space; }
   double first() const { return pose.position[0] - radius; }
@@ -62,7 +62,7 @@ inline bool shares_meet(const Solid& a, const Solid& b) {
 }
 
 inline bool are_apart_by_rule(const Solid& a, const Solid& b) {
-  return (!a.yields && !b.yields) || (a.group & b.collides_with) == 0 || (b.group & a.collides_with) == 0;
+  return (!a.moves && !b.moves) || (a.group & b.collides_with) == 0 || (b.group & a.collides_with) == 0;
 }
 
 inline bool overlap(const Solid& a, const Solid& b) {
