@@ -10,6 +10,7 @@
 #include <delassus/solvers/inner/extrapolate_to_cone_boundary.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
 #include <delassus/solvers/inner/newton_stage.hpp>
+#include <delassus/solvers/inner/settle_loads.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/solve_report.hpp>
@@ -25,12 +26,14 @@ template <class T, class Newton>
 struct SweepSpace {
   Array<T> x, best;
   History history;
+  SettleSpace<T> loads;
   [[no_unique_address]] Newton newton;
   void reset(Index rows) {
     const std::size_t room = std::size_t(rows);
     if (x.capacity() >= room && history.change_z[0].capacity() >= room) return;  // all grow together
     for (auto* impulses : {&x, &best}) impulses->reserve(room);
     history.each([room](Array<double>& v) { v.reserve(room); });
+    loads.reserve(rows);
     newton.reserve(room);
   }
 };
@@ -72,6 +75,7 @@ struct BasicAcceleratedGaussSeidel {
   bool scale_tolerance = false;  ///< tolerance × number of rows
   bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
   Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
+  int share_loads_up_to = 16;  ///< contacts of an island whose loads are not left to chance; 0: of none
 
   static constexpr Needs needs = Newton::needs;
   template <class Rows>
@@ -83,6 +87,7 @@ struct BasicAcceleratedGaussSeidel {
     const auto name = [](const char* number) { return std::string(Newton::solver) + ": " + number; };
     if (!(tolerance >= 0)) inner::expect_at_least_zero(name("tolerance"), tolerance);
     if (!(max_iterations >= 0)) inner::expect_at_least_zero(name("max_iterations"), max_iterations);
+    if (share_loads_up_to < 0) inner::expect_at_least_zero(name("share_loads_up_to"), share_loads_up_to);
     if (!(relaxation > 0 && relaxation < 2)) inner::expect_number(false, name("relaxation"), relaxation, "must lie in (0, 2)");
   }
 
@@ -94,6 +99,24 @@ struct BasicAcceleratedGaussSeidel {
   SolveReport solve(Island<T>& problem, Space& work) const;
 
  private:
+  /// What the stages have found, or what they find from loads that are shared; the former where they then find less.
+  template <class T, class Space>
+  SolveReport finish(auto& monitor, Island<T>& problem, Space& work) const {
+    SolveReport report = monitor.finish();
+    if (share_loads_up_to <= 0) return report;
+    inner::SettleSpace<T>& loads = work.loads;
+    if (loads.rounds > 0 && report.status > loads.before.status) {
+      problem.load(loads.solved_before);
+      const int sweeps = report.sweeps;
+      report = loads.before;
+      report.sweeps = sweeps;
+    } else if (report.sweeps < max_iterations &&
+               inner::settle_loads(problem, loads, share_loads_up_to, criterion == Criterion::residual && !all_verified ? tolerance : 0, report)) {
+      return solve(problem, work);
+    }
+    loads.rounds = loads.sweeps = 0;
+    return report;
+  }
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell. Of a rough start
   /// five changes tell nothing, and mixing at once may end none: therefore forty sweeps.
   static bool settle(auto& monitor, auto& problem, const SweepRule& rule) {
@@ -114,8 +137,8 @@ template <class Newton>
 template <class T, class Space>
 SolveReport BasicAcceleratedGaussSeidel<Newton>::solve(Island<T>& problem, Space& work) const {
   const SolveOptions limits = options();
-  inner::ConvergenceMonitor<Island<T>, Array<T>> monitor(limits, problem, work.best);
-  if (!monitor.begin()) return monitor.finish();
+  inner::ConvergenceMonitor<Island<T>, Array<T>> monitor(limits, problem, work.best, work.loads.sweeps);
+  if (!monitor.begin()) return finish(monitor, problem, work);
   const SweepRule exact{.relaxation = relaxation, .tells_change = !limits.is_measured()}, projection{.projects = true};
   auto newton = Newton::stage(limits, problem, monitor, work.newton);
   const int shortest = first_patience(problem.row_count());
@@ -125,7 +148,7 @@ SolveReport BasicAcceleratedGaussSeidel<Newton>::solve(Island<T>& problem, Space
     for (int leaps = 0;; ++leaps) {
       is_in_circles = open(monitor, "momentum", patience, is_again) &&
                       inner::momentum(problem, monitor, work.x, exact, newton, "momentum");
-      if (monitor.is_over()) return monitor.finish();
+      if (monitor.is_over()) return finish(monitor, problem, work);
       const inner::SlowDirection way = inner::find_slow_direction(problem, work.x);
       if (leaps == 3 || !inner::extrapolate_to_cone_boundary(problem, monitor, work.x, way, patience)) break;
     }
@@ -139,7 +162,7 @@ SolveReport BasicAcceleratedGaussSeidel<Newton>::solve(Island<T>& problem, Space
       inner::momentum(problem, monitor, work.x, projection, newton, "projection");
     if (open(monitor, "patient", 10 * patience, true))
       inner::momentum(problem, monitor, work.x, exact, newton, "patient");
-    if (monitor.is_over()) return monitor.finish();
+    if (monitor.is_over()) return finish(monitor, problem, work);
   }
 }
 
@@ -155,7 +178,8 @@ inline AcceleratedSweeps sweeps_of(const SolveOptions& solver, int most, int lea
           .min_iterations = least,
           .scale_tolerance = solver.scale_tolerance,
           .all_verified = solver.all_verified,
-          .criterion = solver.criterion};
+          .criterion = solver.criterion,
+          .share_loads_up_to = 0};
 }
 
 }  // namespace inner

@@ -18,10 +18,12 @@ namespace delassus::inner {
 template <class Problem, class Impulses>
 class ConvergenceMonitor {
  public:
-  ConvergenceMonitor(const SolveOptions& options, Problem& problem, Impulses& best)
+  /// `sweeps` were made before, and count.
+  ConvergenceMonitor(const SolveOptions& options, Problem& problem, Impulses& best, int sweeps = 0)
       : options_(options), problem_(problem), best_set_(best), rows_(problem.row_count()) {
     tolerance_ = options.tolerance * (options.scale_tolerance ? rows_ : 1);
     reach_ = near * tolerance_;
+    report_.sweeps = sweeps;
   }
 
   /// False: there is nothing to sweep. The start itself is measured only where that can end the solve or
