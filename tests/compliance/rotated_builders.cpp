@@ -61,7 +61,7 @@ TEMPLATE_TEST_CASE("a factor is not taken for that of a body that came in the pl
   built.build(other, {});
   CHECK(built.W.report().factorizations == 1);
   CHECK(built.error() < 6e-4);       // as above; that of the other body is off by 0.9
-  other.world = World{other.world};  // a copy is the same body
+  other.world = other.world.clone();  // a copy is the same body
   built.build(other, {});
   CHECK(built.W.report().factorizations == 0);
 }
