@@ -194,4 +194,35 @@ TEST_CASE("a stiffness that is not above zero and a damping below zero are refus
   REQUIRE_THROWS_WITH(loop_with(1, -2), Catch::Contains("Penalty: damping -2"));
 }
 
+// At rest a spring of each contact point bears its share of the weight: m g/k deep for a ball, m g/(4 k) for a box. Two materials are
+// two springs one behind the other.
+TEST_CASE("materials say how stiff a pair is, and bodies sink by their weight over it") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Penalty{Coulomb{.friction = 0.5}, 1e6, 1e3}}}};
+  auto& set = rigid_bodies(loop);
+  const Index rubber = loop.materials().add({.stiffness = 6e3, .damping = 600});
+  const Index steel = loop.materials().add({.stiffness = 3e4, .damping = 3e3});
+  const Index wood = loop.materials().add({});
+  loop.materials().set_pair(wood, rubber, {.stiffness = 2e3, .damping = 200});
+  set.add({.shape = HalfSpace{}, .motion = Motion::fixed, .material = rubber});
+  const auto add = [&](double x, const Shape& shape, Index material) {
+    return set.add({.position = {x, 0, 0.5}, .mass = 2.0, .shape = shape, .material = material});
+  };
+  const auto soft = add(0, Sphere{0.5}, rubber), hard = add(2, Sphere{0.5}, steel), box = add(4, Box{1, 1, 1}, steel),
+             pair = add(6, Sphere{0.5}, wood), plain = add(8, Sphere{0.5}, 0);
+  for (int n = 0; n < 600; ++n) REQUIRE(loop.step(h).status == Status::converged);
+  const auto depth = [&](auto body) { return 0.5 - set.position(body).z(); };
+  CHECK(depth(soft) == Approx(2 * g / 3e3).epsilon(1e-6));
+  CHECK(depth(hard) == Approx(2 * g / 5e3).epsilon(1e-6));
+  CHECK(depth(box) == Approx(2 * g / 2e4).epsilon(1e-6));
+  CHECK(depth(pair) == Approx(2 * g / 2e3).epsilon(1e-6));
+  CHECK(depth(plain) == Approx(2 * g / 1e6).epsilon(1e-6));
+}
+
+TEST_CASE("a material with a damper and no spring, or less than none, is refused") {
+  auto loop = loop_with(1e5, 10);
+  REQUIRE_THROWS_WITH(loop.materials().add({.damping = 10}), Catch::Contains("material: damping 10 needs a stiffness > 0 beside it"));
+  REQUIRE_THROWS_WITH(loop.materials().add({.stiffness = -1}), Catch::Contains("material: stiffness -1"));
+  REQUIRE_THROWS_WITH(loop.materials().set_pair(0, 0, {.stiffness = std::nan("")}), Catch::Contains("material pair: stiffness"));
+}
+
 }  // namespace penalty_tests

@@ -29,7 +29,7 @@ enum Refinement : unsigned {
   restitution = 1 << 11,      ///< double restitution(item): e in [0, 1], with `using overrides = Overrides<NewtonImpact>;`
   set_friction = 1 << 12,     ///< void set_friction(Parameters&, double): what a pair of materials says; in a contact
   set_restitution = 1 << 13,  ///< void set_restitution(Parameters&, double): the same of a wrapper inside Contact{...}
-  soften = 1 << 14,           ///< void soften(row, double gap): of such a wrapper, when the rows of a contact are written
+  soften = 1 << 14,           ///< void soften(const Parameters&, row, double gap): of such a wrapper, when the rows of a contact are written
 };
 
 }  // namespace refine

@@ -86,13 +86,15 @@ struct Contact {
     if (is_of_patch) shift(b, item, 1);
     if constexpr (rows > along) turn(b, item.frame, 1);
     row.phi(0, item.gap);
-    inner::who_refines<refine::soften>(law).soften(row, item.gap);
+    inner::who_refines<refine::soften>(law).soften(item.parameters, row, item.gap);
   }
 
-  /// Friction and restitution of a pair of materials, as far as the law has them.
+  /// What a pair of materials says, as far as the law has it.
   void set_pair(typename Law::Parameters& parameters, const auto& pair) const {
     inner::who_refines<refine::set_friction>(law).set_friction(parameters, pair.friction);
     inner::who_refines<refine::set_restitution>(law).set_restitution(parameters, pair.restitution);
+    if constexpr (requires { parameters.stiffness, parameters.damping; })
+      if (pair.stiffness > 0) parameters.stiffness = pair.stiffness, parameters.damping = pair.damping;
   }
   /// e of this contact, where the law has one.
   double restitution(const Item& item) const { return item.parameters.restitution; }

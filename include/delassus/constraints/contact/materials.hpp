@@ -1,4 +1,4 @@
-/// Friction and restitution by material and by pair of materials.
+/// Friction, restitution and stiffness by material and by pair of materials.
 #pragma once
 
 #include <delassus/core/array.hpp>
@@ -12,20 +12,24 @@
 
 namespace delassus {
 
-/// What a surface is made of. Friction μ ≥ 0, restitution e in [0, 1].
+/// What a surface is made of. Friction μ ≥ 0, restitution e in [0, 1]. Stiffness k ≥ 0 and damping c ≥ 0 are of each contact point,
+/// under a law `Penalty{…}`; where k is 0 the law's own k and c hold.
 struct Material {
   double friction = 0.5;  ///< μ
   double restitution = 0;  ///< e
+  double stiffness = 0;  ///< k, N/m
+  double damping = 0;    ///< c, N·s/m
 };
 
 /// Numbers of materials, 0 being "none said". The combination rule of two materials is
 ///
-///   μ = √(μ_a μ_b),   e = max(e_a, e_b).
+///   μ = √(μ_a μ_b),   e = max(e_a, e_b),   1/k = 1/k_a + 1/k_b,   1/c = 1/c_a + 1/c_b,
 ///
+/// springs and dampers one behind the other; of a material without a spring the other's holds alone.
 /// An entry for the pair comes before it, and a pair with a 0 in it keeps the law's own parameters.
 class Materials {
  public:
-  /// Returns its number, from 1. Throws for μ < 0 and for e outside [0, 1].
+  /// Returns its number, from 1. Throws for μ, k or c < 0, for e outside [0, 1], and for a damper without a spring.
   Index add(const Material& material) {
     check(material, "material");
     materials_.push_back(material);
@@ -54,7 +58,14 @@ class Materials {
       if (p.a == low && p.b == high) return p.material;
     if (low <= 0 || high > count()) return {};
     const Material &x = materials_[low - 1], &y = materials_[high - 1];
-    return Material{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution)};
+    Material both{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution), x.stiffness, x.damping};
+    if (x.stiffness > 0 && y.stiffness > 0) {
+      both.stiffness = in_series(x.stiffness, y.stiffness);
+      both.damping = in_series(x.damping, y.damping);
+    } else if (y.stiffness > 0) {
+      both.stiffness = y.stiffness, both.damping = y.damping;
+    }
+    return both;
   }
 
   /// Without materials and pairs the laws' own numbers hold.
@@ -78,7 +89,11 @@ class Materials {
   static void check(const Material& m, const char* what) {
     inner::expect_not_negative(std::string(what) + ": friction", m.friction);
     inner::expect_zero_to_one(std::string(what) + ": restitution", m.restitution);
+    inner::expect_not_negative(std::string(what) + ": stiffness", m.stiffness);
+    inner::expect_not_negative(std::string(what) + ": damping", m.damping);
+    inner::expect_number(m.stiffness > 0 || m.damping == 0, std::string(what) + ": damping", m.damping, "needs a stiffness > 0 beside it");
   }
+  static double in_series(double a, double b) { return a > 0 && b > 0 ? 1 / (1 / a + 1 / b) : 0; }
 
   Array<Material> materials_;
   Array<Pair> pairs_;

@@ -21,7 +21,8 @@ struct AtMean {};
 template <class W>
 concept SpringTime = std::same_as<W, AtEnd> || std::same_as<W, AtMean>;
 
-/// `Contact{Penalty{Coulomb{.friction = 0.5}, 1e5, 50}}`: stiffness k (N/m) and damping c (N·s/m) of each contact point,
+/// `Contact{Penalty{Coulomb{.friction = 0.5}, 1e5, 50}}`: stiffness k (N/m) and damping c (N·s/m) of each contact point, where its
+/// materials have no others,
 ///
 ///   f_n = max(0, k δ − c u_n),  δ = −gap,   with the friction of `Law` on top.
 ///
@@ -48,7 +49,10 @@ struct Penalty {
   double damping = 0;    ///< c ≥ 0, N·s/m
   [[no_unique_address]] When when{};  ///< `AtEnd` or `AtMean`
 
-  using Parameters = typename Law::Parameters;
+  /// Of one contact: its materials may have others.
+  struct Parameters : Law::Parameters {
+    double stiffness, damping;  ///< N/m, N·s/m
+  };
 
   void check() const {
     inner::who_refines<refine::check>(law).check();
@@ -58,17 +62,17 @@ struct Penalty {
     inner::check_soft_number(damping, "Penalty: damping", "N·s/m");
   }
 
-  Parameters parameters() const { return law.parameters(); }
+  Parameters parameters() const { return {law.parameters(), stiffness, damping}; }
 
   /// The normal row becomes a spring. The damper waits until the bodies touch.
-  void soften(auto& row, double gap) const { row.soft(0, stiffness, gap < 0 ? damping : 0.0); }
+  void soften(const Parameters& p, auto& row, double gap) const { row.soft(0, p.stiffness, gap < 0 ? p.damping : 0.0); }
 
   /// The force (N, in the contact's frame) at gap and relative velocity u. Friction never turns the slip round within h:
   /// |f_t| ≤ min(μ f_n, |u_t| / (h w)), w the inverse mass that the bodies show along the slip, 1/kg.
   Vec<rows> force(const Parameters& p, double gap, const Vec<rows>& u, double w, double h) const {
     Vec<rows> f = Vec<rows>::Zero();
     if (gap >= 0) return f;
-    f[0] = std::max(0.0, -stiffness * gap - damping * u[0]);
+    f[0] = std::max(0.0, -p.stiffness * gap - p.damping * u[0]);
     if constexpr (rows == 3) {
       const double slip = std::hypot(u[1], u[2]);
       if (slip > 0 && w > 0) {
