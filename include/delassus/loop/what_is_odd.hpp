@@ -4,6 +4,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/loop/inner/look_at_start.hpp>
 #include <delassus/loop/why_quarantined.hpp>
+#include <delassus/step/step_report.hpp>
 
 #include <string>
 
