@@ -43,7 +43,6 @@ EFFECTS = [
     ("`Penalty` springs with friction", "penalty", "one", "Coulomb friction", True),
     ("`PredictiveScheme`", "prediction", "one", "Coulomb friction", True),
     ("`Substeps`, four", "substeps", "one", "Coulomb friction", True),
-    ("`Continuous` collision", "continuous", "one", "Coulomb friction", True),
     ("listener `Recorder`", "recorder", "one", "Coulomb friction", True),
     ("a virtual coupling that holds one box", "coupling", "one", "Coulomb friction", True),
     ("`HapticChannel` that publishes it", "haptics", "one", "a virtual coupling that holds one box", True),

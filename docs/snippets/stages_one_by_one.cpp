@@ -16,15 +16,17 @@ int main() {
   for (int i = 0; i < 100; ++i) {
     stage::begin(step, 5e-3);
     stage::detect(step);
-    stage::linearize(step);
-    stage::free_motion(step);
-    stage::find_islands(step);
-    stage::make_bias(step);
-    stage::build(step);
-    // Work of your own: rows, W and d of this step are there.
-    if (i == 99) std::printf("%d rows, W_nn %.3f 1/kg\n", int(step.report().rows), step.W.diagonal<0>(0)(0, 0));
-    stage::solve(step);
-    stage::correct(step);
+    do {
+      stage::linearize(step);
+      stage::free_motion(step);
+      stage::find_islands(step);
+      stage::make_bias(step);
+      stage::build(step);
+      // Work of your own: rows, W and d of this step are there.
+      if (i == 99) std::printf("%d rows, W_nn %.3f 1/kg\n", int(step.report().rows), step.W.diagonal<0>(0)(0, 0));
+      stage::solve(step);
+      stage::correct(step);
+    } while (stage::find_missed(step));
     stage::advance(step);
   }
   std::printf("box at z = %.3f m\n", rigid.position(box).z());

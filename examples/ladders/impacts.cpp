@@ -2,16 +2,14 @@
 #include "rows.hpp"
 #include "watch.hpp"
 
-#include <delassus/collision/continuous.hpp>
 
 namespace ladders {
 
 // A ball of 1 cm flies at a plate of 1 mm, at 60 steps a second.
-template <class Collision>
-void shoot_at_plate(Ladder& ladder, const Collision& collision) {
+void bullet(Ladder& ladder) {
   for (const double speed : {0.1, 1., 10., 100., 300., 1000.})
     ladder.rung(format("%g m/s", speed), [&]() -> Marks {
-      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, collision};
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}};
       auto& set = bodies<RigidBodies>(loop.world());
       set.gravity.setZero();
       set.add_fixed(Box{0.001, 10, 10});
@@ -27,8 +25,6 @@ void shoot_at_plate(Ladder& ladder, const Collision& collision) {
               energy_mark(seen, 4 * 0.005 * speed * speed)};
     });
 }
-void bullet(Ladder& ladder) { shoot_at_plate(ladder, NativeCollision{}); }
-void bullet_watched(Ladder& ladder) { shoot_at_plate(ladder, Continuous{NativeCollision{}}); }
 
 // Balls of 0.1 m and 10 kg in a closed box, elastic and without friction.
 void elastic_balls(Ladder& ladder) {

@@ -68,7 +68,6 @@ void seams_left_out(Ladder&);
 void slide_over_triangles(Ladder&);
 void edges(Ladder&);
 void bullet(Ladder&);
-void bullet_watched(Ladder&);
 void elastic_balls(Ladder&);
 void simultaneous(Ladder&);
 void heap(Ladder&);
@@ -169,7 +168,6 @@ inline constexpr Row rows[] = {
     {"HC-17", "floor of triangles", "WithMeshes{NativeCollision{}}", slide_over_triangles, Level::gold},
     {"HC-17", "edges on edges", "", edges, Level::gold},
     {"HC-18", "bullet and thin plate", "", bullet, Level::gold},
-    {"HC-18", "bullet and thin plate", "Continuous", bullet_watched, Level::gold},
     {"HC-19", "inverted elements", "TetrahedralFem, ImplicitEuler", inverted_elements, Level::gold},
     {"HC-20", "nearly incompressible beam", "HexahedralFem", incompressible, Level::gold},
     {"HC-20", "squeezed block", "HexahedralFem<StableNeoHookean>", squeezed, Level::silver},

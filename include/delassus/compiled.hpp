@@ -169,6 +169,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND struct NativeDetection<GjkEpa, BoxTree>;                                                                                   \
   KIND class inner::OnDemand<CollisionEngine<GjkEpa, BoxTree>>;                                                                     \
   KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const NoFilter&); \
+  KIND CollisionReport NativeDetection<GjkEpa, BoxTree>::detect(std::span<const Collider>, double, std::vector<ContactPoint>&, const ContactCache::Pushed&); \
+  KIND void NativeDetection<GjkEpa, BoxTree>::detect_missed(std::span<const Collider>, double, std::vector<ContactPoint>&, const ContactCache::Pushed&); \
   KIND Index route_contacts(Constraints<Contact<Coulomb>>&, const ContactCache&, const Materials&);
 
 // What a file that makes scenes does with vectors: each would cost it some twenty functions of Eigen's.

@@ -3,7 +3,6 @@
 // scripts/effect_cost.py makes the table.
 //   effects <apart|stacked> <one|other> <steps>       the other: asleep for awake, at the limit for far from
 //                                                     it, what is recorded or published for what is not
-#include <delassus/collision/continuous.hpp>
 #include <delassus/delassus.hpp>
 #include <delassus/io/recorder.hpp>
 #include <delassus/schemes/substeps.hpp>
@@ -54,7 +53,6 @@ enum Effect {
   penalty,
   prediction,
   substeps,
-  continuous,
   recorder,
   coupling,
   haptics,
@@ -97,8 +95,6 @@ auto make([[maybe_unused]] bool is_other) {
     return with<effect>(Constraints{coulomb}, sweeps, PredictiveScheme{});
   else if constexpr (effect == substeps)
     return with<effect>(Constraints{coulomb}, sweeps, Substeps{.count = 4});
-  else if constexpr (effect == continuous)
-    return with<effect>(Constraints{coulomb}, sweeps, Continuous{NativeCollision{}});
   else if constexpr (effect == recorder)
     return with<effect>(Constraints{coulomb}, sweeps, Recorder{"ten boxes", "", 30});
   else if constexpr (effect == coupling)

@@ -1,10 +1,13 @@
 /// A few colliders and the contacts the native backend finds between them.
 #pragma once
 
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/collision/native.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 namespace scenes {
@@ -25,6 +28,21 @@ struct SceneOf {
     return colliders.back();
   }
   void detect(double h = 1e-3) { report = collision.detect(colliders, h, contacts); }
+  /// As a loop asks, with the pairs that pushed in the last step: contacts where bodies meet.
+  void detect_ahead(double h, const std::set<std::uint64_t>& pushed = {}) {
+    report = collision.detect(colliders, h, contacts, Pushed{pushed});
+  }
+  /// Those of the pairs left out that meet by the velocities which the colliders have now.
+  std::vector<ContactPoint> missed(double h, const std::set<std::uint64_t>& pushed = {}) {
+    std::vector<ContactPoint> found;
+    collision.detect_missed(colliders, h, found, Pushed{pushed});
+    return found;
+  }
+  struct Pushed {
+    const std::set<std::uint64_t>& pairs;
+    bool lets(std::uint64_t) const { return true; }
+    bool pushed(std::uint64_t pair) const { return pairs.count(pair) > 0; }
+  };
 };
 using Scene = SceneOf<NativeCollision>;
 

@@ -1,4 +1,4 @@
-// expect: delassus: the layers of a collision go around a backend and each other in this order, each at most once: WithFilter{WithSurfaces{WithCompounds{Continuous{WithMeshes{Seamless{NativeCollision{}}}}}}}
+// expect: delassus: the layers of a collision go around a backend and each other in this order, each at most once: WithFilter{WithSurfaces{WithCompounds{WithMeshes{Seamless{NativeCollision{}}}}}}
 #include <delassus/delassus.hpp>
 #include <delassus/collision/with_compounds.hpp>
 #include <delassus/collision/with_filter.hpp>

@@ -1,6 +1,5 @@
 #include "catch.hpp"
 
-#include <delassus/collision/continuous.hpp>
 #include <delassus/delassus.hpp>
 
 #include <cmath>
@@ -15,7 +14,7 @@ namespace {
 
 auto scene() {
   return AnimationLoop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.3}}, BallJoint{}},
-                       Continuous{NativeCollision{}}, GaussSeidel{.tolerance = 1e-9, .max_iterations = 2000}};
+                       NativeCollision{}, GaussSeidel{.tolerance = 1e-9, .max_iterations = 2000}};
 }
 
 }  // namespace

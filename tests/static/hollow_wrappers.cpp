@@ -1,6 +1,5 @@
 /// Every wrapper is hollow around nothing and around what it is not made for, so that the loop's checks can
 /// say so; around its kind it is not.
-#include <delassus/collision/continuous.hpp>
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/seamless.hpp>
 #include <delassus/collision/with_compounds.hpp>
@@ -36,10 +35,9 @@ consteval bool checks_its_backend() {
          inner::IsHollow<Layer<Layer<double>>>;
 }
 static_assert(checks_its_backend<WithFilter>() && checks_its_backend<WithSurfaces>() &&
-              checks_its_backend<WithCompounds>() && checks_its_backend<Continuous>() &&
-              checks_its_backend<WithMeshes>() && checks_its_backend<Seamless>());
+              checks_its_backend<WithCompounds>() && checks_its_backend<WithMeshes>() && checks_its_backend<Seamless>());
 static_assert(is_hollow<[] { return WithFilter{}; }> && is_hollow<[] { return WithSurfaces{}; }> &&
-              is_hollow<[] { return WithCompounds{}; }> && is_hollow<[] { return Continuous{}; }> &&
+              is_hollow<[] { return WithCompounds{}; }> &&
               is_hollow<[] { return WithMeshes{}; }> && is_hollow<[] { return Seamless{}; }>);
 static_assert(is_hollow<[] {
                 return WithFilter{3, true};
@@ -51,13 +49,11 @@ static_assert(is_hollow<[] {
 /// From the inside out; the first three go around each other as they like.
 static_assert(
     !inner::IsHollow<
-        WithFilter<WithSurfaces<WithCompounds<Continuous<WithMeshes<Seamless<NativeCollision>>>>>>> &&
-    !inner::IsHollow<WithMeshes<Continuous<NativeCollision>>> &&
+        WithFilter<WithSurfaces<WithCompounds<WithMeshes<Seamless<NativeCollision>>>>>> &&
     !inner::IsHollow<Seamless<WithMeshes<NativeCollision>>>);
 static_assert(inner::IsHollow<WithSurfaces<WithFilter<NativeCollision>>> &&
               inner::IsHollow<WithCompounds<WithSurfaces<NativeCollision>>> &&
-              inner::IsHollow<Continuous<WithCompounds<NativeCollision>>> &&
-              inner::IsHollow<WithMeshes<Continuous<WithMeshes<NativeCollision>>>>);
+              inner::IsHollow<WithMeshes<WithMeshes<NativeCollision>>>);
 
 static_assert(is_hollow<[] { return WithDeadline{}; }> && is_hollow<[] { return MinimumNorm{}; }> &&
               is_hollow<[] { return WithDeadline{1e-3}; }> && is_hollow<[] {

@@ -1,5 +1,4 @@
 /// Around detection: surfaces of soft bodies, fast bodies, seams, another broad phase; restitution in sleep.
-#include <delassus/collision/continuous.hpp>
 #include <delassus/collision/seamless.hpp>
 #include <delassus/collision/sweep_and_prune.hpp>
 #include <delassus/collision/with_meshes.hpp>
@@ -42,7 +41,7 @@ int main(int argc, char** argv) {
   const Options faces{.h = 0.01, .is_redundant = true};
   all.add("sheet_surfaces", faces, sheet_on_ball);
   all.add("fast_rods_and_wall", faces, [] {
-    auto loop = with(Continuous{NativeCollision{}});
+    auto loop = with(NativeCollision{});
     auto& set = rigid_of(loop);
     set.add_fixed(Box{0.02, 4, 4}, {2, 0, 0});
     set.add_fixed(HalfSpace{}, {0, 0, -0.5});

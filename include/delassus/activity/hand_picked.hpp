@@ -78,7 +78,7 @@ class SwitchedOff {
     }
   }
   /// Bodies that are off are obstacles to those who are on; always true.
-  bool add_obstacles(const World& world, ContactCache& book) const {
+  bool add_obstacles(const World& world, ContactCache& book, double) const {
     for (const auto& body : dormant_.bodies())
       world.visit(body.set, [&](const auto& set, auto s) {
         if (set.has_collider(body.block)) book.add(set, s, body.block, false);
@@ -87,6 +87,10 @@ class SwitchedOff {
   }
   /// Contacts switch nobody on: false.
   bool wake_touched(const auto&...) const { return false; }
+  /// All are obstacles: false.
+  bool lacks_obstacles(const auto&...) const { return false; }
+  /// Nor does what is met within the step: false.
+  bool wake_met(const auto&...) const { return false; }
   /// Keeps every contact point.
   void drop_points(const auto&...) const {}
   /// Who is off does not depend on speeds.

@@ -76,6 +76,7 @@ class Sleepers {
 
   /// Begin: whatever is not as it was when its group fell asleep wakes that group.
   void begin(World& world, Laws& laws, double h) {
+    near_ = {};
     supports_.look_at_gravity(world, [&](Index set) {
       for (const auto& body : dormant_.bodies())
         if (body.set == set) call(body.group);
@@ -93,16 +94,23 @@ class Sleepers {
     answer(world, laws);
   }
 
-  /// Detect: sleepers near an awake body are obstacles. False when nobody who can move is awake.
-  bool add_obstacles(const World& world, ContactCache& book) {
-    Aabb near;
-    for (const Collider& c : book.colliders)
-      if (c.is_movable) near.extend(Dormant<World, Laws>::box_of(c.shape, c.pose));
-    if (near.is_empty()) return false;
+  /// Detect: sleepers near the way of an awake body in the step of h (s) are obstacles. False when nobody who can move is awake.
+  bool add_obstacles(const World& world, ContactCache& book, double h) {
+    near_.extend(ways_of(book, h));
+    if (near_.is_empty()) return false;
     for (const auto& body : dormant_.bodies())
-      if (!body.box.is_empty() && !body.box.is_apart(near))
+      if (!body.box.is_empty() && !body.box.is_apart(near_))
         world.visit(body.set, [&](const auto& set, auto s) { book.add(set, s, body.block, false); });
     return true;
+  }
+
+  /// Whether the solved motion comes near sleepers that were no obstacles.
+  bool lacks_obstacles(const ContactCache& book, double h) {
+    const Aabb before = near_;
+    near_.extend(ways_of(book, h));
+    for (const auto& body : dormant_.bodies())
+      if (!body.box.is_empty() && body.box.is_apart(before) && !body.box.is_apart(near_)) return true;
+    return false;
   }
 
   /// Wakes whoever a contact point of an awake body reaches within the step; false when there was nobody.
@@ -120,6 +128,12 @@ class Sleepers {
     return answer(world, laws);
   }
 
+  /// Wakes whoever the solved motion meets; false when there was nobody.
+  bool wake_met(World& world, Laws& laws, const ContactCache& book) {
+    for (const ContactPoint& p : book.missed) call(std::max(group_of(book.colliders[p.a]), group_of(book.colliders[p.b])));
+    return answer(world, laws);
+  }
+
   /// Contact points of sleepers that are not reached make no rows.
   void drop_points(ContactCache& book) const {
     std::erase_if(book.points, [&](const ContactPoint& p) {
@@ -127,7 +141,7 @@ class Sleepers {
     });
   }
 
-  /// Correct: how long each awake body has been quiet, and the least of each island.
+  /// Before Advance: how long each awake body has been quiet, and the least of each island.
   template <class Rows, class T>
   void watch(const Sleeping& limits, World& world, const Rows& rows, const Islands<T>& islands,
              std::span<const SolveReport> reports, double h) {
@@ -192,6 +206,20 @@ class Sleepers {
  private:
   Index group_of(const Collider& c) const {
     return dormant_.group_of(Index(c.key >> 28), Index(c.key & ((1u << 28) - 1)));
+  }
+
+  /// A box of all that the awake bodies sweep.
+  static Aabb ways_of(const ContactCache& book, double h) {
+    Aabb ways;
+    for (const Collider& c : book.colliders) {
+      if (!c.is_movable) continue;
+      const Aabb box = Dormant<World, Laws>::box_of(c.shape, c.pose);
+      if (box.is_empty()) continue;
+      const Vec3 way = h * c.velocity;
+      ways.extend(box);
+      if (is_finite(way)) ways.extend(Aabb(Vec3(box.min() + way), Vec3(box.max() + way)));
+    }
+    return ways;
   }
 
   void call(Index group) {
@@ -272,6 +300,7 @@ class Sleepers {
   Array<Index> island_group_, falling_asleep_;
   Array<char> called_;
   bool called_any_ = false;
+  Aabb near_;  ///< where sleepers are obstacles
 };
 
 }  // namespace delassus

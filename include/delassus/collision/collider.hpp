@@ -26,6 +26,7 @@ struct Collider {
   Vec3 velocity = zero<Vec3>();  ///< of the origin of the pose, m/s
   Vec3 angular_velocity = zero<Vec3>();  ///< rad/s, axes of the world
   bool is_movable = true;  ///< two colliders that neither move are never paired
+  bool goes_alone = true;  ///< nothing that moves is known to push it: it will go with `velocity`
   std::uint32_t group = 1;  ///< bits that the other one's `collides_with` is asked for
   std::uint32_t collides_with = ~0u;  ///< pairs when each one's group meets the other's mask
   std::uint32_t key = 0;              ///< names this collider from step to step; unique

@@ -5,12 +5,14 @@
 #include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/half_space.hpp>
+#include <delassus/collision/inner/ahead.hpp>
 #include <delassus/collision/inner/fallback_normal.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/resting_pair.hpp>
 #include <delassus/collision/inner/share_area.hpp>
 #include <delassus/collision/inner/snap_normal.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/manifold.hpp>
 #include <delassus/collision/pair_memory.hpp>
 #include <delassus/core/array.hpp>
@@ -34,7 +36,8 @@ class CollisionEngine {
 
  public:
   /// Contacts within the margin of the pairs that the filter lets, sorted by pair and then by feature; `out`
-  /// is cleared first. h is the step, s.
+  /// is cleared first. h is the step, s. With a filter that knows who pushed, pairs that are apart and did not push have
+  /// contacts only where they meet by the velocities of the colliders, from however far.
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
                          std::vector<ContactPoint>& out, const Filter& filter = {}) {
@@ -42,11 +45,15 @@ class CollisionEngine {
     report_ = {};
     find_pairs(colliders, h, settings, filter);
     recall_pairs();
-    for (std::size_t k = 0; k < jobs_.size(); ++k) collide(colliders, jobs_[k], h, settings, memory_[k], out);
+    for (std::size_t k = 0; k < jobs_.size(); ++k) collide(colliders, jobs_[k], h, settings, memory_[k], filter, out);
     report_.points = Index(out.size());
     return report_;
   }
-
+  /// Contacts of the pairs that have none since `detect` and meet by the velocities that the colliders have now; `out` is
+  /// cleared first. The colliders are those of `detect`, at the same poses.
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, const CollisionSettings& settings, std::vector<ContactPoint>& out,
+                     const Filter& filter);
 
   Kernel& kernel() { return kernel_; }
   /// What outlives a step: with it restored, the next step is the same to the bit.
@@ -54,6 +61,10 @@ class CollisionEngine {
 
  private:
   using RestingPair = inner::RestingPair;
+  struct Core {
+    std::uint64_t pair;
+    bool is_a;  ///< whose middle is held
+  };
   using Job = inner::PairJob;
 
   template <class Filter>
@@ -64,6 +75,8 @@ class CollisionEngine {
     half_spaces_.clear();
     pairs_.clear();
     jobs_.clear();
+    apart_.clear();
+    cores_.clear();
     for (Index i = 0; i < Index(colliders.size()); ++i) {
       DELASSUS_EXPECT(
           !colliders[i].shape.is_kept(),
@@ -71,7 +84,7 @@ class CollisionEngine {
           "keeps it around this loop's collision backend");
       summary_[i] = inner::summary_of(colliders[i]);
       if (is_half_space(colliders[i])) half_spaces_.push_back(i);
-      boxes_[i] = inner::alarm_box(colliders[i], summary_[i], h, settings);
+      boxes_[i] = box_of<Filter>(colliders[i], summary_[i], h, settings);
     }
     find_candidates(colliders);
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
@@ -81,6 +94,12 @@ class CollisionEngine {
           add_job(colliders, plane, i, filter);
     inner::sort(jobs_);
     report_.pairs = Index(jobs_.size());
+  }
+
+  template <class Filter>
+  static Aabb box_of(const Collider& c, const inner::Summary& of, double h, const CollisionSettings& settings) {
+    if constexpr (inner::KnowsWhoPushed<Filter>) return inner::box_of_way(c, of, h, settings);
+    else return inner::alarm_box(c, of, h, settings);
   }
 
   void find_candidates(inner::Slice<const Collider> colliders) {
@@ -108,25 +127,45 @@ class CollisionEngine {
 
   /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in
   /// full.
+  template <class Filter>
   void collide(inner::Slice<const Collider> colliders, const Job& job, double h,
-               const CollisionSettings& settings, RestingPair& pair, std::vector<ContactPoint>& out);
+               const CollisionSettings& settings, RestingPair& pair, const Filter& filter, std::vector<ContactPoint>& out);
 
   /// Distance, patch, choice of points, names.
+  template <class Filter>
   void collide_in_full(const Collider& a, const Collider& b, const Job& job, const Pose& b_in_a, double scale,
                        double reach, double h, const CollisionSettings& settings, std::uint64_t shapes,
-                       RestingPair& now, std::vector<ContactPoint>& out) {
+                       RestingPair& now, const Filter& filter, std::vector<ContactPoint>& out) {
+    constexpr bool looks_ahead = inner::KnowsWhoPushed<Filter>;
+    bool will_meet = false;
     const RestingPair last = now;
     now = {};
     now.pair = job.pair;
     now.owner = last.owner;
     ++report_.queries;
 
-    SignedPair r = measure(a, b, b_in_a, reach, scale, last, now);
+    double farthest = reach;
+    if constexpr (looks_ahead)
+      farthest = std::max(reach, settings.contact_distance + inner::longest_way(summary_[job.a], h, settings) +
+                                     inner::longest_way(summary_[job.b], h, settings));
+    SignedPair r = measure(a, b, b_in_a, farthest, scale, last, now);
     now.normal = a.pose.rotation * r.normal;
     if (r.status == PairStatus::far) return;
     const double margin =
         settings.contact_distance +
         inner::margin_along(a, b, now.normal, a.pose.to_world(r.point_a), scale, h, settings);
+    if constexpr (looks_ahead) {
+      // What pushed, or may be pushed, keeps its contacts within the margin.
+      const bool is_near = r.distance <= margin, is_new = a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
+      will_meet = is_new && r.distance > settings.contact_distance;
+      if (r.distance - settings.contact_distance > inner::touch_share * scale) {
+        if (!is_near || is_new) {
+          const inner::Apart apart{job, r.distance - settings.contact_distance - inner::touch_share * scale, now.normal};
+          if (look_ahead(a, b, apart, scale, is_near, h, settings, last, now, out)) return;
+        }
+      }
+      if (farthest > reach && (is_half_space(a) || is_half_space(b))) r = measure(a, b, b_in_a, reach, scale, last, now);
+    }
     if (r.distance > margin) return;
     if (!is_half_space(a) && !is_half_space(b))
       contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
@@ -135,9 +174,62 @@ class CollisionEngine {
                          out.push_back(inner::contact_of(job, a.pose, patch_.point[i], now.normal,
                                                          settings.contact_distance, id));
                        });
+    if (will_meet) now.impact = impact_of(a, b, now, out);
     inner::share_area(now.area, a.pose, now.count, out);
     sort_last(now.count, out);
+    if constexpr (looks_ahead) hold_cores(a, b, job, h, out);  // their names are the last
     now.keep(shapes, b_in_a, r.normal, margin);
+  }
+
+  /// A pair that is apart: contacts of the place where it meets, or none. False where it meets with the normal that it has
+  /// now: then its contacts are those of now.
+  bool look_ahead(const Collider& a, const Collider& b, const inner::Apart& apart, double scale, bool is_near, double h,
+                  const CollisionSettings& settings, const RestingPair& last, RestingPair& now, std::vector<ContactPoint>& out) {
+    if (inner::may_close(a, b, apart.normal, apart.distance, h)) {
+      const double target = settings.contact_distance + inner::touch_share * scale;
+      const inner::Impact hit = inner::time_of_impact(a, b, h, scale, target);
+      if (hit.is_now) return false;
+      if (hit.is_found) {
+        if (is_near && dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal) return false;
+        if (meet(a, b, apart.job, hit, scale, h, settings, last, now, out)) return true;
+      }
+    }
+    apart_.push_back(apart);
+    return true;
+  }
+
+  /// Contacts of the patch that the two will have when they meet; false when they have none.
+  bool meet(const Collider& a, const Collider& b, const Job& job, const inner::Impact& hit, double scale, double h,
+            const CollisionSettings& settings, const RestingPair& last, RestingPair& now, std::vector<ContactPoint>& out);
+  /// Rows through the middles of bodies that fly by, where the pair has none.
+  void hold_cores(const Collider& a, const Collider& b, const Job& job, double h, std::vector<ContactPoint>& out) {
+    for (const bool is_a : {true, false}) {
+      if (!inner::flies_by(is_a ? a : b, h)) continue;
+      const Core core{job.pair, is_a};
+      if (std::any_of(cores_.begin(), cores_.end(), [&](const Core& c) { return c.pair == core.pair && c.is_a == is_a; })) continue;
+      if (inner::hold_core(job, a, b, is_a, h, out)) cores_.push_back(core);
+    }
+  }
+  /// The impact that a pair's last contacts foresee.
+  static RememberedImpact impact_of(const Collider& a, const Collider& b, const RestingPair& pair, const std::vector<ContactPoint>& out) {
+    const Vec3 n = pair.normal;
+    Vec3 middle = zero<Vec3>();
+    const ContactPoint* const first = out.data() + out.size() - pair.count;
+    for (int k = 0; k < pair.count; ++k) middle += first[k].point() / double(pair.count);
+    return {n, middle - a.pose.position, middle - b.pose.position, first->feature, pair.count > 0};
+  }
+  /// Of an impact that two rows of different normals share, the old one stops what it has left of the approach.
+  void finish_impact(const Collider& a, const Collider& b, const Job& job, const RememberedImpact& impact, const RestingPair& now,
+                     std::size_t first, std::vector<ContactPoint>& out) {
+    if (now.count > 0 && dot(now.normal, impact.normal) > inner::same_normal) return;
+    out.push_back(inner::row_ahead(job, a, b, impact.arm_a, impact.arm_b, impact.normal, 0, inner::unused(impact.id, first, out)));
+    sort_last(int(out.size() - first), out);
+  }
+  /// Looks for pairs of the colliders that go farther than `detect` took into account.
+  template <class Filter>
+  void find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings, const Filter& filter);
+  RestingPair& memory_of(std::uint64_t pair) {
+    return *inner::lower_bound(memory_.begin(), memory_.end(), pair, [](const RestingPair& m, std::uint64_t key) { return m.pair < key; });
   }
 
   static bool is_half_space(const Collider& c) { return c.shape.kind == ShapeKind::half_space; }
@@ -183,6 +275,10 @@ class CollisionEngine {
   std::vector<CandidatePair> pairs_;
   Array<Job> jobs_;
   Array<RestingPair> memory_, next_memory_;
+  Array<inner::Apart> apart_;
+  Array<std::uint64_t> asked_;  ///< their pairs, by key
+  Array<Core> cores_;           ///< held in this step
+  Array<char> is_grown_;        ///< colliders that go farther than detection took into account
   FixedArray<PatchPoint, PairMemory::capacity> repeated_;
 };
 
@@ -204,8 +300,9 @@ void CollisionEngine<Kernel, Broad>::recall_pairs() {
 }
 
 template <class Kernel, class Broad>
+template <class Filter>
 void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> colliders, const Job& job, double h,
-                                             const CollisionSettings& settings, RestingPair& pair,
+                                             const CollisionSettings& settings, RestingPair& pair, const Filter& filter,
                                              std::vector<ContactPoint>& out) {
   const Collider &a = colliders[job.a], &b = colliders[job.b];
   const inner::Summary &of_a = summary_[job.a], &of_b = summary_[job.b];
@@ -214,14 +311,113 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
   const double reach =
       settings.contact_distance + inner::widest_margin(of_a.speed + of_b.speed, scale, h, settings);
   const std::uint64_t shapes = (of_a.shape * 3 + of_b.shape) * 11 + std::uint64_t(settings.max_points);
+  const RememberedImpact impact = pair.impact;
+  const std::size_t first = out.size();
+  pair.impact.is_there = false;
   Vec3 n;
-  if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n))
-    return collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, out);
-  pair.normal = a.pose.rotation * n;
-  for (int k = 0; k < pair.count; ++k)
-    out.push_back(inner::contact_of(job, a.pose, repeated_[k], pair.normal, settings.contact_distance,
-                                    repeated_[k].name));
-  inner::share_area(pair.area, a.pose, pair.count, out);
+  if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n)) {
+    collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, filter, out);
+  } else {
+    pair.normal = a.pose.rotation * n;
+    for (int k = 0; k < pair.count; ++k)
+      out.push_back(inner::contact_of(job, a.pose, repeated_[k], pair.normal, settings.contact_distance,
+                                      repeated_[k].name));
+    inner::share_area(pair.area, a.pose, pair.count, out);
+  }
+  if constexpr (inner::KnowsWhoPushed<Filter>)
+    if (impact.is_there && filter.pushed(job.pair) && !inner::has_turned(a, h, scale) && !inner::has_turned(b, h, scale))
+      finish_impact(a, b, job, impact, pair, first, out);
+}
+
+template <class Kernel, class Broad>
+bool CollisionEngine<Kernel, Broad>::meet(const Collider& a, const Collider& b, const Job& job, const inner::Impact& hit, double scale,
+                                          double h, const CollisionSettings& settings, const RestingPair& last, RestingPair& now,
+                                          std::vector<ContactPoint>& out) {
+  const Pose b_in_a = hit.a.to_local(hit.b);
+  const double speed = dot(hit.a.rotation * hit.normal_in_a, a.velocity - b.velocity),
+               margin = settings.contact_distance + inner::limited_margin(std::abs(speed) * (h - hit.time), scale);
+  const SignedPair r = inner::distance_of(a.shape, b.shape, b_in_a, margin, scale, hit.normal_in_a, patch_);
+  if (r.status != PairStatus::near) return false;
+  if (!is_half_space(a) && !is_half_space(b)) contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
+  now.owner = inner::NormalOwner::kernel;
+  now.normal = hit.a.rotation * r.normal;
+  const std::size_t first = out.size();
+  inner::name_points(patch_, last, b_in_a, r.normal, scale, settings.max_points, first, out, now, [&](int i, std::uint32_t id) {
+    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, id));
+  });
+  if (now.count == 0) return false;
+  now.impact = impact_of(a, b, now, out);
+  hold_cores(a, b, job, h, out);
+  sort_last(int(out.size() - first), out);
+  return true;
+}
+
+template <class Kernel, class Broad>
+template <class Filter>
+void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
+                                                   const Filter& filter) {
+  is_grown_.assign(colliders.size(), 0);
+  bool is_any = false;
+  for (Index i = 0; i < Index(colliders.size()); ++i) {
+    const double speed = inner::top_speed(colliders[i]);
+    if (boxes_[i].is_empty() || !std::isfinite(speed) || speed * h <= 0.5 * inner::margin_share * summary_[i].scale) continue;
+    inner::Summary now = summary_[i];
+    now.speed = std::max(speed, now.speed);
+    const Aabb box = inner::box_of_way(colliders[i], now, h, settings);
+    if (speed * h <= inner::longest_way(summary_[i], h, settings) && boxes_[i].contains(box)) continue;
+    summary_[i] = now;
+    boxes_[i].extend(box);
+    is_grown_[i] = is_any = true;
+  }
+  if (!is_any) return;
+  asked_.clear();
+  for (const inner::Apart& p : apart_) asked_.push_back(p.job.pair);
+  inner::sort(asked_);
+  const std::size_t known = jobs_.size();
+  const auto ask = [&](Index i, Index j) {
+    const Collider &x = colliders[i], &y = colliders[j];
+    const std::uint64_t pair = pair_key(x.key, y.key);
+    if (!may_meet(x, y) || inner::is_listed(asked_, pair) || !filter.lets(pair)) return;
+    const Job job = x.key < y.key ? Job{pair, i, j} : Job{pair, j, i};
+    const Job *const end = jobs_.data() + known, *const at = inner::lower_bound(jobs_.data(), jobs_.data() + known, job);
+    const bool is_known = at != end && at->pair == pair;
+    if (is_known && memory_of(pair).count > 0) return;
+    if (!is_known) jobs_.push_back(job);
+    apart_.push_back({job, 0, zero<Vec3>()});
+  };
+  for (Index i = 0; i < Index(colliders.size()); ++i) {
+    if (!is_grown_[i]) continue;
+    for (Index j = 0; j < Index(colliders.size()); ++j)
+      if (j != i && !(is_grown_[j] && j < i) && !boxes_[j].is_empty() && boxes_[j].intersects(boxes_[i])) ask(i, j);
+    for (const Index plane : half_spaces_)
+      if (inner::may_touch(colliders[plane], boxes_[i], h, settings)) ask(i, plane);
+  }
+  if (jobs_.size() == known) return;
+  inner::sort(jobs_);
+  recall_pairs();
+}
+
+template <class Kernel, class Broad>
+template <class Filter>
+void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
+                                                   std::vector<ContactPoint>& out, const Filter& filter) {
+  out.clear();
+  find_outgrown(colliders, h, settings, filter);
+  erase_if(apart_, [&](const inner::Apart& p) {
+    const Collider &a = colliders[p.job.a], &b = colliders[p.job.b];
+    if (!inner::may_close(a, b, p.normal, p.distance, h)) return false;
+    const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale);
+    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, settings.contact_distance + inner::touch_share * scale);
+    if (!hit.is_found) return false;
+    RestingPair& now = memory_of(p.job.pair);
+    const RestingPair last = now;
+    now.count = 0;
+    return meet(a, b, p.job, hit, scale, h, settings, last, now, out);
+  });
+  bool any_flies_by = false;
+  for (std::size_t i = 0; i < colliders.size() && !any_flies_by; ++i) any_flies_by = inner::flies_by(colliders[i], h);
+  for (std::size_t k = 0; any_flies_by && k < jobs_.size(); ++k)
+    if (memory_[k].count > 0) hold_cores(colliders[jobs_[k].a], colliders[jobs_[k].b], jobs_[k], h, out);
 }
 
 }  // namespace delassus

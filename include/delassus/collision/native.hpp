@@ -44,6 +44,9 @@ struct NativeDetection {
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
                          const Filter& filter = {});
+  /// Those of the pairs that have none since then and meet by the velocities that the colliders have now.
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter);
 };
 
 template <class Kernel, class Broad>
@@ -55,6 +58,12 @@ template <class Filter>
 CollisionReport NativeDetection<Kernel, Broad>::detect(std::span<const Collider> colliders, double h,
                                                        std::vector<ContactPoint>& contacts, const Filter& filter) {
   return engine->detect(colliders, h, {margin, contact_distance, max_points}, contacts, filter);
+}
+template <class Kernel, class Broad>
+template <class Filter>
+void NativeDetection<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
+                                                   const Filter& filter) {
+  engine->detect_missed(colliders, h, {margin, contact_distance, max_points}, contacts, filter);
 }
 
 /// Trees of boxes, then formulas, GJK and EPA.

@@ -16,6 +16,13 @@ struct RememberedPoint {
   Vec3 local_a, local_b;
 };
 
+/// Where two bodies that were apart met: the normal and the arms of the middle of their patch. World frame, m.
+struct RememberedImpact {
+  Vec3 normal = zero<Vec3>(), arm_a = zero<Vec3>(), arm_b = zero<Vec3>();
+  std::uint32_t id = 0;  ///< of the first contact there
+  bool is_there = false;
+};
+
 struct PairMemory {
   static constexpr int capacity = 8;
   std::uint64_t pair = 0;
@@ -24,6 +31,7 @@ struct PairMemory {
   std::uint8_t count = 0;
   inner::NormalOwner owner = inner::NormalOwner::kernel;
   ContactArea area;  ///< of the whole patch, in the frame of A
+  RememberedImpact impact;  ///< of the last step
 };
 
 namespace inner {

@@ -19,7 +19,7 @@
 namespace delassus {
 
 /// `Seamless{NativeCollision{}}` in the place of the backend: A body that slides over tiles does not hit the edges of the next
-/// one. WithMeshes, Continuous, WithCompounds and WithFilter go around it.
+/// one. WithMeshes, WithCompounds and WithFilter go around it.
 ///
 /// Its rule is for a body A that touches B by the normal n (from A) at the point p of B. Another body C that begins at the plane
 /// of that contact, |min n·C − n·p| ≤ `level`, is no obstacle to A in another direction than n, as long as A lies on B. Their
@@ -53,6 +53,13 @@ struct Seamless {
     leave_out_seams(colliders, contacts);
     report.points = Index(contacts.size());
     return report;
+  }
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
+    requires inner::DetectsMissed<Backend, Filter>
+  {
+    backend.detect_missed(colliders, h, contacts, filter);
+    leave_out_seams(colliders, contacts);
   }
 
  private:

@@ -29,6 +29,23 @@ struct WithCompounds {
 
   Backend backend{};  ///< is given bodies and parts alike as convex shapes
 
+  /// What the backend asks: parts of one body pass through each other; of two bodies, they meet where the bodies do.
+  template <class Filter>
+  struct PartFilter {
+    const WithCompounds& compounds;
+    const Filter& filter;
+    bool lets(std::uint64_t pair) const {
+      const auto [a, b] = compounds.bodies_of(pair);
+      return a != b && filter.lets(pair_key(a, b));
+    }
+    bool pushed(std::uint64_t pair) const
+      requires inner::KnowsWhoPushed<Filter>
+    {
+      const auto [a, b] = compounds.bodies_of(pair);
+      return filter.pushed(pair_key(a, b));
+    }
+  };
+
   WithCompounds() = default;
   /// Around this backend.
   explicit WithCompounds(Backend b) : backend(std::move(b)) {}
@@ -49,22 +66,16 @@ struct WithCompounds {
                          const Filter& filter = {}) {
     split(colliders);
     CollisionReport report = backend.detect(parts_, h, contacts, PartFilter<Filter>{*this, filter});
-    const Index bodies = Index(colliders.size());
-    if (Index(parts_.size()) == bodies) return report;
-    for (ContactPoint& p : contacts) {
-      if (p.a < bodies && p.b < bodies) continue;
-      // The parts' names are in the contact's: two parts of one body meet another in points of equal names.
-      p.feature ^= 0x9e3779b9u * (0x10001u * part_of(p.a, bodies) + 7u * part_of(p.b, bodies) + 1u);
-      p.a = body_of(p.a, bodies);
-      p.b = body_of(p.b, bodies);
-      p.pair = pair_key(colliders[p.a].key, colliders[p.b].key);
-      if (colliders[p.a].key >= colliders[p.b].key) p.exchange_bodies();
-    }
-    inner::sort_by_name(contacts);
-    for (std::size_t i = 1; i < contacts.size(); ++i)
-      if (contacts[i].pair == contacts[i - 1].pair && contacts[i].feature <= contacts[i - 1].feature)
-        contacts[i].feature = contacts[i - 1].feature + 1;
+    give_to_bodies(colliders, contacts);
     return report;
+  }
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
+    requires inner::DetectsMissed<Backend, PartFilter<Filter>>
+  {
+    split(colliders);
+    backend.detect_missed(parts_, h, contacts, PartFilter<Filter>{*this, filter});
+    give_to_bodies(colliders, contacts);
   }
 
   void memory(auto& archive) {
@@ -86,23 +97,30 @@ struct WithCompounds {
   };
   static constexpr std::uint32_t part_key = 0xf0000000u;  ///< beyond the keys of a world's fifteen first sets
 
-  /// Parts of one body pass through each other; of two bodies, they meet where the bodies do.
-  template <class Filter>
-  struct PartFilter {
-    const WithCompounds& compounds;
-    const Filter& filter;
-    bool lets(std::uint64_t pair) const {
-      const std::uint32_t a = compounds.body_key(std::uint32_t(pair >> 32)),
-                          b = compounds.body_key(std::uint32_t(pair));
-      return a != b && filter.lets(pair_key(a, b));
-    }
-  };
-
+  std::pair<std::uint32_t, std::uint32_t> bodies_of(std::uint64_t pair) const {
+    return {body_key(std::uint32_t(pair >> 32)), body_key(std::uint32_t(pair))};
+  }
   std::uint32_t body_key(std::uint32_t key) const {
     if (key < part_key) return key;
     const auto at = inner::lower_bound(by_key_.data(), by_key_.data() + by_key_.size(), key,
                                      [](const Owner& o, std::uint32_t k) { return o.key < k; });
     return at->body_key;
+  }
+  /// Contacts of parts become those of their bodies.
+  void give_to_bodies(std::span<const Collider> colliders, std::vector<ContactPoint>& contacts) const {
+    const Index bodies = Index(colliders.size());
+    if (Index(parts_.size()) == bodies) return;
+    for (ContactPoint& p : contacts) {
+      if (p.a < bodies && p.b < bodies) continue;
+      // The parts' names are in the contact's: two parts of one body meet another in points of equal names.
+      p.feature ^= 0x9e3779b9u * (0x10001u * part_of(p.a, bodies) + 7u * part_of(p.b, bodies) + 1u);
+      p.a = body_of(p.a, bodies);
+      p.b = body_of(p.b, bodies);
+      p.pair = pair_key(colliders[p.a].key, colliders[p.b].key);
+      if (colliders[p.a].key >= colliders[p.b].key) p.exchange_bodies();
+    }
+    inner::sort_by_name(contacts);
+    inner::part_equal_names(contacts);
   }
   Index body_of(Index place, Index bodies) const {
     return place < bodies ? place : owners_[place - bodies].body;

@@ -32,6 +32,19 @@ struct WithFilter {
   Backend backend{};  ///< asks `lets` before it computes a distance, if it can
   bool joined = true;  ///< bodies with a joint between them pass through each other
 
+  /// What the backend asks.
+  template <class Filter>
+  struct Both {
+    const WithFilter& own;
+    const Filter& filter;
+    bool lets(std::uint64_t pair) const { return own.lets(pair) && filter.lets(pair); }
+    bool pushed(std::uint64_t pair) const
+      requires inner::KnowsWhoPushed<Filter>
+    {
+      return filter.pushed(pair);
+    }
+  };
+
   WithFilter() = default;
   /// Around this backend; `lets_joined_pass` becomes `joined`.
   explicit WithFilter(Backend b, bool lets_joined_pass = true)
@@ -68,15 +81,24 @@ struct WithFilter {
     inner::sort(pairs_);
   }
 
-  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts) {
-    if constexpr (requires { backend.detect(colliders, h, contacts, *this); }) {
-      return backend.detect(colliders, h, contacts, *this);
+  /// `filter` is asked besides.
+  template <class Filter = NoFilter>
+  CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter = {}) {
+    const Both<Filter> both{*this, filter};
+    if constexpr (requires { backend.detect(colliders, h, contacts, both); }) {
+      return backend.detect(colliders, h, contacts, both);
     } else {
       CollisionReport report = backend.detect(colliders, h, contacts);
-      std::erase_if(contacts, [&](const ContactPoint& c) { return !lets(c.pair); });
+      std::erase_if(contacts, [&](const ContactPoint& c) { return !both.lets(c.pair); });
       report.points = Index(contacts.size());
       return report;
     }
+  }
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
+    requires inner::DetectsMissed<Backend, Both<Filter>>
+  {
+    backend.detect_missed(colliders, h, contacts, Both<Filter>{*this, filter});
   }
 
   /// Whether two may collide, by their `pair_key`; of joints as at the last `refresh`.

@@ -65,11 +65,9 @@ struct WithMeshes {
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts,
                          const Filter& filter = {}) {
-    convex_.assign(colliders.begin(), colliders.end());
-    for (Collider& c : convex_)
-      if (c.shape.kind == ShapeKind::mesh) c.shape = {};
+    take_convex(colliders);
     CollisionReport report = backend.detect(convex_, h, contacts, filter);
-    find_jobs(colliders, filter);
+    find_jobs(colliders, h, filter);
     report.pairs += Index(jobs_.size());
     pairs_.begin();
     const CollisionSettings settings = inner::settings_of(backend);
@@ -78,12 +76,28 @@ struct WithMeshes {
         if (colliders[job.b].shape.kind == ShapeKind::mesh)
           report.queries += cross(surface, colliders, job, h, settings, contacts);
         else
-          report.queries += pairs_.collide(surface, colliders, job, h, settings, contacts);
+          report.queries += pairs_.collide(surface, colliders, job, h, settings, filter, contacts);
       });
     pairs_.end();
     if (!jobs_.empty()) inner::sort_by_name(contacts);
     report.points = Index(contacts.size());
     return report;
+  }
+
+  /// Of two surfaces none is left out.
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
+    requires inner::DetectsMissed<Backend, Filter>
+  {
+    take_convex(colliders);
+    backend.detect_missed(convex_, h, contacts, filter);
+    find_jobs(colliders, h, filter);
+    const CollisionSettings settings = inner::settings_of(backend);
+    for (const Job& job : jobs_)
+      if (colliders[job.b].shape.kind != ShapeKind::mesh)
+        with_surface(colliders[job.a].shape,
+                     [&](const auto& surface) { pairs_.collide_missed(surface, colliders, job, h, settings, contacts); });
+    inner::sort_by_name(contacts);
   }
 
   void memory(auto& archive) {
@@ -105,9 +119,15 @@ struct WithMeshes {
     return KeptShape{ShapeKind::mesh, int(kinds_.size()) - 1, reach};
   }
 
+  void take_convex(std::span<const Collider> colliders) {
+    convex_.assign(colliders.begin(), colliders.end());
+    for (Collider& c : convex_)
+      if (c.shape.kind == ShapeKind::mesh) c.shape = {};
+  }
+
   /// Of pairs whose balls, with the widest margin there can be, are apart nothing is asked.
   template <class Filter>
-  void find_jobs(std::span<const Collider> colliders, const Filter& filter) {
+  void find_jobs(std::span<const Collider> colliders, double h, const Filter& filter) {
     jobs_.clear();
     for (Index m = 0; m < Index(colliders.size()); ++m) {
       const Collider& mesh = colliders[m];
@@ -121,7 +141,7 @@ struct WithMeshes {
             (kind == ShapeKind::mesh && !goes_first(colliders, m, i)))
           continue;
         const std::uint64_t pair = pair_key(mesh.key, other.key);
-        if (is_near(mesh, other) && filter.lets(pair)) jobs_.push_back({pair, m, i});
+        if (is_near(mesh, other, h) && filter.lets(pair)) jobs_.push_back({pair, m, i});
       }
     }
     inner::sort(jobs_);
@@ -155,12 +175,12 @@ struct WithMeshes {
     return queries;
   }
 
-  bool is_near(const Collider& mesh, const Collider& other) const {
+  bool is_near(const Collider& mesh, const Collider& other, double h) const {
     if (other.shape.kind == ShapeKind::half_space) return true;
     const CollisionSettings settings = inner::settings_of(backend);
     const double own = outer_radius(other.shape),
                  margin = std::max(settings.margin, own) + settings.contact_distance,
-                 reach = outer_radius(mesh.shape) + own + margin;
+                 reach = outer_radius(mesh.shape) + own + margin + h * (inner::top_speed(mesh) + inner::top_speed(other));
     return squared_norm(mesh.pose.position - other.pose.position) <= reach * reach;
   }
 

@@ -32,6 +32,22 @@ struct WithSurfaces {
   Backend backend{};  ///< meets nodes as spheres
   bool self_contact = true;  ///< one body's triangles and edges meet each other
 
+  /// What the backend asks: nodes of surfaces do not meet nodes; their triangles do.
+  template <class Filter>
+  struct NodeFilter {
+    const WithSurfaces& surfaces;
+    const Filter& filter;
+    bool lets(std::uint64_t pair) const {
+      return filter.lets(pair) &&
+             (surfaces.owner_of(std::uint32_t(pair >> 32)) < 0 || surfaces.owner_of(std::uint32_t(pair)) < 0);
+    }
+    bool pushed(std::uint64_t pair) const
+      requires inner::KnowsWhoPushed<Filter>
+    {
+      return filter.pushed(pair);
+    }
+  };
+
   WithSurfaces() = default;
   /// Around this backend; `meets_itself` becomes `self_contact`.
   explicit WithSurfaces(Backend b, bool meets_itself = true)
@@ -79,6 +95,14 @@ struct WithSurfaces {
     return report;
   }
 
+  /// Of nodes and bodies; a surface meets what is within its margin.
+  template <class Filter>
+  void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
+    requires inner::DetectsMissed<Backend, NodeFilter<Filter>>
+  {
+    backend.detect_missed(colliders, h, contacts, NodeFilter<Filter>{*this, filter});
+  }
+
   /// Puts the ends of contacts between nodes where they are: `results` in the order of the contacts, some of
   /// which may be gone.
   template <class Results>
@@ -111,17 +135,6 @@ struct WithSurfaces {
   struct Owner {
     std::uint32_t key;
     Index surface;
-  };
-
-  /// Nodes of surfaces do not meet nodes: their triangles do.
-  template <class Filter>
-  struct NodeFilter {
-    const WithSurfaces& surfaces;
-    const Filter& filter;
-    bool lets(std::uint64_t pair) const {
-      return filter.lets(pair) &&
-             (surfaces.owner_of(std::uint32_t(pair >> 32)) < 0 || surfaces.owner_of(std::uint32_t(pair)) < 0);
-    }
   };
 
   template <class Filter>

@@ -21,7 +21,7 @@ concept IsHollow = std::derived_from<P, Hollow> || requires { requires P::is_hol
 
 /// A bit for each wrapper of a role, which is there once.
 namespace layer {
-inline constexpr unsigned seamless = 1, meshes = 2, continuous = 4, compounds = 8, surfaces = 16,
+inline constexpr unsigned seamless = 1, meshes = 2, compounds = 8, surfaces = 16,
                           filter = 32;                     // of collision
 inline constexpr unsigned deadline = 1, minimum_norm = 2;  // of a solver
 inline constexpr unsigned compliance = 1;                  // of a stabilisation

@@ -41,6 +41,7 @@ template <class Solver = AcceleratedGaussSeidel, Clock C = SteadyClock>
 struct BasicHapticChannel {
   using plays = role::Listener;
   using listens = Listens<stage::Solve>;
+  static constexpr bool wants_open_contacts = true;  ///< read by the loop, whose detection then leaves none out: ticks may close them
 
   Solver solver{.tolerance = 1e-4, .max_iterations = 100};  ///< of a tick
   double budget = 80e-6;                                    ///< s a tick may solve, looked at after each sweep

@@ -62,7 +62,7 @@ consteval bool plays_its_role() {
   constexpr bool is_filled = !IsHollow<P>, is_collision = Plays<P, role::Collision>, is_solver = Plays<P, role::Solver>;
   static_assert(is_filled || !is_collision,
                 "delassus: the layers of a collision go around a backend and each other in this order, each at most once: "
-                "WithFilter{WithSurfaces{WithCompounds{Continuous{WithMeshes{Seamless{NativeCollision{}}}}}}}; take out what "
+                "WithFilter{WithSurfaces{WithCompounds{WithMeshes{Seamless{NativeCollision{}}}}}}; take out what "
                 "is not wanted, and write numbers second, as in Seamless{NativeCollision{}, 1e-3}");
   static_assert(is_filled || !is_solver,
                 "delassus: WithDeadline and MinimumNorm go around a solver, each at most once, and numbers come second: "

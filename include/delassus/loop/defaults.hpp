@@ -48,6 +48,7 @@ struct Policies {
   template <class Stage>
   static constexpr bool hears_stage = (inner::hears_stage<Args, Stage> || ...);
   static constexpr bool listens_inside_step = (inner::listens_inside_step<Args> || ...);
+  static constexpr bool wants_open_contacts = (inner::wants_open_contacts<Args> || ...);
   static constexpr bool observes_sweeps = (inner::observes_sweeps<Args> || ...);
   using SweepObserver = typename inner::sweep_observer<Args...>::type;
 };

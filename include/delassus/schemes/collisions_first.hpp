@@ -14,6 +14,12 @@ namespace delassus {
 struct CollisionsFirst {
   using plays = role::Scheme;
 
+  /// Contacts that pushed before the free motion cannot push again in a second solve.
+  template <class Base>
+  struct stages : Base {
+    static constexpr bool looks_ahead = false;
+  };
+
   void run(auto& step) const {
     stage::detect(step);
     if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts) {

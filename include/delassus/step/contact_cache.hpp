@@ -4,15 +4,21 @@
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/summary.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/sort.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/anchor.hpp>
+#include <delassus/rows/body_set.hpp>
 #include <delassus/rows/contact_record.hpp>
 #include <delassus/step/contact_memory.hpp>
 #include <delassus/step/contact_result.hpp>
 #include <delassus/step/friction_places.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -31,10 +37,57 @@ class BasicContactCache {
     colliders.clear();
     anchors_.clear();
     materials_.clear();
+    solves = 0;
     world.each([&](const auto& set, auto s) {
       for (const Index b : set.active())
         if (set.has_collider(b)) add(set, s, b, collider_moves(set, b));
     });
+  }
+  /// Gives them the velocities that they will have in a step of h (s), as far as it is known: what pushed nothing in the last
+  /// step falls. What pushed something that moves will hardly go as it goes now.
+  template <class World>
+  void foresee(const World& world, double h) {
+    find_who_pushed();
+    Index i = 0;
+    world.each([&](const auto& set, auto s) {
+      const bool are_alone = is_separable(set);
+      const Vec3 fall = h * inner::gravity_of(set);
+      for (; i < Index(colliders.size()) && anchors_[i].set == Index(s); ++i) {
+        Collider& c = colliders[i];
+        if (!c.is_movable) continue;
+        c.goes_alone = are_alone && pushed_[i] != pushed_movable;
+        if (are_alone && pushed_[i] == pushed_nothing) c.velocity += fall;
+      }
+    });
+  }
+  /// The motion that was solved for, v_next.
+  template <class World>
+  void take_solved_motion(const World& world) {
+    Index i = 0;
+    world.each([&](const auto& set, auto s) {
+      for (; i < Index(colliders.size()) && anchors_[i].set == Index(s); ++i) {
+        const Index b = anchors_[i].block;
+        if (!colliders[i].is_movable || !is_finite(set.v_next[b])) continue;
+        colliders[i].velocity = converted<double>(linear_part(set.v_next[b]));
+        if constexpr (std::remove_cvref_t<decltype(set)>::width == 6) colliders[i].angular_velocity = converted<double>(angular_part(set.v_next[b]));
+      }
+    });
+  }
+  /// What detection asks: whether a pair pushed when it was last solved.
+  struct Pushed {
+    const BasicContactMemory<Scalar>& memory;
+    bool lets(std::uint64_t) const { return true; }
+    bool pushed(std::uint64_t pair) const { return memory.pushed(pair); }
+  };
+  Pushed who_pushed() const { return {memory_}; }
+
+  int solves = 0;                    ///< of the step
+  std::vector<ContactPoint> missed;  ///< pairs that were left out and meet after all
+  /// Adds them to the points of the step.
+  void join_missed() {
+    points.insert(points.end(), missed.begin(), missed.end());
+    inner::sort_by_name(points);
+    inner::part_equal_names(points);
   }
 
   /// Body b of set s as a collider; one that is not movable meets only those that are.
@@ -100,6 +153,30 @@ class BasicContactCache {
   void memory(auto& archive) { archive(memory_); }
 
  private:
+  static constexpr char pushed_nothing = 0, pushed_still = 1, pushed_movable = 2;
+
+  /// Whom each collider pushed in the last step: what moves, if it did, else what does not.
+  void find_who_pushed() {
+    pushed_.assign(colliders.size(), pushed_nothing);
+    for (const auto& e : memory_.entries()) {
+      if (is_zero(e.impulse)) continue;
+      const Index a = place_of(std::uint32_t(e.pair >> 32)), b = place_of(std::uint32_t(e.pair));
+      if (a < 0 || b < 0) continue;
+      pushed_[a] = std::max(pushed_[a], colliders[b].is_movable ? pushed_movable : pushed_still);
+      pushed_[b] = std::max(pushed_[b], colliders[a].is_movable ? pushed_movable : pushed_still);
+    }
+  }
+  /// Of a collider by its key, by which they are sorted; -1 where there is none.
+  Index place_of(std::uint32_t key) const {
+    const Collider *const end = colliders.data() + colliders.size(),
+                   *const at = inner::lower_bound(colliders.data(), end, key, [](const Collider& c, std::uint32_t k) { return c.key < k; });
+    return at != end && at->key == key ? Index(at - colliders.data()) : Index(-1);
+  }
+
+  static bool is_separable(const auto& set) {
+    if constexpr (requires { set.is_separable(); }) return set.is_separable();
+    else return false;
+  }
   /// Of a collider that more than its own block moves, the set says so.
   template <class Set>
   static bool collider_moves(const Set& set, Index b) {
@@ -109,6 +186,7 @@ class BasicContactCache {
 
   Array<Anchor> anchors_;
   Array<Index> materials_;
+  Array<char> pushed_;
   BasicContactMemory<Scalar> memory_;
   BasicFrictionPlaces<Scalar> friction_places_;
 };

@@ -74,6 +74,15 @@ class BasicContactMemory {
     return {first, std::size_t(last - first)};
   }
 
+  /// Of all pairs, sorted by pair and feature.
+  inner::Slice<const Entry> entries() const { return entries_; }
+  /// Whether a pair pushed.
+  bool pushed(std::uint64_t pair) const {
+    for (const Entry& e : of_pair(pair))
+      if (!is_zero(e.impulse)) return true;
+    return false;
+  }
+
   void memory(auto& archive) {
     archive(entries_);
     ordered_begin_ = ordered_end_ = 0;

@@ -20,6 +20,9 @@ inline constexpr bool hears_stage = Plays<P, role::Listener> && requires { requi
 /// A listener that wants to be told of every sweep of the solver.
 template <class P>
 inline constexpr bool observes_sweeps = requires { requires P::every_sweep; };
+/// A listener for whom contacts within the margin are there whether bodies meet or not.
+template <class P>
+inline constexpr bool wants_open_contacts = requires { requires P::wants_open_contacts; };
 
 template <class Listener, class Step, class Stage>
 consteval bool hears() {

@@ -12,6 +12,7 @@
 #include <delassus/step/find_islands.hpp>
 #include <delassus/step/free_motion.hpp>
 #include <delassus/step/linearize.hpp>
+#include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/notify.hpp>
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stages_without_constraints.hpp>
@@ -25,10 +26,29 @@
 
 namespace delassus {
 
+namespace inner {
+
+/// Solves of a step at most: each brings in pairs that the one before made meet, as in a row of balls.
+inline constexpr int most_solves = 16;
+
+/// Whether detection leaves pairs out that do not meet.
+template <class Step>
+inline constexpr bool asks_who_meets =
+    Step::Laws::has_contacts && Step::Stages::looks_ahead && !Step::Policies::wants_open_contacts && !MovesAtOnce<typename Step::Policies::Integrator> &&
+    DetectsMissed<typename Step::Policies::Collision, ContactCache::Pushed>;
+template <class Step>
+inline constexpr bool asks_who_meets<Step&> = asks_who_meets<Step>;
+
+}  // namespace inner
+
 /// A policy that changes a stage overrides it by name: its `stages<Base>` derives from Base, whose function of that name
 /// it calls or replaces. `step` is the StepData of the loop. A stage asks for its parts by `Stages`, so that those of
 /// policies are called. Bodies advance as they do without constraints.
 struct PlainStages : StagesWithoutConstraints {
+  /// Detection leaves pairs out that do not meet by what is known of their motion, and `find_missed` those that meet after all.
+  /// A policy that cannot solve a step again says false.
+  static constexpr bool looks_ahead = true;
+
   static void begin(auto& step, double h) {
     if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts)
       check_materials(std::as_const(step).world(), step.material_pairs);
@@ -44,22 +64,43 @@ struct PlainStages : StagesWithoutConstraints {
   static void detect(auto& step) {
     using Step = std::remove_reference_t<decltype(step)>;
     if constexpr (Step::Laws::has_contacts) {
-      step.contact_cache.gather(std::as_const(step).world());
+      Step::Stages::gather(step);
       if constexpr (requires { Step::Policies::Collision::asks_for_joints; })
         step.collision().refresh(std::as_const(step).world(), [&](const auto& f) { step.each_joint(f); });
       inner::show_world(step.collision(), std::as_const(step).world());
       const CollisionReport found = Step::Stages::find_contacts(step);
-      step.contact_cache.record();
-      inner::place_ends(step.collision(), step.contact_cache.results);
-      if constexpr (inner::some_have_friction<typename Step::Laws>) step.contact_cache.place_friction();
-      const Index unclaimed = route_contacts(step.laws(), step.contact_cache, step.material_pairs);
+      const Index unclaimed = take_contacts(step);
       report_contacts(found, step.contact_cache.points, unclaimed, step.summary);
     }
+  }
+  /// A collider for each body.
+  static void gather(auto& step) {
+    step.contact_cache.gather(std::as_const(step).world());
+    if constexpr (inner::asks_who_meets<decltype(step)>) step.contact_cache.foresee(std::as_const(step).world(), step.h);
   }
   /// Contact points of the colliders that were gathered.
   static CollisionReport find_contacts(auto& step) {
     auto& book = step.contact_cache;
-    return step.collision().detect(std::span<const Collider>(book.colliders), step.h, book.points);
+    const std::span<const Collider> colliders(book.colliders);
+    if constexpr (inner::asks_who_meets<decltype(step)>) return step.collision().detect(colliders, step.h, book.points, book.who_pushed());
+    else return step.collision().detect(colliders, step.h, book.points);
+  }
+  /// After Correct: true where bodies that were left out meet by v_next. Then their contacts are added, and the step is to be
+  /// solved again from Linearize on.
+  static bool find_missed(auto& step) {
+    if constexpr (inner::asks_who_meets<decltype(step)>) {
+      auto& book = step.contact_cache;
+      if (++book.solves == inner::most_solves) return false;
+      book.take_solved_motion(std::as_const(step).world());
+      step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
+      if (book.missed.empty()) return false;
+      book.join_missed();
+      take_contacts(step);
+      step.summary.contacts = Index(book.points.size());
+      step.last_h = step.h;  // the impulses that it starts from are of this step
+      return true;
+    }
+    return false;
   }
 
   static void linearize(auto& step) {
@@ -130,6 +171,16 @@ struct PlainStages : StagesWithoutConstraints {
 
   static void correct(auto& step) {
     delassus::correct(step.world(), step.arrays.all(), step.W, step.scratch, step.islands, step.reports, step.is_nonfinite);
+  }
+
+ private:
+  /// The points become records and items of the laws; returns how many no law took.
+  static Index take_contacts(auto& step) {
+    using Step = std::remove_reference_t<decltype(step)>;
+    step.contact_cache.record();
+    inner::place_ends(step.collision(), step.contact_cache.results);
+    if constexpr (inner::some_have_friction<typename Step::Laws>) step.contact_cache.place_friction();
+    return route_contacts(step.laws(), step.contact_cache, step.material_pairs);
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/step/move_freely.hpp>
+#include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/notify.hpp>
 #include <delassus/step/stage.hpp>
 
@@ -12,15 +13,6 @@ namespace delassus {
 
 template <class Step>
 using StagesOf = typename std::remove_reference_t<Step>::Stages;
-
-namespace inner {
-struct StepProbe;
-}
-
-/// An integrator that makes its step at once, joints and bodies together, brings all between Detect and Advance:
-/// `void move(auto& step) const`.
-template <class I>
-concept MovesAtOnce = requires(const I& integrator, inner::StepProbe& step) { integrator.move(step); };
 
 /// One function a stage: it does its work, see `PlainStages`, and then the listeners hear of it. A host that interleaves
 /// its own work calls them one by one on `loop.data()`.
@@ -36,8 +28,11 @@ void build(auto& step) { StagesOf<decltype(step)>::build(step), inner::notify<Bu
 void solve(auto& step) { StagesOf<decltype(step)>::solve(step), inner::notify<Solve>(step); }
 void correct(auto& step) { StagesOf<decltype(step)>::correct(step), inner::notify<Correct>(step); }
 void advance(auto& step) { StagesOf<decltype(step)>::advance(step), inner::notify<Advance>(step); }
+/// After Correct: true where bodies that Detect left out meet by v_next. Then Linearize to Correct are to be done again.
+bool find_missed(auto& step) { return StagesOf<decltype(step)>::find_missed(step); }
 
-/// All after Detect. Where nothing holds the bodies and nobody listens, each goes its way in one pass.
+/// All after Detect; from Linearize to Correct again where bodies that Detect left out meet by v_next. Where nothing holds the
+/// bodies and nobody listens, each goes its way in one pass.
 void move(auto& step) {
   using Data = std::remove_reference_t<decltype(step)>;
   if constexpr (Data::moves_freely) {
@@ -47,13 +42,15 @@ void move(auto& step) {
       step.integrator().move(step);
     } else {
       using Stages = StagesOf<decltype(step)>;
-      Stages::linearize(step), inner::notify<Linearize>(step);
-      Stages::free_motion(step), inner::notify<FreeMotion>(step);
-      Stages::find_islands(step), inner::notify<Islands>(step);
-      Stages::make_bias(step), inner::notify<Bias>(step);
-      Stages::build(step), inner::notify<Build>(step);
-      Stages::solve(step), inner::notify<Solve>(step);
-      Stages::correct(step), inner::notify<Correct>(step);
+      do {
+        Stages::linearize(step), inner::notify<Linearize>(step);
+        Stages::free_motion(step), inner::notify<FreeMotion>(step);
+        Stages::find_islands(step), inner::notify<Islands>(step);
+        Stages::make_bias(step), inner::notify<Bias>(step);
+        Stages::build(step), inner::notify<Build>(step);
+        Stages::solve(step), inner::notify<Solve>(step);
+        Stages::correct(step), inner::notify<Correct>(step);
+      } while (Stages::find_missed(step));
     }
     advance(step);
   }

@@ -27,6 +27,7 @@ struct StagesWithoutConstraints {
   static void correct(auto& step) {
     step.world().each([](auto& set, auto) { set.v_next = set.v_free; });
   }
+  static bool find_missed(auto&) { return false; }
   static void advance(auto& step) {
     step.world().each([&](auto& set, auto) {
       step.integrator().advance(set, step.h);

@@ -9,7 +9,7 @@
 
 namespace delassus::inner {
 
-/// For an activity whose state has begin, add_obstacles, wake_touched, drop_points, watch and settle (see `Sleepers`).
+/// For an activity whose state has begin, add_obstacles, lacks_obstacles, wake_touched, wake_met, drop_points, watch and settle (see `Sleepers`).
 template <class Base>
 struct DormantStages : Base {
   static void begin(auto& step, double h) {
@@ -21,22 +21,27 @@ struct DormantStages : Base {
     ContactCache& book = step.contact_cache;
     CollisionReport found;
     for (bool again = true; again;) {
-      if (!own(step).add_obstacles(step.world(), book)) {
+      if (!own(step).add_obstacles(step.world(), book, step.h)) {
         book.points.clear();
         return found;
       }
       found = Base::find_contacts(step);
       again = own(step).wake_touched(step.world(), step.laws(), book, step.h);
-      if (again) book.gather(std::as_const(step).world());
+      if (again) Base::gather(step);
     }
     own(step).drop_points(book);
     return found;
   }
-  static void correct(auto& step) {
-    Base::correct(step);
-    own(step).watch(step.activity(), step.world(), step.rows, step.islands, step.reports, step.h);
+  /// A sleeper that is met wakes, and the step begins anew with it; so it does where one comes near that was no obstacle.
+  static bool find_missed(auto& step) {
+    const bool is_any = Base::find_missed(step);
+    const ContactCache& book = step.contact_cache;
+    const bool begins_anew = is_any ? own(step).wake_met(step.world(), step.laws(), book) : own(step).lacks_obstacles(book, step.h);
+    if (begins_anew) Base::detect(step), step.last_h = step.h;
+    return is_any || begins_anew;
   }
   static void advance(auto& step) {
+    own(step).watch(step.activity(), step.world(), step.rows, step.islands, step.reports, step.h);
     Base::advance(step);
     own(step).settle(step.activity(), step.world(), step.laws(), step.islands);
   }

@@ -18,6 +18,7 @@ struct SurfaceContact {
   PatchPoint point;
   Vec3 normal;
   Index triangle = -1;
+  bool is_ahead = false;  ///< of the place where the two will meet
 };
 
 /// Chooses among contacts of one group, seen along its normal n. Its arrays keep their capacity.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/ahead.hpp>
 #include <delassus/collision/inner/deep_surfaces.hpp>
 #include <delassus/collision/inner/face_pieces.hpp>
 #include <delassus/collision/inner/hull_of_patch.hpp>
@@ -11,6 +12,7 @@
 #include <delassus/collision/inner/patch_doubts.hpp>
 #include <delassus/collision/inner/share_area.hpp>
 #include <delassus/collision/inner/surface_crossing.hpp>
+#include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/triangle_patch.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
@@ -28,18 +30,22 @@ namespace delassus::inner {
 /// frame.
 class SurfacePairs {
  public:
-  void begin() { next_.clear(); }
-  void end() { memory_.swap(next_); }
-  void memory(auto& archive) { archive(memory_); }
+  void begin() { next_.clear(), next_impacts_.clear(), apart_.clear(), asked_.clear(), cores_.clear(); }
+  void end() { memory_.swap(next_), impacts_.swap(next_impacts_); }
+  void memory(auto& archive) { archive(memory_, impacts_); }
 
   /// Appends the contacts of the surface, posed and moving as the collider `job.a`, with the convex collider or
-  /// the half-space `job.b`. Call by ascending pairs. Returns how many triangles were looked at.
-  template <class Surface>
+  /// the half-space `job.b`. Call by ascending pairs. Returns how many triangles were looked at. With a filter that knows who
+  /// pushed, triangles that are apart have contacts only where they meet.
+  template <class Surface, class Filter>
   Index collide(const Surface& surface, std::span<const Collider> colliders, const PairJob& job, double h,
-                const CollisionSettings& settings, std::vector<ContactPoint>& out) {
+                const CollisionSettings& settings, const Filter& filter, std::vector<ContactPoint>& out) {
     const Collider &a = colliders[job.a], &b = colliders[job.b];
     const bool is_plane = b.shape.kind == ShapeKind::half_space;
-    const Pair pair(job, a, b, length_scale(is_plane ? a.shape : b.shape), h, settings);
+    Pair pair(job, a, b, length_scale(is_plane ? a.shape : b.shape), h, settings);
+    if constexpr (KnowsWhoPushed<Filter>) pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b)));
+    if constexpr (KnowsWhoPushed<Filter>) is_new_ = !is_plane && a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
+    hit_ = {};
     points_.clear();
     pieces_.clear();
     Index queries = 0;
@@ -47,16 +53,35 @@ class SurfacePairs {
       queries = collect_on_plane(surface, plane_of(b.shape, pair.b_in_a), pair.reach);
     } else {
       const auto add = [&](Index t, const Patch& patch, const Vec3& n) {
-        for (int i = 0; i < patch.count; ++i) add_within_margin(pair, patch.point[i], n, t);
+        for (int i = 0; i < patch.count; ++i) {
+          if constexpr (KnowsWhoPushed<Filter>) points_.push_back({patch.point[i], n, t});
+          else add_within_margin(pair, patch.point[i], n, t);
+        }
         const auto corner = [&](int k) -> const Vec3& { return patch.point[k].a; };
         if (patch.corners >= 3) pieces_.add(patch.corners, corner, n, patch.point[deepest(patch)].gap);
       };
       queries = doubts_.collect(surface, b.shape, pair.b_in_a, pair.reach, pair.scale, add);
       erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
+      if constexpr (KnowsWhoPushed<Filter>) look_ahead(surface, pair);
     }
-    emit(pair, out);
+    const std::size_t first = out.size();
+    find_last(job.pair);
+    emit(pair, first, out);
+    if constexpr (KnowsWhoPushed<Filter>) {
+      if (hit_.is_found && !is_plane) {
+        collect_at_impact(surface, pair, next_);
+        emit(pair, first, out);
+      }
+      if (!is_plane) hold_core(surface, pair, out);
+      if (filter.pushed(job.pair) && !has_turned(a, h, pair.scale) && !has_turned(b, h, pair.scale)) finish_impact(pair, first, out);
+    }
+    sort_names(first, out);
     return queries;
   }
+  /// After `end`: contacts of the triangles that were left out and meet by the velocities that the colliders have now.
+  template <class Surface>
+  void collide_missed(const Surface& surface, std::span<const Collider> colliders, const PairJob& job, double h,
+                      const CollisionSettings& settings, std::vector<ContactPoint>& out);
 
   /// The same for two surfaces; returns how many pairs of triangles were looked at. What is deeper than the
   /// margin and than 2e-2 L is looked for where nothing else overlaps.
@@ -74,10 +99,14 @@ class SurfacePairs {
     const auto overlaps = [](const FeatureContact& f) { return f.point.gap < 0; };
     if (std::none_of(features_.begin(), features_.end(), overlaps))
       collect_deep(posed_a, posed_b, scale, cuts_, features_);
+    is_new_ = false;
     points_.clear();
     pieces_.clear();
     for (const FeatureContact& f : features_) add_within_margin(pair, f.point, f.normal, -1);
-    emit(pair, out);
+    const std::size_t first = out.size();
+    find_last(job.pair);
+    emit(pair, first, out);
+    sort_names(first, out);
     return queries;
   }
 
@@ -96,11 +125,131 @@ class SurfacePairs {
           reach(s.contact_distance + widest_margin(top_speed(a) + top_speed(b), size, step, s)) {}
   };
 
-  void add_within_margin(const Pair& pair, const PatchPoint& p, const Vec3& n, Index triangle) {
+  static bool is_within_margin(const Pair& pair, const PatchPoint& p, const Vec3& n) {
     const Pose& pose = pair.a.pose;
-    const double margin = margin_along(pair.a, pair.b, pose.rotation * n, pose.to_world(p.a), pair.scale,
-                                       pair.h, pair.settings);
-    if (p.gap <= pair.settings.contact_distance + margin) points_.push_back({p, n, triangle});
+    return p.gap <= pair.settings.contact_distance + margin_along(pair.a, pair.b, pose.rotation * n, pose.to_world(p.a), pair.scale,
+                                                                  pair.h, pair.settings);
+  }
+  void add_within_margin(const Pair& pair, const PatchPoint& p, const Vec3& n, Index triangle) {
+    if (is_within_margin(pair, p, n)) points_.push_back({p, n, triangle});
+  }
+
+  /// A triangle that was left out: its distance from the shape, or less, and the normal there. World frame, m.
+  struct ApartTriangle {
+    std::uint64_t pair;
+    Index triangle;
+    double distance;
+    Vec3 normal;
+  };
+  struct PairImpact {
+    std::uint64_t pair;
+    RememberedImpact impact;
+  };
+  struct Asked {
+    std::uint64_t pair;
+    double reach;  ///< m
+  };
+
+  static double touch_of(const Pair& pair) { return pair.settings.contact_distance + touch_share * pair.scale; }
+
+  /// Leaves out of `points_` those of triangles that are apart and not met, or met elsewhere than at their nearest points; `hit_`
+  /// is the first such impact. What continues a plane that is touched stays.
+  void look_ahead(const auto& surface, const Pair& pair) {
+    touched_.clear();
+    const double touch = touch_of(pair);
+    for (const SurfaceContact& p : points_)
+      if (p.point.gap <= touch) touched_.push_back(p.normal);
+    asked_.push_back({pair.job.pair, pair.reach});
+    const bool are_alone = pair.a.goes_alone && pair.b.goes_alone;
+    Index last = -1;
+    bool stays = true;
+    erase_if(points_, [&](const SurfaceContact& p) {
+      const bool is_near = is_within_margin(pair, p.point, p.normal);
+      if (p.point.gap <= touch || (is_near && (!are_alone || is_among(touched_, p.normal)))) return false;
+      if (p.triangle != last) {
+        last = p.triangle;
+        const Vec3 n = pair.a.pose.rotation * p.normal;
+        const ApartTriangle apart{pair.job.pair, p.triangle, p.point.gap - touch, n};
+        const Impact hit = impact_on(surface, pair, apart);
+        stays = is_near && (hit.is_now || (hit.is_found && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
+        if (!stays) apart_.push_back(apart);
+        if (!stays && hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
+      }
+      return !stays;
+    });
+  }
+  static bool is_among(const Array<Vec3>& normals, const Vec3& n) {
+    return std::any_of(normals.begin(), normals.end(), [&](const Vec3& other) { return dot(other, n) > 0.9962; });
+  }
+  /// When the triangle is met.
+  static Impact impact_on(const auto& surface, const Pair& pair, const ApartTriangle& apart) {
+    if (!may_close(pair.a, pair.b, apart.normal, apart.distance, pair.h)) return {};
+    const Triangle t = surface.triangle(apart.triangle);
+    const Shape& s = pair.b.shape;
+    return time_of_impact(pair.a, pair.b, pair.h, touch_of(pair), [&](const Pose& b_in_a, const Vec3& guess) {
+      if (s.kind == ShapeKind::sphere) return triangle_and_sphere(t, s.size[0], b_in_a.to_world(middle(s)));
+      return GjkEpa::convex(t, s, b_in_a, std::numeric_limits<double>::infinity(), guess);
+    });
+  }
+  /// Fills `points_` with those of the place of `hit_`, in planes where `known` has no contacts of the pair.
+  void collect_at_impact(const auto& surface, const Pair& pair, const Array<PairMemory>& known) {
+    touched_.clear();
+    for (const PairMemory& m : known)
+      if (m.pair == pair.job.pair) touched_.push_back(m.normal);
+    const double speed = dot(hit_.a.rotation * hit_.normal_in_a, pair.a.velocity - pair.b.velocity),
+                 margin = pair.settings.contact_distance + limited_margin(std::abs(speed) * (pair.h - hit_.time), pair.scale);
+    points_.clear();
+    pieces_.clear();
+    doubts_.collect(surface, pair.b.shape, hit_.a.to_local(hit_.b), margin, pair.scale, [&](Index t, const Patch& patch, const Vec3& n) {
+      for (int i = 0; i < patch.count; ++i)
+        if (patch.point[i].gap <= margin && !is_among(touched_, n)) points_.push_back({patch.point[i], n, t, true});
+    });
+    erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
+  }
+  /// A row through the middle of B where it flies by, see `flies_by`, and has none: the ball about it goes without turning.
+  void hold_core(const auto& surface, const Pair& pair, std::vector<ContactPoint>& out) {
+    if (!flies_by(pair.b, pair.h)) return;
+    for (const std::uint64_t held : cores_)
+      if (held == pair.job.pair) return;
+    Collider core = pair.b;
+    const double radius = core_of_motion(core.shape);
+    core.shape = Sphere{radius};
+    set_zero(core.angular_velocity);
+    const Pose end = pose_after(pair.a, pair.h).to_local(pose_after(core, pair.h));
+    Bounds near = bounds_around(core.shape, pair.b_in_a, 0);
+    const Bounds there = bounds_around(core.shape, end, 0);
+    for (int k = 0; k < 3; ++k) near.low[k] = std::min(near.low[k], there.low[k]), near.high[k] = std::max(near.high[k], there.high[k]);
+    Impact first;
+    surface.visit([&](const Bounds& box) { return box.meets(near); }, [&](Index t) {
+      const Triangle triangle = surface.triangle(t);
+      if (is_zero(triangle.normal) || !(triangle.height(pair.b_in_a.position) >= 0)) return;
+      const Impact hit = time_of_impact(pair.a, core, pair.h, 1e-3 * radius, [&](const Pose& b_in_a, const Vec3&) {
+        return triangle_and_sphere(triangle, radius, b_in_a.position);
+      });
+      if ((hit.is_found || hit.is_now) && !((first.is_found || first.is_now) && first.time <= hit.time)) first = hit;
+    });
+    if (!first.is_found && !first.is_now) return;
+    const Vec3 n = first.a.rotation * first.normal_in_a;
+    const double flight = dot(n, pair.a.velocity - core.velocity);
+    if (!(flight > 0)) return;
+    cores_.push_back(pair.job.pair);
+    add(pair, core_row(pair.job, core, n, first.time * flight, pair.a.key < pair.b.key ? 1 : 0), out);
+  }
+  /// As CollisionEngine does.
+  void finish_impact(const Pair& pair, std::size_t first, std::vector<ContactPoint>& out) {
+    const auto less = [](const PairImpact& i, std::uint64_t key) { return i.pair < key; };
+    const PairImpact* const end = impacts_.data() + impacts_.size();
+    for (const PairImpact* at = inner::lower_bound(impacts_.data(), impacts_.data() + impacts_.size(), pair.job.pair, less);
+         at != end && at->pair == pair.job.pair; ++at) {
+      const RememberedImpact& impact = at->impact;
+      const auto goes_on = [&](const ContactPoint& c) { return dot(pair.a.key < pair.b.key ? c.normal : Vec3(-c.normal), impact.normal) > same_normal; };
+      if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), goes_on)) continue;
+      add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, unused(impact.id, first, out)), out);
+    }
+  }
+  static void add(const Pair& pair, const ContactPoint& c, std::vector<ContactPoint>& out) {
+    out.push_back(c);
+    if (pair.a.key >= pair.b.key) out.back().exchange_bodies();
   }
 
   /// Corners of the surface with a gap up to `reach` over a plane.
@@ -143,14 +292,14 @@ class SurfacePairs {
       is_claimed_.push_back(false);
   }
 
-  /// Turns the points into contacts of the pair, group by group, sorted by feature.
-  void emit(const Pair& pair, std::vector<ContactPoint>& out) {
-    find_last(pair.job.pair);
-    const std::size_t first_out = out.size();
+  /// Turns the points into contacts of the pair, group by group.
+  void emit(const Pair& pair, std::size_t first_out, std::vector<ContactPoint>& out) {
     while (!points_.empty()) {
       split_group();
       emit_group(pair, first_out, out);
     }
+  }
+  static void sort_names(std::size_t first_out, std::vector<ContactPoint>& out) {
     inner::sort(out.data() + first_out, out.data() + out.size(),
               [](const ContactPoint& p, const ContactPoint& q) { return p.feature < q.feature; });
   }
@@ -203,15 +352,33 @@ class SurfacePairs {
     PairMemory now;
     now.pair = pair.job.pair;
     now.normal = n;
-    const auto add = [&](int i, std::uint32_t id) {
-      const Vec3 normal = pair.a.pose.rotation * group_[source_[i]].normal;
-      out.push_back(contact_of(pair.job, pair.a.pose, patch_.point[i], normal, pair.settings.contact_distance, id));
-      if (pair.a.key >= pair.b.key) out.back().exchange_bodies();
+    const bool is_ahead = group_[0].is_ahead;
+    const std::size_t first = out.size();
+    const auto add_point = [&](int i, std::uint32_t id) {
+      const Vec3& of_point = group_[source_[i]].normal;
+      if (is_ahead) return add(pair, ahead(pair, patch_.point[i], of_point, id), out);
+      add(pair, contact_of(pair.job, pair.a.pose, patch_.point[i], pair.a.pose.rotation * of_point, pair.settings.contact_distance, id), out);
     };
-    name_points(patch_, remembered(n), pair.b_in_a, n, pair.scale, pair.settings.max_points, first_out, out, now,
-                add);
-    share_area(now.area, pair.a.pose, now.count, out);
+    name_points(patch_, remembered(n), is_ahead ? hit_.a.to_local(hit_.b) : pair.b_in_a, n, pair.scale, pair.settings.max_points, first_out,
+                out, now, add_point);
+    if (is_ahead || will_meet(n)) remember_impact(pair, first, out);
+    if (!is_ahead) share_area(now.area, pair.a.pose, now.count, out);
     next_.push_back(now);
+  }
+  /// The row of a point of the place of impact.
+  ContactPoint ahead(const Pair& pair, const PatchPoint& p, const Vec3& n, std::uint32_t id) const {
+    return impact_row(pair.job, pair.a, pair.b, hit_, p, hit_.a.rotation * n, pair.settings.contact_distance, id);
+  }
+  /// Whether the plane of the normal was apart and is kept because it will be met.
+  bool will_meet(const Vec3& n) const {
+    return is_new_ && !is_among(touched_, n);
+  }
+  void remember_impact(const Pair& pair, std::size_t first, const std::vector<ContactPoint>& out) {
+    if (first == out.size()) return;
+    Vec3 middle = zero<Vec3>();
+    for (std::size_t i = first; i < out.size(); ++i) middle += out[i].point() / double(out.size() - first);
+    const Vec3 n = pair.a.key < pair.b.key ? out[first].normal : Vec3(-out[first].normal);
+    next_impacts_.push_back({pair.job.pair, {n, middle - pair.a.pose.position, middle - pair.b.pose.position, out[first].feature, true}});
   }
 
   Array<SurfaceContact> points_, group_;
@@ -223,8 +390,55 @@ class SurfacePairs {
   HullOfPatch hull_;
   FacePieces pieces_;
   Array<PairMemory> memory_, next_;
+  Impact hit_;  ///< the first of the pair that is not at the nearest points
+  bool is_new_ = false;  ///< the pair did not push in the last step, and goes as is known
+  Array<Vec3> touched_;  ///< normals of what the pair touches, in the frame of A
+  Array<ApartTriangle> apart_;
+  Array<Asked> asked_;
+  Array<std::uint64_t> cores_;  ///< pairs whose middle of B is held
+  Array<PairImpact> impacts_, next_impacts_;
   std::size_t last_ = 0;
   Array<char> is_claimed_;
 };
+
+template <class Surface>
+void SurfacePairs::collide_missed(const Surface& surface, std::span<const Collider> colliders, const PairJob& job, double h,
+                                  const CollisionSettings& settings, std::vector<ContactPoint>& out) {
+  const Collider &a = colliders[job.a], &b = colliders[job.b];
+  if (b.shape.kind == ShapeKind::half_space) return;
+  Pair pair(job, a, b, length_scale(b.shape), h, settings);
+  pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b)));
+  hit_ = {};
+  const auto ask = [&](const ApartTriangle& apart) {
+    const Impact hit = impact_on(surface, pair, apart);
+    if (hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
+  };
+  for (const ApartTriangle& apart : apart_)
+    if (apart.pair == job.pair) ask(apart);
+  double reach = -1;
+  for (Asked& asked : asked_)
+    if (asked.pair == job.pair) reach = asked.reach, asked.reach = std::max(reach, pair.reach);
+  if (reach < 0) asked_.push_back({job.pair, pair.reach});
+  if (pair.reach > reach) {
+    const double touch = touch_of(pair);
+    doubts_.collect(surface, b.shape, pair.b_in_a, pair.reach, pair.scale, [&](Index t, const Patch& patch, const Vec3& n) {
+      const double gap = patch.point[deepest(patch)].gap;
+      if (!(gap > std::max(reach, touch))) return;
+      apart_.push_back({job.pair, t, gap - touch, a.pose.rotation * n});
+      ask(apart_[apart_.size() - 1]);
+    });
+  }
+  hold_core(surface, pair, out);
+  if (!hit_.is_found) return;
+  collect_at_impact(surface, pair, memory_);
+  const std::size_t first = out.size();
+  next_.clear(), next_impacts_.clear(), is_claimed_.clear();
+  emit(pair, first, out);
+  sort_names(first, out);
+  for (const PairMemory& m : next_) memory_.push_back(m);
+  for (const PairImpact& i : next_impacts_) impacts_.push_back(i);
+  inner::sort(memory_, [](const PairMemory& x, const PairMemory& y) { return x.pair < y.pair; });
+  inner::sort(impacts_, [](const PairImpact& x, const PairImpact& y) { return x.pair < y.pair; });
+}
 
 }  // namespace delassus::inner

@@ -58,18 +58,17 @@ struct Impact {
 ///
 /// so that d / μ may pass at a time. Ends within `target` m of touching, or when the step is over; when 200
 /// looks do not decide, the last place counts as one of impact. Nothing is found for shapes that are within
-/// `target` now.
-inline Impact time_of_impact(const Collider& a, const Collider& b, double h, double scale, double target) {
+/// `target` now. distance(b_in_a, guess): the signed distance of the two.
+template <class Distance>
+Impact time_of_impact(const Collider& a, const Collider& b, double h, double target, const Distance& distance) {
   Impact hit;
   const auto spin = [](const Collider& c) { return norm(c.angular_velocity) * outer_radius(c.shape); };
   const double turning = spin(a) + spin(b);
-  Patch patch;
   Vec3 guess = zero<Vec3>();
   for (int look = 0; look < 200; ++look) {
     hit.a = pose_after(a, hit.time);
     hit.b = pose_after(b, hit.time);
-    const SignedPair r = distance_of(a.shape, b.shape, hit.a.to_local(hit.b),
-                                     std::numeric_limits<double>::infinity(), scale, guess, patch);
+    const SignedPair r = distance(hit.a.to_local(hit.b), guess);
     if (!std::isfinite(r.distance) || !is_finite(r.normal)) return {};
     hit.normal_in_a = guess = r.normal;
     if (r.distance <= target) {
@@ -84,6 +83,13 @@ inline Impact time_of_impact(const Collider& a, const Collider& b, double h, dou
   }
   hit.is_found = true;
   return hit;
+}
+/// The same of two convex shapes, one of which may be a half-space.
+inline Impact time_of_impact(const Collider& a, const Collider& b, double h, double scale, double target) {
+  Patch patch;
+  return time_of_impact(a, b, h, target, [&](const Pose& b_in_a, const Vec3& guess) {
+    return distance_of(a.shape, b.shape, b_in_a, std::numeric_limits<double>::infinity(), scale, guess, patch);
+  });
 }
 
 }  // namespace delassus::inner

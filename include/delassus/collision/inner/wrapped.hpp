@@ -6,6 +6,8 @@
 #include <delassus/core/sort.hpp>
 #include <delassus/core/wrapping.hpp>
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace delassus::inner {
@@ -14,6 +16,18 @@ namespace delassus::inner {
 template <class Backend, unsigned own>
 concept Detects = CollisionBackend<Backend> && Fills<Backend, role::Collision, own> &&
     layers_of<Backend> < (own < layer::compounds ? layer::compounds : own);
+
+/// A filter that also says of a pair whether it pushed in the last step. With it pairs that are apart get contacts only where
+/// they meet.
+template <class F>
+concept KnowsWhoPushed = requires(const F& filter, std::uint64_t pair) { bool(filter.pushed(pair)); };
+
+/// A backend that leaves out pairs which are apart, and finds those of them that meet after all.
+template <class Backend, class Filter>
+concept DetectsMissed = KnowsWhoPushed<Filter> && requires(Backend& backend, std::span<const Collider> colliders, std::vector<ContactPoint>& contacts, const Filter& filter) {
+  backend.detect(colliders, 1.0, contacts, filter);
+  backend.detect_missed(colliders, 1.0, contacts, filter);
+};
 
 /// f(layer) of the outermost layer that can take it, or of the backend within; nothing where none can.
 template <class Backend, class F>
@@ -48,6 +62,13 @@ inline void sort_by_name(std::vector<ContactPoint>& contacts) {
   inner::sort(contacts, [](const ContactPoint& p, const ContactPoint& q) {
     return p.pair != q.pair ? p.pair < q.pair : p.feature < q.feature;
   });
+}
+
+/// Of sorted contacts whose names are equal, the later ones take the next.
+inline void part_equal_names(std::vector<ContactPoint>& contacts) {
+  for (std::size_t i = 1; i < contacts.size(); ++i)
+    if (contacts[i].pair == contacts[i - 1].pair && contacts[i].feature <= contacts[i - 1].feature)
+      contacts[i].feature = contacts[i - 1].feature + 1;
 }
 
 }  // namespace delassus::inner

@@ -150,6 +150,7 @@ struct SequentialImpacts {
   /// What a step does besides.
   template <class Base>
   struct stages : Base {
+    static constexpr bool looks_ahead = false;  ///< impacts have changed v before a second solve
     static void free_motion(auto& step) {
       pass_on_impacts(step.world(), step.laws(), step.rows, step.template state<SequentialImpacts>().impulses,
                       step.contact_cache.results.size(), step.h);

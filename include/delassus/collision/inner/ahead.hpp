@@ -1,0 +1,102 @@
+/// Bodies that are apart: whether they meet within the step, and the rows of the place where they will.
+#pragma once
+
+#include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/name_points.hpp>
+#include <delassus/collision/inner/summary.hpp>
+#include <delassus/collision/inner/time_of_impact.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace delassus::inner {
+
+/// Two bodies touch when they are nearer than this share of their size.
+inline constexpr double touch_share = 1e-4;
+/// Cosine of the angle, 4.5e-5, within which two normals count as one.
+inline constexpr double same_normal = 1 - 1e-9;
+
+/// A pair without contacts: its distance now, or less, and the normal there. World frame, m.
+struct Apart {
+  PairJob job;
+  double distance;
+  Vec3 normal;
+};
+
+/// False where the plane between the two, or one that is nearer to both, proves that they stay apart in the step.
+inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, double distance, double h) {
+  const auto spin = [](const Collider& c) { return is_zero(c.angular_velocity) ? 0.0 : norm(c.angular_velocity) * outer_radius(c.shape); };
+  return h * (dot(normal, a.velocity - b.velocity) + spin(a) + spin(b)) >= distance;
+}
+
+/// Whether a body turns so much in a step that its points are elsewhere than an impact of the last one foresaw.
+inline bool has_turned(const Collider& c, double h, double scale) {
+  return c.shape.kind != ShapeKind::sphere && h * norm(c.angular_velocity) * outer_radius(c.shape) > 0.02 * scale;
+}
+
+/// How far any of its points may go in the step, m, and at least half the least margin.
+inline double longest_way(const Summary& of, double h, const CollisionSettings& s) {
+  return std::max(0.5 * (s.margin >= 0 ? s.margin : margin_share * of.scale), of.speed * h);
+}
+
+/// The box of the margins and of the whole way: pairs without a contact are found too.
+inline Aabb box_of_way(const Collider& c, const Summary& of, double h, const CollisionSettings& s) {
+  Aabb box = alarm_box(c, of, h, s);
+  if (box.is_empty() || !(of.speed * h > (s.margin >= 0 ? 0.5 * s.margin : margin_limit * of.scale))) return box;
+  Aabb now = tight_box(c.shape, c.pose);
+  if (!is_zero(c.angular_velocity)) {
+    const double r = outer_radius(c.shape);
+    now = Aabb(Vec3(c.pose.position - Vec3(r, r, r)), Vec3(c.pose.position + Vec3(r, r, r)));
+  }
+  return box.extend(now).extend(Aabb(Vec3(now.min() + h * c.velocity), Vec3(now.max() + h * c.velocity)));
+}
+
+/// A row at a point of both that lets them close in by the gap, with the arms that the point has then.
+inline ContactPoint row_ahead(const PairJob& job, const Collider& a, const Collider& b, const Vec3& arm_a, const Vec3& arm_b, const Vec3& n,
+                              double gap, std::uint32_t name) {
+  const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b,
+             middle = !a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b));
+  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * gap * n, .point_b = middle + 0.5 * gap * n, .normal = n, .gap = gap, .pair = job.pair, .feature = name};
+}
+
+/// The row of a point p of the patch, in the frame of A, that the two have where they meet with the world normal n.
+inline ContactPoint impact_row(const PairJob& job, const Collider& a, const Collider& b, const Impact& hit, const PatchPoint& p,
+                               const Vec3& n, double contact_distance, std::uint32_t name) {
+  const Vec3 arm_a = hit.a.to_world(p.a) - hit.a.position, arm_b = hit.a.to_world(p.b) - hit.b.position;
+  const double closing = dot(n, a.velocity + cross(a.angular_velocity, arm_a) - b.velocity - cross(b.angular_velocity, arm_b));
+  const double gap = std::max(hit.time * closing, 0.0) + std::max(p.gap - contact_distance, 0.0);
+  return row_ahead(job, a, b, arm_a, arm_b, n, gap, name);
+}
+
+/// Whether a body may go farther in a step than the ball of half its thickness: an impulse beside its middle would turn it and
+/// let it fly on.
+inline bool flies_by(const Collider& c, double h) {
+  return c.is_movable && c.shape.has_volume() && h * top_speed(c) > core_of_motion(c.shape);
+}
+
+/// The row of a middle; names are above all others.
+inline ContactPoint core_row(const PairJob& job, const Collider& core, const Vec3& n, double gap, std::uint32_t which) {
+  const Vec3& middle = core.pose.position;
+  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * gap * n, .point_b = middle + 0.5 * gap * n, .normal = n, .gap = gap, .pair = job.pair, .feature = 0xfffffff1u + which};
+}
+
+/// Holds the middle of such a body by a row, and says whether it was needed. The ball goes without turning.
+inline bool hold_core(const PairJob& job, const Collider& a, const Collider& b, bool is_a, double h, std::vector<ContactPoint>& out) {
+  const Collider& body = is_a ? a : b;
+  const double radius = core_of_motion(body.shape);
+  Collider core = body;
+  core.shape = Sphere{radius};
+  set_zero(core.angular_velocity);
+  const Collider &x = is_a ? core : a, &y = is_a ? b : core;
+  const Impact hit = time_of_impact(x, y, h, radius, 1e-3 * radius);
+  if (!hit.is_found && !hit.is_now) return false;
+  const Vec3 n = hit.a.rotation * hit.normal_in_a;
+  const double flight = dot(n, a.velocity - b.velocity);
+  if (!(flight > 0) && !hit.is_now) return false;
+  out.push_back(core_row(job, core, n, hit.time * flight, is_a ? 0 : 1));
+  return true;
+}
+
+}  // namespace delassus::inner
