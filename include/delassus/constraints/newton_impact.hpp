@@ -2,6 +2,8 @@
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/rebound.hpp>
+#include <delassus/constraints/row_past.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/owning_array.hpp>
@@ -10,26 +12,69 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
 namespace delassus {
-/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step with u⁻ < 0 gets the stronger of e u⁻ and
-/// the push-out speed, never their sum. Taking u⁻ at the start of the step makes e = 1 keep ½ v² + g x − ½ h g v, the energy
-/// that symplectic Euler itself keeps. `bounce` takes what this added to the bias, by pool and row.
+/// What restitution does to the rows of a step, and what it remembers for the next one. Lists by pool and row.
+template <class T>
+struct Bounces {
+  OwningArray<Array<T>> added;     ///< to the bias, m/s
+  OwningArray<Array<T>> returned;  ///< to the bodies, of what they lost as they landed, J; empty: nothing in this pool
+  RowPasts pasts;
+  Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
+
+  void begin(std::size_t pools) {
+    for (auto* list : {&added, &returned}) list->clear(), list->resize(pools);
+    pasts.begin();
+    rows.clear();
+  }
+};
+
+namespace inner {
+
+/// The target velocity of one row with e > 0, whose bias is `plain`: opening is positive.
+template <class T>
+struct BouncingRow {
+  double gap, closing, free;  ///< x, v and the velocity without impulses
+  double restitution, h, last_h;
+  const RowPast* past;  ///< null: it was not there
+
+  /// What joints and neighbours leave of the acceleration is in the velocities of the last two steps, not in the free motion. Where
+  /// the row pushed between them, it keeps what it was before.
+  double acceleration() const {
+    if (!past) return (free - closing) / h;
+    return past->impulse > 0 ? past->acceleration : (closing - past->velocity) / last_h;
+  }
+  /// The energy that its impulse took from the bodies as it landed, J.
+  double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + closing)); }
+
+  Rebound meet(double a) const {
+    const double fall = std::abs(std::min(0.0, free - closing));
+    if (!(closing < 0 && gap + h * (closing + h * a) < 0)) return {};
+    return rebound(gap, closing, std::min(0.0, a), restitution, h, 0.5 * std::max(fall, -a * h));
+  }
+};
+
+}  // namespace inner
+
+/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step gets the stronger of what `rebound` says and the
+/// push-out speed, never their sum.
 template <class Laws, class Rows, class T>
-void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* const* v, double h, OwningArray<Array<T>>& bounce) {
-  bounce.resize(rows.size());
+void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* const* v, double h, double last_h, Bounces<T>& bounces) {
+  bounces.begin(rows.size());
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const auto& pool = rows[p];
     const auto& law = *laws[p].law;
-    Array<T>& added = bounce[p];
+    Array<T>&added = bounces.added[p], &returned = bounces.returned[p];
     added.assign_zeros(pool.phi->size());
     if (!law.restitution) continue;
     T free[most_rows], start[most_rows];
     for (Index i = 0; i < pool.items(); ++i) {
       const double restitution = law.restitution(laws[p].pool, i);
       if (!(restitution > 0)) continue;
+      const ItemName name = law.name(laws[p].pool, i);
       for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = T(0);
       for (int s = 0; s < pool.sets; ++s) {
         pool.set[s].products->rate(pool.set[s], i, v_free[s], free, free);
@@ -41,13 +86,38 @@ void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* cons
         if (pool.is_soft(row)) continue;
         const double sign = law.kinds[k] == RowKind::lower ? 1 : -1, phi = sign * double((*pool.phi)[row]);
         const double closing = sign * double(start[k]), plain = sign * double((*pool.bias)[row]);
-        if (!(phi + h * sign * double(free[k]) < 0 && closing < 0)) continue;
-        const double bias = std::min(phi < 0 ? plain : 0.0, restitution * closing);
+        const std::uint32_t place = std::uint32_t(most_rows) * std::uint32_t(p) + std::uint32_t(k);
+        const inner::BouncingRow<T> bouncing{phi, closing, sign * double(free[k]), restitution, h, last_h, bounces.pasts.find(name, place)};
+        RowPast& now = bounces.pasts.add(name, place);
+        bounces.rows.push_back(row);
+        now.velocity = closing, now.free = bouncing.free, now.acceleration = bouncing.acceleration();
+        double leaves = 0;
+        if (bouncing.past && bouncing.past->parts > 0) {
+          leaves = velocity_after_parting(bouncing.past->parts, std::min(0.0, bouncing.past->acceleration), h);
+          if (!(leaves > 0)) continue;
+          if (returned.empty()) returned.assign_zeros(pool.phi->size());
+          returned[row] = T(bouncing.taken());
+        } else {
+          const Rebound is = bouncing.meet(now.acceleration);
+          leaves = is.leaves;
+          now.parts = is.parts;
+          if (!(leaves > 0)) continue;
+        }
+        const double bias = std::min(phi < 0 ? plain : 0.0, -leaves);
         added[row] = T(sign * (bias - plain));
         (*pool.bias)[row] = T(sign * bias);
         (*pool.d)[row] = free[k] + (*pool.bias)[row];
       }
     }
+  }
+}
+
+/// After the solve.
+template <class Rows, class T>
+void remember_impulses(Rows rows, Bounces<T>& bounces) {
+  for (std::size_t i = 0; i < bounces.rows.size(); ++i) {
+    RowPast& row = bounces.pasts.now()[i];
+    row.impulse = std::abs(double((*rows[row.row / most_rows].lambda)[bounces.rows[i]]));
   }
 }
 
@@ -57,16 +127,16 @@ class Island;
 
 /// Newton's restitution on several contacts with friction can add energy. Where it did, λ becomes λ_c + s (λ_N − λ_c).
 /// With restitution the solution is λ_N, without λ_c. Of s in [0, 1] it is the largest for which the impulses add no more
-/// energy than those of λ_c do. Both lie in the cone, which is convex, so λ does.
+/// energy than those of λ_c do, and than is returned of what was lost as rows landed. Both lie in the cone, which is convex, so λ does.
 template <class T>
 class EnergyGuard {
  public:
-  EnergyGuard(Island<T>& island, const OwningArray<Array<T>>& bounce, Array<T>& newton, Array<T>& newton_velocity)
-      : island_(island), bounce_(bounce), newton_(newton), velocity_(newton_velocity) {}
+  EnergyGuard(Island<T>& island, const Bounces<T>& bounces, Array<T>& newton, Array<T>& newton_velocity)
+      : island_(island), bounces_(bounces), newton_(newton), velocity_(newton_velocity) {}
 
   /// After a solve that converged: whether to solve anew, from the λ there is, and then to `finish`.
   bool asks_again() {
-    if (!has_bounced() || !(energy() > 0)) return false;
+    if (!has_bounced() || !(energy() > returned())) return false;
     take_bounce_away();
     return true;
   }
@@ -89,12 +159,23 @@ class EnergyGuard {
   bool has_bounced() const {
     for (const auto& span : island_) {
       const int R = span.pool->rows;
-      const T* added = bounce_[std::size_t(span.pool->pool)].data();
+      const T* added = bounces_.added[std::size_t(span.pool->pool)].data();
       for (const Index i : span)
         for (int k = 0; k < R; ++k)
           if (added[std::ptrdiff_t(R) * i + k] != T(0)) return true;
     }
     return false;
+  }
+
+  double returned() const {
+    double sum = 0;
+    for (const auto& span : island_) {
+      const auto& of_pool = bounces_.returned[std::size_t(span.pool->pool)];
+      if (of_pool.empty()) continue;
+      for (const Index i : span)
+        for (int k = 0; k < span.pool->rows; ++k) sum += double(of_pool[std::size_t(span.pool->rows * i + k)]);
+    }
+    return sum;
   }
 
   /// The energy that the impulses give the bodies, J: Σ ½ λ·(u_free + u⁺), u without bias.
@@ -125,7 +206,7 @@ class EnergyGuard {
     for (const auto& span : island_)
       for (const Index i : span) {
         const std::ptrdiff_t at = std::ptrdiff_t(span.pool->rows) * i;
-        const T* added = bounce_[std::size_t(span.pool->pool)].data() + at;
+        const T* added = bounces_.added[std::size_t(span.pool->pool)].data() + at;
         for (int k = 0; k < span.pool->rows; ++k) span.pool->bias[at + k] -= added[k], span.pool->d[at + k] -= added[k];
       }
   }
@@ -172,14 +253,14 @@ class EnergyGuard {
           b += double(delta * velocity);
         }
       }
-    const double plain = energy(), room = std::max(0.0, plain) - plain;  // a s² + b s ≤ room
+    const double plain = energy(), room = std::max(0.0, plain) + returned() - plain;  // a s² + b s ≤ room
     if (!(a + b > room)) return 1;
     const double root = std::sqrt(std::max(0.0, b * b + 4 * a * room));
     return a > 0 ? std::clamp(b > 0 ? 2 * room / (b + root) : (root - b) / (2 * a), 0.0, 1.0) : 0;
   }
 
   Island<T>& island_;
-  const OwningArray<Array<T>>& bounce_;
+  const Bounces<T>& bounces_;
   Array<T>&newton_, &velocity_;  ///< λ_N and its velocity without bias
 };
 
@@ -188,8 +269,9 @@ struct NewtonImpact {
   template <class P>
   struct State {
     using T = typename P::Rows::Scalar;
-    OwningArray<Array<T>> bounce;
+    Bounces<T> bounces;
     Array<T> newton, newton_velocity;
+    void memory(auto& archive) { archive(bounces.pasts); }
   };
 
   template <class Base>
@@ -199,19 +281,23 @@ struct NewtonImpact {
       auto& own = step.template state<NewtonImpact>();
       for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
-      add_restitution(step.pools.all(), step.arrays.all(), v.free, v.start, step.h, own.bounce);
+      add_restitution(step.pools.all(), step.arrays.all(), v.free, v.start, step.h, step.last_h, own.bounces);
     }
     static void solve_island(auto& step, auto& island) {
       Base::solve_island(step, island);
       auto& own = step.template state<NewtonImpact>();
       const auto report = step.reports[island.island()];
-      EnergyGuard<typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T> guard(island, own.bounce, own.newton,
+      EnergyGuard<typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T> guard(island, own.bounces, own.newton,
                                                                                                      own.newton_velocity);
       if (guard.asks_again()) {
         Base::solve_island(step, island);
         guard.finish();
       }
       step.reports[island.island()] = report;
+    }
+    static void keep_impulses(auto& step) {
+      remember_impulses(step.arrays.all(), step.template state<NewtonImpact>().bounces);
+      Base::keep_impulses(step);
     }
   };
 };

@@ -3,6 +3,7 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
+#include <delassus/constraints/row_past.hpp>
 #include <delassus/rows/contact_place.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 namespace delassus {
@@ -34,6 +36,8 @@ struct LawSteps {
   ContactPlace (*place)(const void* pool, Index i);
   /// e of item i, in [0, 1]; null: zero.
   double (*restitution)(const void* pool, Index i);
+  /// What item i is called from step to step; null: it has no e.
+  ItemName (*name)(const void* pool, Index i);
   /// λ ← `ratio` · λ of the last step, by contact id or by item; h in s.
   void (*warm_start)(const void* pool, const RowArrays<T>&, ContactCache&, double ratio, double h);
   /// Hands the impulses back: to the items of the pool, or to the contacts as world vectors.
@@ -116,6 +120,16 @@ struct LawRows {
     if constexpr (refines<Law>(refine::restitution)) return of(pool).law.restitution(of(pool).item(i));
     else return 0;
   }
+  static ItemName name([[maybe_unused]] const void* at, [[maybe_unused]] Index i) {
+    const Pool<Law>& pool = of(at);
+    if constexpr (ContactLaw<Law>) {
+      const auto& record = *pool.item(i).record;
+      return {record.pair, std::uint64_t(record.a.generation) << 32 | record.b.generation, record.feature};
+    } else {
+      const Index place = pool.slots.active()[i];
+      return {std::uint64_t(place), pool.slots.generation(place), 0};
+    }
+  }
 
   static void warm_start(const void* at, const RowArrays<T>& rows, ContactCache& cache, double ratio, double h) {
     const Pool<Law>& pool = of(at);
@@ -171,6 +185,7 @@ struct LawRows {
             refines<Law>(refine::speed) ? speed : nullptr,
             has_slip ? place : nullptr,
             refines<Law>(refine::restitution) ? restitution : nullptr,
+            refines<Law>(refine::restitution) ? name : nullptr,
             warm_start,
             keep_impulses,
             forget};
