@@ -7,7 +7,9 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/owning_array.hpp>
+#include <delassus/rows/islands.hpp>
 #include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/theta.hpp>
 #include <delassus/rows/world_view.hpp>
 
 #include <algorithm>
@@ -24,45 +26,60 @@ struct Bounces {
   OwningArray<Array<T>> returned;  ///< to the bodies, of what they lost as they landed, J; empty: nothing in this pool
   RowPasts pasts;
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
+  Array<Index> blocks;      ///< of each island; empty: nobody asked
 
   void begin(std::size_t pools) {
     for (auto* list : {&added, &returned}) list->clear(), list->resize(pools);
     pasts.begin();
     rows.clear();
+    blocks.clear();
+  }
+  /// Whether nothing else that moves is in the island of the item.
+  bool is_alone(const Islands<T>& islands, int p, Index i) {
+    if (blocks.empty()) islands.count_blocks(blocks);
+    const Index island = islands.island_of(p, i);
+    return island >= 0 && blocks[island] == 1;
   }
 };
 
 namespace inner {
 
-/// The target velocity of one row with e > 0, whose bias is `plain`: opening is positive.
-template <class T>
+/// A row with e > 0 in this step and in the last one, opening positive.
 struct BouncingRow {
-  double gap, closing, free;  ///< x, v and the velocity without impulses
-  double restitution, h, last_h;
+  double gap, velocity, free;  ///< free: the velocity without impulses
+  double h, last_h, theta;
   const RowPast* past;  ///< null: it was not there
 
-  /// What joints and neighbours leave of the acceleration is in the velocities of the last two steps, not in the free motion. Where
-  /// the row pushed between them, it keeps what it was before.
+  /// Of joints and neighbours the free motion knows nothing, the last two velocities do. Where the row pushed between them, the
+  /// acceleration is what it was before.
   double acceleration() const {
-    if (!past) return (free - closing) / h;
-    return past->impulse > 0 ? past->acceleration : (closing - past->velocity) / last_h;
+    if (!past) return (free - velocity) / h;
+    return past->impulse > 0 ? past->acceleration : (velocity - past->velocity) / last_h;
+  }
+  /// v as the integrator has it is the mean of the last step for θ = 1, and that of its end for θ = ½.
+  double change(double acceleration) const { return (theta - 0.5) * h * std::min(0.0, acceleration); }
+  bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < 0; }
+  Closing closing(double acceleration, bool may_land) const {
+    const double fall = std::max(0.0, std::max(velocity - free, -h * acceleration));
+    return {gap, velocity, change(acceleration), std::min(0.0, acceleration), h, 0.5 * fall, may_land};
   }
   /// The energy that its impulse took from the bodies as it landed, J.
-  double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + closing)); }
-
-  Rebound meet(double a) const {
-    const double fall = std::abs(std::min(0.0, free - closing));
-    if (!(closing < 0 && gap + h * (closing + h * a) < 0)) return {};
-    return rebound(gap, closing, std::min(0.0, a), restitution, h, 0.5 * std::max(fall, -a * h));
+  double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + velocity)); }
+  /// It fell into an overlap and does not bounce: it comes back to the surface, with no more than falling for a step gives.
+  double comes_back(double acceleration) const {
+    const bool flew = !past || !(past->impulse > 0);
+    return flew && gap < 0 ? std::min(-gap / h, -2 * change(acceleration)) : 0;
   }
 };
 
 }  // namespace inner
 
 /// A row with a bound (`RowKind::lower` or `upper`) that closes within the step gets the stronger of what `rebound` says and the
-/// push-out speed, never their sum.
+/// push-out speed, never their sum. A row lands only where a body is alone in its island and moves by the velocity that the row
+/// is about (θ = 1): in towers landings would be impacts of their own.
 template <class Laws, class Rows, class T>
-void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* const* v, double h, double last_h, Bounces<T>& bounces) {
+void add_restitution(Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free, const T* const* v, double h, double last_h,
+                     double theta, Bounces<T>& bounces) {
   bounces.begin(rows.size());
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const auto& pool = rows[p];
@@ -85,24 +102,24 @@ void add_restitution(Laws laws, Rows rows, const T* const* v_free, const T* cons
         if (law.kinds[k] != RowKind::lower && law.kinds[k] != RowKind::upper) continue;
         if (pool.is_soft(row)) continue;
         const double sign = law.kinds[k] == RowKind::lower ? 1 : -1, phi = sign * double((*pool.phi)[row]);
-        const double closing = sign * double(start[k]), plain = sign * double((*pool.bias)[row]);
+        const double plain = sign * double((*pool.bias)[row]);
         const std::uint32_t place = std::uint32_t(most_rows) * std::uint32_t(p) + std::uint32_t(k);
-        const inner::BouncingRow<T> bouncing{phi, closing, sign * double(free[k]), restitution, h, last_h, bounces.pasts.find(name, place)};
+        const inner::BouncingRow is{phi, sign * double(start[k]), sign * double(free[k]), h, last_h, theta, bounces.pasts.find(name, place)};
         RowPast& now = bounces.pasts.add(name, place);
         bounces.rows.push_back(row);
-        now.velocity = closing, now.free = bouncing.free, now.acceleration = bouncing.acceleration();
+        now.velocity = is.velocity, now.free = is.free, now.acceleration = is.acceleration();
         double leaves = 0;
-        if (bouncing.past && bouncing.past->parts > 0) {
-          leaves = velocity_after_parting(bouncing.past->parts, std::min(0.0, bouncing.past->acceleration), h);
+        if (is.past && is.past->parts > 0) {
+          leaves = is.past->parts + is.change(is.past->acceleration);
           if (!(leaves > 0)) continue;
           if (returned.empty()) returned.assign_zeros(pool.phi->size());
-          returned[row] = T(bouncing.taken());
-        } else {
-          const Rebound is = bouncing.meet(now.acceleration);
-          leaves = is.leaves;
-          now.parts = is.parts;
-          if (!(leaves > 0)) continue;
+          returned[row] = T(is.taken());
+        } else if (is.closes(now.acceleration)) {
+          const Rebound does = rebound(is.closing(now.acceleration, theta == 1 && bounces.is_alone(islands, int(p), i)), restitution);
+          now.parts = does.parts;
+          leaves = does.leaves > 0 || does.parts > 0 ? does.leaves : is.comes_back(now.acceleration);
         }
+        if (!(leaves > 0)) continue;
         const double bias = std::min(phi < 0 ? plain : 0.0, -leaves);
         added[row] = T(sign * (bias - plain));
         (*pool.bias)[row] = T(sign * bias);
@@ -281,7 +298,8 @@ struct NewtonImpact {
       auto& own = step.template state<NewtonImpact>();
       for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
-      add_restitution(step.pools.all(), step.arrays.all(), v.free, v.start, step.h, step.last_h, own.bounces);
+      add_restitution(step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, step.h, step.last_h,
+                      theta<std::remove_cvref_t<decltype(step.integrator())>>(), own.bounces);
     }
     static void solve_island(auto& step, auto& island) {
       Base::solve_island(step, island);

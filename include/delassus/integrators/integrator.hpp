@@ -4,7 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/body_set.hpp>
-#include <delassus/step/theta.hpp>
+#include <delassus/rows/theta.hpp>
 
 #include <concepts>
 #include <type_traits>

@@ -35,6 +35,18 @@ class Islands {
   /// The island of a block, or −1 when no constraint holds it. `block` counts through the sets in order.
   Index island_of(Index block) const { return island_[block]; }
 
+  /// The island of an item of pool `p`, or −1.
+  Index island_of(int p, Index item) const {
+    const Index block = pools_[std::size_t(p)].lowest[std::size_t(item)];
+    return block < 0 ? -1 : island_[block];
+  }
+  /// The blocks of each island.
+  void count_blocks(Array<Index>& counts) const {
+    counts.assign(std::size_t(count_), 0);
+    for (const Index island : island_)
+      if (island >= 0) ++counts[island];
+  }
+
   /// Before `find`: every block of every set in order, then those that A couples without a constraint.
   void clear_blocks() {
     parent_.clear();

@@ -16,7 +16,7 @@
 #include <delassus/step/notify.hpp>
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stages_without_constraints.hpp>
-#include <delassus/step/theta.hpp>
+#include <delassus/rows/theta.hpp>
 #include <delassus/step/warm_start.hpp>
 
 #include <algorithm>

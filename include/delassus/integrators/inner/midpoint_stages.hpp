@@ -10,7 +10,7 @@
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/soft.hpp>
 #include <delassus/step/linearize.hpp>
-#include <delassus/step/theta.hpp>
+#include <delassus/rows/theta.hpp>
 
 #include <tuple>
 #include <type_traits>

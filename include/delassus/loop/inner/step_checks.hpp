@@ -15,7 +15,7 @@
 #include <delassus/step/channels.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/plain_step.hpp>
-#include <delassus/step/theta.hpp>
+#include <delassus/rows/theta.hpp>
 
 #include <concepts>
 #include <type_traits>
