@@ -34,6 +34,23 @@ inline constexpr bool hits_in_turn = []<class... O>(Overrides<O...>) {
   return (std::is_same_v<O, SequentialImpacts> || ...);
 }(typename overrides_of<L>::type{});
 
+/// What part s of the bounce λ_N − λ_c the bodies get: the largest in [0, 1] with which their energy does not grow, seen from the
+/// surfaces that meet. λ_c meets the law without restitution from u and adds none; λ_N and λ_c lie in a convex cone.
+template <int R, class T>
+T share_without_gain(const Mat<R, R, T>& W, const Vec<R, T>& u, const Vec<R, T>& plain, const Vec<R, T>& newton) {
+  // E(λ) = λ·u + ½ λ·W λ along λ_c + s δ: c + b s + a s².
+  const Vec<R, T> delta = newton - plain, after = u + W * plain, moved = W * delta;
+  double a = 0, b = 0, c = 0;
+  for (int k = 0; k < R; ++k) {
+    a += 0.5 * double(delta[k]) * double(moved[k]);
+    b += double(delta[k]) * double(after[k]);
+    c += 0.5 * double(plain[k]) * double(u[k] + after[k]);
+  }
+  c = std::min(c, 0.0);
+  if (!(a + b + c > 0)) return T(1);
+  return a > 0 ? T(std::clamp((std::sqrt(std::max(0.0, b * b - 4 * a * c)) - b) / (2 * a), 0.0, 1.0)) : T(0);
+}
+
 /// One contact, hit by itself: its own W from the masses, u⁺ = −e u⁻ by the law it has.
 template <int p, class World, class Laws, class Rows>
 class ImpactRows {
@@ -53,7 +70,7 @@ class ImpactRows {
     for (int k = 1; k < rows_along<R>; ++k) u[k] += T(dot(place.axis(k), place.running(view_)));
     return u;
   }
-  /// v ← v + M⁻¹ Hᵀ λ; returns λ.
+  /// v ← v + M⁻¹ Hᵀ λ; returns λ. With friction Newton's law alone can add energy.
   Vec<R, T> hit(const Vec<R, T>& u, double h) {
     const auto& pool = laws_.template pool<p>();
     const auto& item = pool.item(i_);
@@ -64,7 +81,12 @@ class ImpactRows {
     each([&](const auto& set, Index b, const auto& H) { W.noalias() += H * answer(set, b, H); });
     memory_of_t<innermost_t<Law>, T> memory{};
     prepare(pool.law, item, W, h, memory);
-    const Vec<R, T> lambda = solve_local(pool.law, item, W, free, memory);
+    Vec<R, T> lambda = solve_local(pool.law, item, W, free, memory);
+    if constexpr (R > 1) {
+      const Vec<R, T> plain = solve_local(pool.law, item, W, u, memory);
+      const T s = share_without_gain<R, T>(W, u, plain, lambda);
+      if (s < T(1)) lambda = plain + s * (lambda - plain);
+    }
     each([&](auto& set, Index b, const auto& H) {
       set.velocity()[b].noalias() += answer(set, b, H) * lambda;
     });
