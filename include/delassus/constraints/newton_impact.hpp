@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -50,11 +51,16 @@ struct BouncingRow {
   double h, last_h, theta;
   const RowPast* past;  ///< null: it was not there
 
-  /// Of joints and neighbours the free motion knows nothing, the last two velocities do. Where the row pushed between them, the
-  /// acceleration is what it was before.
-  double acceleration() const {
-    if (!past) return (free - velocity) / h;
+  /// Of joints and neighbours the free motion knows nothing, the last two velocities do. Where the row pushed between them, this is
+  /// what it was before. Infinite of a new row.
+  double last_acceleration() const {
+    if (!past) return std::numeric_limits<double>::infinity();
     return past->impulse > 0 ? past->acceleration : (velocity - past->velocity) / last_h;
+  }
+  /// The smaller one of the last two: an impact elsewhere, or a host who sets a velocity, is in one of them alone.
+  double acceleration(double last) const {
+    if (!past) return (free - velocity) / h;
+    return std::abs(past->last) < std::abs(last) ? past->last : last;
   }
   /// v as the integrator has it is the mean of the last step for θ = 1, and that of its end for θ = ½.
   double change(double acceleration) const { return (theta - 0.5) * h * std::min(0.0, acceleration); }
@@ -78,7 +84,7 @@ struct BouncingRow {
 /// push-out speed, never their sum. A row lands only where a body is alone in its island and moves by the velocity that the row
 /// is about (θ = 1): in towers landings would be impacts of their own.
 template <class Laws, class Rows, class T>
-void add_restitution(Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free, const T* const* v, double h, double last_h,
+void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free, const T* const* v, double h, double last_h,
                      double theta, Bounces<T>& bounces) {
   bounces.begin(rows.size());
   for (std::size_t p = 0; p < rows.size(); ++p) {
@@ -91,7 +97,7 @@ void add_restitution(Laws laws, Rows rows, const Islands<T>& islands, const T* c
     for (Index i = 0; i < pool.items(); ++i) {
       const double restitution = law.restitution(laws[p].pool, i);
       if (!(restitution > 0)) continue;
-      const ItemName name = law.name(laws[p].pool, i);
+      const ItemName name = law.name(laws[p].pool, world, i);
       for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = T(0);
       for (int s = 0; s < pool.sets; ++s) {
         pool.set[s].products->rate(pool.set[s], i, v_free[s], free, free);
@@ -107,7 +113,7 @@ void add_restitution(Laws laws, Rows rows, const Islands<T>& islands, const T* c
         const inner::BouncingRow is{phi, sign * double(start[k]), sign * double(free[k]), h, last_h, theta, bounces.pasts.find(name, place)};
         RowPast& now = bounces.pasts.add(name, place);
         bounces.rows.push_back(row);
-        now.velocity = is.velocity, now.free = is.free, now.acceleration = is.acceleration();
+        now.velocity = is.velocity, now.free = is.free, now.last = is.last_acceleration(), now.acceleration = is.acceleration(now.last);
         double leaves = 0;
         if (is.past && is.past->parts > 0) {
           leaves = is.past->parts + is.change(is.past->acceleration);
@@ -298,7 +304,7 @@ struct NewtonImpact {
       auto& own = step.template state<NewtonImpact>();
       for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
-      add_restitution(step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, step.h, step.last_h,
+      add_restitution(step.view, step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, step.h, step.last_h,
                       theta<std::remove_cvref_t<decltype(step.integrator())>>(), own.bounces);
     }
     static void solve_island(auto& step, auto& island) {

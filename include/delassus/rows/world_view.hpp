@@ -11,6 +11,7 @@
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/surface_motion.hpp>
 
+#include <cstdint>
 #include <string>
 #include <type_traits>
 
@@ -23,6 +24,7 @@ struct SetTable {
   /// Whether the anchor speaks of this set; refuses one whose body was removed.
   bool (*owns)(const void* set, const Anchor&, const char* what);
   bool (*is_current)(const void* set, const Anchor&);  ///< the body behind it is still there
+  std::uint32_t (*generation)(const void* set, Index block);  ///< of the body there: who takes its place has another one
   Vec3 (*point)(const void* set, const Anchor&);
   Quat (*frame)(const void* set, const Anchor&);  ///< null: its bodies have no orientation
   Mat3 (*axes)(const void* set, const Anchor&);   ///< null: those of `frame`
@@ -56,6 +58,7 @@ struct SetFunctions {
   static bool is_current(const void* set, const Anchor& a) {
     return of(set).is_alive(a.block) && of(set).handle(a.block).generation == a.generation;
   }
+  static std::uint32_t generation(const void* set, Index block) { return of(set).handle(block).generation; }
   static Vec3 point(const void* set, const Anchor& a) { return of(set).point(a); }
   static constexpr bool has_frame = requires(const Set& set, const Anchor& a) { set.frame(a); };
   static constexpr bool has_axes = requires(const Set& set, const Anchor& a) { set.axes(a); };
@@ -132,9 +135,8 @@ struct SetFunctions {
 
   /// Those of the functions that a set has.
   static constexpr SetTable<T> make_table() {
-    return {owns,       is_current, point,       has_frame ? frame : nullptr, has_axes ? axes : nullptr,
-            add_blocks, along,      along_three, along_axes,                  turns ? about : nullptr,
-            has_surface ? surface : nullptr};
+    return {owns,       is_current, generation,  point,      has_frame ? frame : nullptr, has_axes ? axes : nullptr,
+            add_blocks, along,      along_three, along_axes, turns ? about : nullptr,     has_surface ? surface : nullptr};
   }
   static const SetTable<T> table;
 };
@@ -166,6 +168,8 @@ class WorldView {
     if (a.owner != 0) [[unlikely]] return point(found(a, "point"));
     return a.local;
   }
+  /// Of the body behind an end of a contact.
+  std::uint32_t generation(const Anchor& a) const { return set(a).table->generation(set(a).set, a.block); }
   /// How the frame of an anchor is turned in the world now; a particle has none and says its anchor's own.
   Quat frame(const Anchor& a) const {
     if (a.set < 0 && a.owner != 0) [[unlikely]] return frame(found(a, "frame"));

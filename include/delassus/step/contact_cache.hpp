@@ -105,7 +105,7 @@ class BasicContactCache {
     c.collides_with = set.collides_with(b);
     c.key = collider_key(s, b);
     colliders.push_back(c);
-    anchors_.push_back({.set = s, .block = b, .generation = set.handle(b).generation});
+    anchors_.push_back({.set = s, .block = b});
     materials_.push_back(set.material(b));
   }
 

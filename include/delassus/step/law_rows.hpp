@@ -37,7 +37,7 @@ struct LawSteps {
   /// e of item i, in [0, 1]; null: zero.
   double (*restitution)(const void* pool, Index i);
   /// What item i is called from step to step; null: it has no e.
-  ItemName (*name)(const void* pool, Index i);
+  ItemName (*name)(const void* pool, const WorldView<T>&, Index i);
   /// λ ← `ratio` · λ of the last step, by contact id or by item; h in s.
   void (*warm_start)(const void* pool, const RowArrays<T>&, ContactCache&, double ratio, double h);
   /// Hands the impulses back: to the items of the pool, or to the contacts as world vectors.
@@ -120,11 +120,11 @@ struct LawRows {
     if constexpr (refines<Law>(refine::restitution)) return of(pool).law.restitution(of(pool).item(i));
     else return 0;
   }
-  static ItemName name([[maybe_unused]] const void* at, [[maybe_unused]] Index i) {
+  static ItemName name(const void* at, [[maybe_unused]] const WorldView<T>& world, Index i) {
     const Pool<Law>& pool = of(at);
     if constexpr (ContactLaw<Law>) {
       const auto& record = *pool.item(i).record;
-      return {record.pair, std::uint64_t(record.a.generation) << 32 | record.b.generation, record.feature};
+      return {record.pair, std::uint64_t(world.generation(record.a)) << 32 | world.generation(record.b), record.feature};
     } else {
       const Index place = pool.slots.active()[i];
       return {std::uint64_t(place), pool.slots.generation(place), 0};
