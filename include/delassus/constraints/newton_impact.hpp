@@ -29,9 +29,9 @@ struct Bounces {
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
   Array<Index> blocks;      ///< of each island; empty: nobody asked
 
-  void begin(std::size_t pools) {
+  void begin(std::size_t pools, double h) {
     for (auto* list : {&added, &returned}) list->clear(), list->resize(pools);
-    pasts.begin();
+    pasts.begin(h);
     rows.clear();
     blocks.clear();
   }
@@ -62,19 +62,21 @@ struct BouncingRow {
     if (!past) return (free - velocity) / h;
     return std::abs(past->last) < std::abs(last) ? past->last : last;
   }
-  /// v as the integrator has it is the mean of the last step for θ = 1, and that of its end for θ = ½.
-  double change(double acceleration) const { return (theta - 0.5) * h * std::min(0.0, acceleration); }
+  /// For θ = 1, v is the velocity of the middle of the last step, and moves the row. For θ = ½ it is that of the end, and the mean
+  /// with u moves the row.
+  double now(double acceleration) const { return velocity + (theta - 0.5) * last_h * acceleration; }
+  double height(double acceleration) const { return gap + (1 - theta) * (h * velocity + 0.25 * h * h * acceleration); }
   bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < 0; }
   Closing closing(double acceleration, bool may_land) const {
-    const double fall = std::max(0.0, std::max(velocity - free, -h * acceleration));
-    return {gap, velocity, change(acceleration), std::min(0.0, acceleration), h, 0.5 * fall, may_land};
+    const double a = std::min(0.0, acceleration), fall = std::max(std::max(0.0, velocity - free), -h * a);
+    return {.gap = gap, .velocity = now(a), .acceleration = a, .height = height(a), .least = 0.5 * fall, .h = h, .may_land = may_land};
   }
   /// The energy that its impulse took from the bodies as it landed, J.
   double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + velocity)); }
   /// It fell into an overlap and does not bounce: it comes back to the surface, with no more than falling for a step gives.
   double comes_back(double acceleration) const {
     const bool flew = !past || !(past->impulse > 0);
-    return flew && gap < 0 ? std::min(-gap / h, -2 * change(acceleration)) : 0;
+    return flew && gap < 0 ? std::min(-gap / h, -h * std::min(0.0, acceleration)) : 0;
   }
 };
 
@@ -84,9 +86,9 @@ struct BouncingRow {
 /// push-out speed, never their sum. A row lands only where a body is alone in its island and moves by the velocity that the row
 /// is about (θ = 1): in towers landings would be impacts of their own.
 template <class Laws, class Rows, class T>
-void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free, const T* const* v, double h, double last_h,
-                     double theta, Bounces<T>& bounces) {
-  bounces.begin(rows.size());
+void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free, const T* const* v, double h, double theta,
+                     Bounces<T>& bounces) {
+  bounces.begin(rows.size(), h);
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const auto& pool = rows[p];
     const auto& law = *laws[p].law;
@@ -110,13 +112,13 @@ void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Isla
         const double sign = law.kinds[k] == RowKind::lower ? 1 : -1, phi = sign * double((*pool.phi)[row]);
         const double plain = sign * double((*pool.bias)[row]);
         const std::uint32_t place = std::uint32_t(most_rows) * std::uint32_t(p) + std::uint32_t(k);
-        const inner::BouncingRow is{phi, sign * double(start[k]), sign * double(free[k]), h, last_h, theta, bounces.pasts.find(name, place)};
+        const inner::BouncingRow is{phi, sign * double(start[k]), sign * double(free[k]), h, bounces.pasts.last_h(), theta, bounces.pasts.find(name, place)};
         RowPast& now = bounces.pasts.add(name, place);
         bounces.rows.push_back(row);
         now.velocity = is.velocity, now.free = is.free, now.last = is.last_acceleration(), now.acceleration = is.acceleration(now.last);
         double leaves = 0;
         if (is.past && is.past->parts > 0) {
-          leaves = is.past->parts + is.change(is.past->acceleration);
+          leaves = is.past->parts + 0.5 * h * std::min(0.0, is.past->acceleration);
           if (!(leaves > 0)) continue;
           if (returned.empty()) returned.assign_zeros(pool.phi->size());
           returned[row] = T(is.taken());
@@ -304,7 +306,7 @@ struct NewtonImpact {
       auto& own = step.template state<NewtonImpact>();
       for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
-      add_restitution(step.view, step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, step.h, step.last_h,
+      add_restitution(step.view, step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, step.h,
                       theta<std::remove_cvref_t<decltype(step.integrator())>>(), own.bounces);
     }
     static void solve_island(auto& step, auto& island) {

@@ -13,33 +13,32 @@ struct Rebound {
   double parts = 0;   ///< it lands in this step, and parts from the surface with this speed in the next one, > 0
 };
 
-/// A row as a step meets it, opening positive. Lengths in m, or angles in rad.
+/// A row at the start of a step of h seconds, opening positive. m and s, or rad and s.
 struct Closing {
   double gap;           ///< x
-  double velocity;      ///< v < 0 of the last step, per s
-  double change;        ///< what its acceleration makes of v in half a step, ≤ 0, less what v is older than x: a h/2 of symplectic Euler
-  double acceleration;  ///< a ≤ 0, per s²
-  double h;             ///< s
+  double velocity;      ///< V < 0, now
+  double acceleration;  ///< a ≤ 0
+  double height;        ///< from which it leaves at the start of the step, as if it had flown from there: x where u moves it
   double least;         ///< with less than this speed it does not part
+  double h;
   bool may_land;
 };
 
-/// The row has the speed V_s at the surface, V_s² = V² − 2 a x with V = v + `change`. It leaves with
+/// The row has the speed V_s at the surface, V_s² = V² − 2 a x. It leaves with
 ///
-///   u = `change` + √(e² V_s² + 2 a x),
+///   u = √(e² V_s² + 2 a x) + a h/2,
 ///
-/// so that ½ V² − a x becomes e² of what it is at the surface, wherever the step meets it. e = 1 gives u = −v. This leaves out the
-/// flight from x to the surface and back. Where u < 0, or where waiting for the end of the step is the smaller error in time, the
-/// row lands, and bounces from the surface in the next step. So errors in time do not add up.
+/// so that ½ V² − a x, which a step that moves by u keeps, becomes e² of what it is at the surface, wherever the step meets it. This leaves out the flight from x to the
+/// surface and back. Where u < 0, or where waiting for the end of the step is the smaller error in time, the row lands, and bounces
+/// from the surface in the next step. So errors in time do not add up. Where no bounce is the last one they need not.
 inline Rebound rebound(const Closing& c, double e) {
-  const double x = c.gap, a = c.acceleration, now = c.velocity + c.change;
-  const double meets = std::sqrt(std::max(0.0, now * now - 2 * a * x)), parts = e * meets;
+  const double x = c.gap, a = c.acceleration;
+  const double meets = std::sqrt(std::max(0.0, c.velocity * c.velocity - 2 * a * x)), parts = e * meets;
   if (!(parts > c.least)) return {};
-  const double square = parts * parts + 2 * a * x, here = std::sqrt(std::max(0.0, square)), leaves = c.change + here;
-  const bool lasts = a == 0 || e == 1;  // no bounce is the last: no time to rest
+  const double square = parts * parts + 2 * a * c.height, starts = std::sqrt(std::max(0.0, square)), leaves = starts + 0.5 * a * c.h;
   if (square > 0 && leaves > 0) {
-    const double down = 2 * x / (meets - now), up = 2 * x / (parts + here);  // s
-    if (!c.may_land || lasts || down + up < c.h - down) return {.leaves = leaves};
+    const double down = 2 * x / (meets - c.velocity), up = 2 * x / (parts + starts);  // s
+    if (!c.may_land || a == 0 || e == 1 || down + up < c.h - down) return {.leaves = leaves};
   }
   return c.may_land ? Rebound{.parts = parts} : Rebound{};
 }

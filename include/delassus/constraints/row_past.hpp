@@ -31,8 +31,9 @@ struct RowPast {
 /// The rows of the last step by name, and those of this one. Rows that ask in the order of the last step cost nothing to find.
 class RowPasts {
  public:
-  /// A step begins: what was added is the past.
-  void begin() {
+  /// A step of h seconds begins: what was added is the past.
+  void begin(double h) {
+    last_h_ = h_ > 0 ? h_ : h, h_ = h;
     const auto is_before = [](const RowPast& x, const RowPast& y) { return Name(x) < Name(y); };
     if (!inner::is_sorted(now_.data(), now_.data() + now_.size(), is_before)) inner::sort(now_, is_before);
     before_.swap(now_);
@@ -40,6 +41,7 @@ class RowPasts {
     now_.reserve(before_.capacity());
     next_ = 0;
   }
+  double last_h() const { return last_h_; }  ///< of the step of the past, s
   /// Null: the row was not there.
   const RowPast* find(const ItemName& name, std::uint32_t row) {
     const RowPast *const first = before_.data(), *const last = first + before_.size();
@@ -58,7 +60,7 @@ class RowPasts {
   /// The rows of this step, in the order in which they were added.
   Array<RowPast>& now() { return now_; }
 
-  void memory(auto& archive) { archive(now_); }
+  void memory(auto& archive) { archive(now_, h_); }
 
  private:
   struct Name {
@@ -77,6 +79,7 @@ class RowPasts {
   };
 
   Array<RowPast> before_, now_;
+  double h_ = 0, last_h_ = 0;
   std::size_t next_ = 0;  ///< behind the one that was found last
 };
 
