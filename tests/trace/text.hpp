@@ -36,6 +36,14 @@ class Text {
     }
   }
 
+  /// Whether the line that comes has this name.
+  bool is_next(const char* name) {
+    const std::size_t here = at_;
+    const bool is = !is_at_end() && next() == name;
+    at_ = here;
+    return is;
+  }
+
   template <class X>
   requires std::is_arithmetic_v<X>
   void operator()(X& x) {
