@@ -4,7 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/sort.hpp>
-#include <delassus/rows/local.hpp>
+#include <delassus/rows/row_kind.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,0 +1,150 @@
+/// Restitution of the rows of a step: which of them bounce, land and part, and what is remembered of them.
+#pragma once
+
+#include <delassus/constraints/rebound.hpp>
+#include <delassus/constraints/row_past.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/core/owning_array.hpp>
+#include <delassus/rows/islands.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/rows/world_view.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace delassus {
+
+/// What restitution does to the rows of a step, and what it remembers for the next one. Lists by pool and row.
+template <class T>
+struct Bounces {
+  OwningArray<Array<T>> added;     ///< to the bias, m/s
+  OwningArray<Array<T>> returned;  ///< to the bodies, of what they lost as they landed, J; empty: nothing in this pool
+  RowPasts pasts;
+  Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
+  Array<Index> blocks;      ///< of each island; empty: nobody asked
+
+  void begin(std::size_t pools, double h) {
+    for (auto* list : {&added, &returned}) list->clear(), list->resize(pools);
+    pasts.begin(h);
+    rows.clear();
+    blocks.clear();
+  }
+  /// Whether nothing else that moves is in the island of the item.
+  bool is_alone(const Islands<T>& islands, int p, Index i) {
+    if (blocks.empty()) islands.count_blocks(blocks);
+    const Index island = islands.island_of(p, i);
+    return island >= 0 && blocks[island] == 1;
+  }
+};
+
+namespace inner {
+
+/// A row with e > 0 in this step and in the last one, opening positive.
+struct BouncingRow {
+  double gap, velocity, free;  ///< free: the velocity without impulses
+  double h, last_h, theta;
+  const RowPast* past;  ///< null: it was not there
+
+  /// Of joints and neighbours the free motion knows nothing, the last two velocities do. Where the row pushed between them, this is
+  /// what it was before. Infinite of a new row.
+  double last_acceleration() const {
+    if (!past) return std::numeric_limits<double>::infinity();
+    return past->impulse > 0 ? past->acceleration : (velocity - past->velocity) / last_h;
+  }
+  /// The smaller one of the last two: an impact elsewhere, or a host who sets a velocity, is in one of them alone.
+  double acceleration(double last) const {
+    if (!past) return (free - velocity) / h;
+    return std::abs(past->last) < std::abs(last) ? past->last : last;
+  }
+  /// For θ = 1, v is the velocity of the middle of the last step, and moves the row. For θ = ½ it is that of the end, and the mean
+  /// with u moves the row.
+  double now(double acceleration) const { return velocity + (theta - 0.5) * last_h * acceleration; }
+  double height(double acceleration) const { return gap + (1 - theta) * (h * velocity + 0.25 * h * h * acceleration); }
+  bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < 0; }
+  Closing closing(double acceleration, bool may_land) const {
+    const double a = std::min(0.0, acceleration), fall = std::max(std::max(0.0, velocity - free), -h * a);
+    return {.gap = gap, .velocity = now(a), .acceleration = a, .height = height(a), .least = 0.5 * fall, .h = h, .may_land = may_land};
+  }
+  /// The energy that its impulse took from the bodies as it landed, J.
+  double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + velocity)); }
+  /// It fell into an overlap and does not bounce: it comes back to the surface, with no more than falling for a step gives.
+  double comes_back(double acceleration) const {
+    const bool flew = !past || !(past->impulse > 0);
+    return flew && gap < 0 ? std::min(-gap / h, -h * std::min(0.0, acceleration)) : 0;
+  }
+};
+
+}  // namespace inner
+
+/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step gets the stronger of what `rebound` says and the
+/// push-out speed, never their sum. Rows may land where one body is alone in its island and moves by u (θ = 1). In a tower a
+/// landing is an impact of its own, which throws the boxes out of line.
+template <class Laws, class Rows, class T>
+void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free,
+                     const T* const* v, double h, double theta, Bounces<T>& bounces) {
+  bounces.begin(rows.size(), h);
+  for (std::size_t p = 0; p < rows.size(); ++p) {
+    const auto& pool = rows[p];
+    const auto& law = *laws[p].law;
+    Array<T>&added = bounces.added[p], &returned = bounces.returned[p];
+    added.assign_zeros(pool.phi->size());
+    if (!law.restitution) continue;
+    T free[most_rows], start[most_rows];
+    for (Index i = 0; i < pool.items(); ++i) {
+      const double restitution = law.restitution(laws[p].pool, i);
+      if (!(restitution > 0)) continue;
+      const ItemName name = law.name(laws[p].pool, world, i);
+      for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = T(0);
+      for (int s = 0; s < pool.sets; ++s) {
+        pool.set[s].products->rate(pool.set[s], i, v_free[s], free, free);
+        pool.set[s].products->rate(pool.set[s], i, v[s], start, start);
+      }
+      for (int k = 0; k < pool.rows; ++k) {
+        const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
+        if (law.kinds[k] != RowKind::lower && law.kinds[k] != RowKind::upper) continue;
+        if (pool.is_soft(row)) continue;
+        const double sign = law.kinds[k] == RowKind::lower ? 1 : -1, phi = sign * double((*pool.phi)[row]);
+        const double plain = sign * double((*pool.bias)[row]);
+        const std::uint32_t place = std::uint32_t(most_rows) * std::uint32_t(p) + std::uint32_t(k);
+        const RowPast* const past = bounces.pasts.find(name, place);
+        const inner::BouncingRow is{phi, sign * double(start[k]), sign * double(free[k]), h, bounces.pasts.last_h(), theta, past};
+        RowPast& now = bounces.pasts.add(name, place);
+        bounces.rows.push_back(row);
+        now.velocity = is.velocity, now.free = is.free;
+        now.last = is.last_acceleration(), now.acceleration = is.acceleration(now.last);
+        double leaves = 0;
+        if (past && past->parts > 0) {
+          leaves = past->parts + 0.5 * h * std::min(0.0, past->acceleration);
+          if (!(leaves > 0)) continue;
+          if (returned.empty()) returned.assign_zeros(pool.phi->size());
+          returned[row] = T(is.taken());
+        } else if (is.closes(now.acceleration)) {
+          const bool may_land = theta == 1 && bounces.is_alone(islands, int(p), i);
+          const Rebound does = rebound(is.closing(now.acceleration, may_land), restitution);
+          now.parts = does.parts;
+          leaves = does.leaves > 0 || does.parts > 0 ? does.leaves : is.comes_back(now.acceleration);
+        }
+        if (!(leaves > 0)) continue;
+        const double bias = std::min(phi < 0 ? plain : 0.0, -leaves);
+        added[row] = T(sign * (bias - plain));
+        (*pool.bias)[row] = T(sign * bias);
+        (*pool.d)[row] = free[k] + (*pool.bias)[row];
+      }
+    }
+  }
+}
+
+/// After the solve.
+template <class Rows, class T>
+void remember_impulses(Rows rows, Bounces<T>& bounces) {
+  for (std::size_t i = 0; i < bounces.rows.size(); ++i) {
+    RowPast& row = bounces.pasts.now()[i];
+    row.impulse = std::abs(double((*rows[row.row / most_rows].lambda)[bounces.rows[i]]));
+  }
+}
+
+}  // namespace delassus
