@@ -190,7 +190,7 @@ class Memory {
   void part(M&) {}
 
   void part(RowPasts& pasts) {
-    if (text_.reads() ? !text_.is_next("bounces") : pasts.now().empty()) return;
+    if (text_.reads() ? !text_.is_next("bounces") : pasts.empty()) return;
     text_.line("bounces");
     pasts.memory(*this);
   }

@@ -75,8 +75,7 @@ class CollisionEngine {
     half_spaces_.clear();
     pairs_.clear();
     jobs_.clear();
-    apart_.clear();
-    cores_.clear();
+    if constexpr (inner::KnowsWhoPushed<Filter>) apart_.clear(), cores_.clear();
     for (Index i = 0; i < Index(colliders.size()); ++i) {
       DELASSUS_EXPECT(
           !colliders[i].shape.is_kept(),
@@ -228,6 +227,17 @@ class CollisionEngine {
   /// Looks for pairs of the colliders that go farther than `detect` took into account.
   template <class Filter>
   void find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings, const Filter& filter);
+  /// A detection without such a filter, as in the middle of a step, may have had other pairs.
+  void keep_jobs_of_apart() {
+    const std::size_t known = jobs_.size();
+    for (const inner::Apart& p : apart_) {
+      const Job *const end = jobs_.data() + known, *const at = inner::lower_bound(jobs_.data(), jobs_.data() + known, p.job);
+      if (at == end || at->pair != p.job.pair) jobs_.push_back(p.job);
+    }
+    if (jobs_.size() == known) return;
+    inner::sort(jobs_);
+    recall_pairs();
+  }
   RestingPair& memory_of(std::uint64_t pair) {
     return *inner::lower_bound(memory_.begin(), memory_.end(), pair, [](const RestingPair& m, std::uint64_t key) { return m.pair < key; });
   }
@@ -402,6 +412,7 @@ template <class Filter>
 void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
                                                    std::vector<ContactPoint>& out, const Filter& filter) {
   out.clear();
+  keep_jobs_of_apart();
   find_outgrown(colliders, h, settings, filter);
   erase_if(apart_, [&](const inner::Apart& p) {
     const Collider &a = colliders[p.job.a], &b = colliders[p.job.b];

@@ -69,7 +69,7 @@ struct WithMeshes {
     CollisionReport report = backend.detect(convex_, h, contacts, filter);
     find_jobs(colliders, h, filter);
     report.pairs += Index(jobs_.size());
-    pairs_.begin();
+    pairs_.begin(inner::KnowsWhoPushed<Filter>);
     const CollisionSettings settings = inner::settings_of(backend);
     for (const Job& job : jobs_)
       with_surface(colliders[job.a].shape, [&](const auto& surface) {

@@ -196,6 +196,10 @@ struct NewtonImpact {
       remember_impulses(step.arrays.all(), step.template state<NewtonImpact>().bounces);
       Base::keep_impulses(step);
     }
+    static void advance(auto& step) {
+      step.template state<NewtonImpact>().bounces.pasts.end();
+      Base::advance(step);
+    }
   };
 };
 

@@ -31,16 +31,23 @@ struct RowPast {
 /// The rows of the last step by name, and those of this one. Rows that ask in the order of the last step cost nothing to find.
 class RowPasts {
  public:
-  /// A step of h seconds begins: what was added is the past.
+  /// The rows of a step of h seconds are made; anew, where it is solved again.
   void begin(double h) {
-    last_h_ = h_ > 0 ? h_ : h, h_ = h;
-    const auto is_before = [](const RowPast& x, const RowPast& y) { return Name(x) < Name(y); };
-    if (!inner::is_sorted(now_.data(), now_.data() + now_.size(), is_before)) inner::sort(now_, is_before);
-    before_.swap(now_);
+    if (!(last_h_ > 0)) last_h_ = h;
+    h_ = h;
     now_.clear();
     now_.reserve(before_.capacity());
     next_ = 0;
   }
+  /// The step is over: what was added is the past.
+  void end() {
+    const auto is_before = [](const RowPast& x, const RowPast& y) { return Name(x) < Name(y); };
+    if (!inner::is_sorted(now_.data(), now_.data() + now_.size(), is_before)) inner::sort(now_, is_before);
+    before_.swap(now_);
+    now_.clear();
+    last_h_ = h_;
+  }
+  bool empty() const { return before_.empty(); }  ///< no row was there
   double last_h() const { return last_h_; }  ///< of the step of the past, s
   /// Null: the row was not there.
   const RowPast* find(const ItemName& name, std::uint32_t row) {
@@ -60,7 +67,7 @@ class RowPasts {
   /// The rows of this step, in the order in which they were added.
   Array<RowPast>& now() { return now_; }
 
-  void memory(auto& archive) { archive(now_, h_); }
+  void memory(auto& archive) { archive(before_, last_h_); }
 
  private:
   struct Name {

@@ -30,7 +30,10 @@ namespace delassus::inner {
 /// frame.
 class SurfacePairs {
  public:
-  void begin() { next_.clear(), next_impacts_.clear(), apart_.clear(), asked_.clear(), cores_.clear(); }
+  void begin(bool looks_ahead) {
+    next_.clear(), next_impacts_.clear();
+    if (looks_ahead) apart_.clear(), asked_.clear(), cores_.clear();
+  }
   void end() { memory_.swap(next_), impacts_.swap(next_impacts_); }
   void memory(auto& archive) { archive(memory_, impacts_); }
 
