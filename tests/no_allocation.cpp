@@ -35,3 +35,14 @@ TEST_CASE("a warm step of particles coupled by springs allocates nothing under i
   loop.add(DistanceJoint::Item{anchor(set, beads[9]), world_anchor({1, 0, 1}), 1.0});
   REQUIRE(allocations_of(loop, 100, 1000) == 0);
 }
+
+TEST_CASE("a warm step of bodies that slide and roll allocates nothing under the midpoint rule, with several looks") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ImplicitMidpoint{.looks = 2}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  for (int i = 0; i < 5; ++i) {
+    set.add({.position = {i * 1., 0, 0.1}, .velocity = {0, 1, 0}, .angular_velocity = {1, 0, 0}, .mass = 1.0, .shape = Ellipsoid{0.2, 0.15, 0.1}});
+    set.add({.position = {i * 1., 0, 0.4}, .mass = 1.0, .shape = Box{0.2, 0.2, 0.2}});
+  }
+  REQUIRE(allocations_of(loop, 1000, 1000) == 0);
+}

@@ -109,7 +109,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class Array<char>;                                                                                                         \
   KIND class OwningArray<Array<double>>;                                                                                          \
   KIND class OwningArray<Array<Index>>;                                                                                           \
-  KIND void inner::make_bias(AllLaws<double>, AllRows<double>, const double* const*, const double* const*, const MovingSurfaces<double>&, const Baumgarte&, double, double); \
+  KIND void inner::make_bias(AllLaws<double>, AllRows<double>, const double* const*, const double* const*, const MovingSurfaces<double>&, const Baumgarte&, double, double, bool); \
   KIND void warm_start(AllLaws<double>, AllRows<double>, ContactCache&, double, double);                                          \
   KIND void keep_impulses(AllLaws<double>, AllRows<double>, ContactCache&);                                                       \
   KIND void forget_lost_islands(AllLaws<double>, inner::Slice<const PoolView<double>>, ContactCache&, const Islands<double>&, inner::Slice<const SolveReport>);

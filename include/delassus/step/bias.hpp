@@ -56,12 +56,12 @@ void soften(const RowArrays<T>& pool, std::size_t row, double h, double theta) {
   (*pool.bias)[row] = T(soft.bias);
 }
 
-/// One item's rows from `first` on. u: H v_free, which becomes d; start: H v, where θ < 1.
+/// One item's rows from `first` on. u: H v_free, which becomes d; start: H v, where θ < 1. `turns_slip`: friction sees `rotated_slip`.
 template <class T, class S>
 [[gnu::always_inline]] inline void make_bias_of_item(const LawSteps<T>& law, const RowArrays<T>& pool, std::size_t first, T* u, const T* start, const S& stabilisation,
-                       double h, double theta) {
+                       double h, double theta, bool turns_slip) {
   const T before = T((1 - theta) / theta);
-  if (theta != 1 && law.has_slip) {
+  if (turns_slip && law.has_slip) {
     const auto rotated = rotated_slip<T>({start[1], start[2]}, {u[1], u[2]}, theta);
     u[1] += rotated[0], u[2] += rotated[1];
   }
@@ -102,7 +102,7 @@ void drive(const RowArrays<T>& pool, std::size_t first, double speed, double h) 
 
 template <class T, class S>
 void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T* const* v, const MovingSurfaces<T>& moving, const S& stabilisation,
-               double h, double theta) {
+               double h, double theta, bool turns_slip) {
   for (std::size_t p = 0; p < laws.size(); ++p) {
     const RowArrays<T>& pool = rows[p];
     const LawSteps<T>& law = *laws[p].law;
@@ -122,7 +122,7 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
         start = of_start;
       }
       if (sees_surfaces) see_moving_surfaces(moving, law.place(laws[p].pool, i), h, theta, of_start, d);
-      make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta);
+      make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta, turns_slip);
       if (law.speed) drive(pool, first, law.speed(laws[p].pool, i), h);
       const T* const bias = pool.bias->data() + first;
       for (int k = 0; k < height; ++k) d[k] += bias[k];
@@ -134,11 +134,13 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
 
 /// Makes bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias. Equalities hold for the mean
 /// velocity, as do springs that ask for it and the direction of friction (`inner::rotated_slip`). All other rows hold
-/// for v_next. Friction sees how surfaces move besides (`inner::see_moving_surfaces`).
+/// for v_next. Friction sees how surfaces move besides (`inner::see_moving_surfaces`). Contacts in the middle of the step see all of
+/// this by their rows, and `turns_slip` is false.
 template <class World, class T, class S>
-void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const MovingSurfaces<T>& moving, const S& stabilisation, double h, double theta) {
+void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const MovingSurfaces<T>& moving, const S& stabilisation, double h, double theta,
+               bool turns_slip) {
   const inner::BodyVelocities<World> v(world);
-  inner::make_bias(laws, rows, v.free, v.start, moving, stabilisation, h, theta);
+  inner::make_bias(laws, rows, v.free, v.start, moving, stabilisation, h, theta, turns_slip);
 }
 
 }  // namespace delassus

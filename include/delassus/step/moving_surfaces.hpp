@@ -61,6 +61,11 @@ inline Vec3 turn_of_carrier(const SurfaceMotion& a, const SurfaceMotion& b, cons
   return (1 - share) * a.turn + share * b.turn;
 }
 
+/// Whether two bodies turn alike, as what lies on a turntable and the table do.
+inline bool turn_alike(const SurfaceMotion& a, const SurfaceMotion& b) {
+  return 4 * squared_norm(Vec3(b.turn - a.turn)) <= std::max(squared_norm(a.turn), squared_norm(b.turn));
+}
+
 /// Rows hold for velocities of the start of the step, u = v_b − v_a at the contact. While the step lasts the carrier turns, and
 /// u changes by −ω × (way of b − way of a), half of it in the mean of the step. Where the bodies turn alike they stay together,
 /// and that way is known: the circle's.
@@ -69,8 +74,7 @@ inline Vec3 turned_away(SurfaceMotion a, SurfaceMotion b, const ContactPlace& c,
   // A node has no turn: it is where the contact is, and goes as that says.
   if (!a.is_rigid) a.centre = *c.point, a.velocity = b.velocity + cross(b.turn, *c.point - b.centre) - u;
   if (!b.is_rigid) b.centre = *c.point, b.velocity = a.velocity + cross(a.turn, *c.point - a.centre) + u;
-  const bool are_alike =
-      4 * squared_norm(Vec3(b.turn - a.turn)) <= std::max(squared_norm(a.turn), squared_norm(b.turn));
+  const bool are_alike = turn_alike(a, b);
   const Vec3 turn = turn_of_carrier(a, b, *c.point, c.axis(0), are_alike);
   if (are_alike) return -bend_of_circle(b.centre - a.centre, turn, h, theta);
   return (-0.5 * h / theta) * cross(turn, b.velocity - a.velocity);

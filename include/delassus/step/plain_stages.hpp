@@ -12,6 +12,7 @@
 #include <delassus/step/find_islands.hpp>
 #include <delassus/step/free_motion.hpp>
 #include <delassus/step/linearize.hpp>
+#include <delassus/step/middle_contacts.hpp>
 #include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/notify.hpp>
 #include <delassus/step/solve.hpp>
@@ -125,8 +126,11 @@ struct PlainStages : StagesWithoutConstraints {
   static void make_bias(auto& step) {
     using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
     const auto& world = std::as_const(step).world();
-    delassus::make_bias(world, step.pools.all(), step.arrays.all(), moving_surfaces(world, step.view, step.h), step.stabilisation(), step.h,
-                        theta<Integrator>());
+    auto moving = moving_surfaces(world, step.view, step.h);
+    constexpr bool sees_start = !inner::has_middle_contacts<typename std::remove_reference_t<decltype(step)>::Policies>;
+    moving.turn = moving.turn && sees_start;
+    delassus::make_bias(world, step.pools.all(), step.arrays.all(), moving, step.stabilisation(), step.h, theta<Integrator>(),
+                        sees_start && theta<Integrator>() != 1);
   }
 
   static void build(auto& step) {

@@ -48,6 +48,14 @@ Vec<3, T> momentum_of(Set& set, Index b, const Vec<3, T>& rate) {
   return R * (set.inertia(b) * transposed_times(R, rate));
 }
 
+/// The mean rate of the step is known better, from a solve: so are the middle and g.
+template <class Set, class T>
+void turn_by_mean(Set& set, Index b, HeldTurn<T>& held, const Vec<3, T>& mean, T h) {
+  using Vector = Vec<3, T>;
+  held.back = exponential<T>((T(-0.5) * h) * mean);
+  held.gyration = -held.longer * rate_under<Set, T>(set, b, cross(mean, Vector(momentum_of<Set, T>(set, b, mean))));
+}
+
 /// Where no moment acts: g = 2 (Ω̄ − Ω). Not held is a body that turns by more than half a radian in a step, for which g is too far
 /// from what it will be, unless it is slender; nor one whose turn has no root.
 template <class Set, class T>
@@ -107,11 +115,11 @@ struct HeldTurns {
   Array<typename Set::Velocity> moment;  ///< J of the joints, N·s and N·m·s
 };
 
-/// f(p, pool of rows) of the laws that are no contacts.
-template <class Laws>
-void each_joint_pool(const Laws& laws, auto& rows, auto&& f) {
+/// f(p, pool of rows) of the laws whose rows are of the middle: all, or those that are no contacts.
+template <bool contacts, class Laws>
+void each_pool_of_middle(const Laws& laws, auto& rows, auto&& f) {
   each_pool(rows, [&](auto p, auto& pool) {
-    if constexpr (!ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) f(p, pool);
+    if constexpr (contacts || !ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) f(p, pool);
   });
 }
 

@@ -11,6 +11,7 @@
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/stabilisation/inner/position_laws.hpp>
 #include <delassus/step/linearize.hpp>
+#include <delassus/step/middle_contacts.hpp>
 #include <delassus/step/row_types.hpp>
 #include <delassus/step/solve.hpp>
 
@@ -18,8 +19,8 @@ namespace delassus {
 
 /// d of the position problem: u⁺ + push(φ), close(φ) of a joint: the velocity the row has plus the rate its violation asks
 /// for; an open contact only must not close. With `at_end`, the rows where the bodies are at the end of the step, equalities
-/// have close(φ) of there alone. λ starts at zero.
-template <class World, class Laws, class Rows, class S>
+/// have close(φ) of there alone. Contacts in the middle of the step have the φ that they end with already. λ starts at zero.
+template <bool middle_contacts, class World, class Laws, class Rows, class S>
 void make_position_bias(const World& world, const Laws& laws, Rows& rows, const S& stabilisation, double h,
                         const Rows* at_end) {
   using T = typename Rows::Scalar;
@@ -28,7 +29,8 @@ void make_position_bias(const World& world, const Laws& laws, Rows& rows, const 
     constexpr auto kinds = row_kinds<Law>();
     auto& pool = rows.template pool<p>();
     for (Index i = 0; i < pool.items(); ++i) {
-      const auto u = inner::next_rate(pool, i, world);
+      auto u = inner::next_rate(pool, i, world);
+      if constexpr (middle_contacts && ContactLaw<Law>) set_zero(u);
       pool.lambda[i].setZero();
       pool.d[i].setZero();
       for (int k = 0; k < Law::rows; ++k) {
@@ -106,7 +108,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   own.lambda.resize_like(rows);
   own.d.resize_like(rows);
   exchange();
-  make_position_bias(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
+  make_position_bias<inner::has_middle_contacts<typename Step::Policies>>(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
   step.W.reset(rows);
   inner::PositionLaws<typename Step::Laws, typename Step::Scalar, inner::needs_of<std::remove_cvref_t<decltype(step.solver())>>> book;
   book.show(step.W, rows);
