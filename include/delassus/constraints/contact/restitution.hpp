@@ -8,8 +8,8 @@
 
 namespace delassus {
 
-/// u_n⁺ ≥ −e u_n⁻ for a contact that closes within the step, u_n⁻ at its start. `NewtonImpact` makes the
-/// bias, and keeps the impulses of each island from adding energy (`guard_energy`).
+/// A contact that closes within the step parts with e of the speed that it has at the surface: see `rebound`. `NewtonImpact`
+/// makes the bias, and keeps the impulses of each island from adding energy (`EnergyGuard`).
 template <class Law = inner::Absent>
 struct Restitution {
   using wraps = Law;
