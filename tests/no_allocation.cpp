@@ -9,6 +9,14 @@ TEST_CASE("a warm step of ten jointed boxes with contacts allocates nothing") {
   REQUIRE(allocations_of_jointed_stack(WithFilter{NativeCollision{}}) == 0);
 }
 
+TEST_CASE("a warm step of balls that bounce, land and part allocates nothing") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.5}, 0.999}}}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  for (int i = 0; i < 20; ++i) set.add({.position = {0.5 * i, 0, 1 + 0.1 * i}, .mass = 1.0, .shape = Sphere{0.1}});
+  CHECK(allocations_of(loop, 1500, 1500) == 0);
+}
+
 TEST_CASE("a warm step of a chain of joints allocates nothing") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}, DistanceJoint{}}};
   auto& set = rigid_bodies(loop);

@@ -27,8 +27,15 @@ struct Bounces {
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
   Array<Index> blocks;      ///< of each island; empty: nobody asked
 
-  void begin(std::size_t pools, double h) {
-    for (auto* list : {&added, &returned}) list->clear(), list->resize(pools);
+  template <class AllRows>
+  void begin(const AllRows& all, double h) {
+    std::size_t items = 0;
+    for (auto* list : {&added, &returned}) list->clear(), list->resize(all.size());
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      items += std::size_t(all[p].items());
+      returned[p].reserve(all[p].phi->capacity());  // now, and not when a row lands
+    }
+    blocks.reserve(items);
     pasts.begin(h);
     rows.clear();
     blocks.clear();
@@ -86,7 +93,7 @@ struct BouncingRow {
 template <class Laws, class Rows, class T>
 void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free,
                      const T* const* v, double h, double theta, Bounces<T>& bounces) {
-  bounces.begin(rows.size(), h);
+  bounces.begin(rows, h);
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const auto& pool = rows[p];
     const auto& law = *laws[p].law;
