@@ -4,6 +4,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/if_it_has.hpp>
+#include <delassus/rows/theta.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/correct.hpp>
@@ -17,7 +18,6 @@
 #include <delassus/step/notify.hpp>
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stages_without_constraints.hpp>
-#include <delassus/rows/theta.hpp>
 #include <delassus/step/warm_start.hpp>
 
 #include <algorithm>
