@@ -92,6 +92,7 @@ class CollisionEngine {
         if (!boxes_[i].is_empty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
           add_job(colliders, plane, i, filter);
     inner::sort(jobs_);
+    if constexpr (inner::KnowsWhoPushed<Filter>) apart_.reserve(jobs_.capacity()), asked_.reserve(jobs_.capacity());
     report_.pairs = Index(jobs_.size());
   }
 
