@@ -221,6 +221,13 @@ class Memory {
   // ---------------------------------------------------------------------------------------------------
   void part(Array<inner::RestingPair>& pairs) { each_pair(pairs); }
   void part(Array<PairMemory>& pairs) { each_pair(pairs); }
+  void part(Array<PairImpact>& impacts) {
+    if (pairs_.reads() ? !pairs_.is_next("impacts") : impacts.empty()) return;
+    Memory to(pairs_, pairs_);
+    pairs_.line("impacts"), pairs_.size(impacts);
+    for (PairImpact& i : impacts) to.text_(i.pair), to.part(i.impact);
+  }
+  void part(RememberedImpact& i) { part(i.normal), part(i.arm_a), part(i.arm_b), text_(i.id), text_(i.is_there); }
   template <class Pair>
   void each_pair(Array<Pair>& pairs) {
     if (pairs_.reads() && pairs_.is_at_end()) return;
@@ -229,9 +236,10 @@ class Memory {
     for (Pair& p : pairs) to.pair(p);
   }
   void pair(PairMemory& p) {
-    int owner = int(p.owner);
+    int owner = int(p.owner) + (p.impact.is_there ? 4 : 0);
     text_.line("pair"), text_(p.pair), part(p.normal), text_(owner), text_(p.count);
-    p.owner = inner::NormalOwner(owner);
+    p.owner = inner::NormalOwner(owner & 3);
+    if (owner & 4) part(p.impact);
     for (int k = 0; k < p.count; ++k)
       text_(p.point[k].name), text_(p.point[k].id), part(p.point[k].local_a), part(p.point[k].local_b);
   }

@@ -23,6 +23,12 @@ struct RememberedImpact {
   bool is_there = false;
 };
 
+/// One of them, of a pair that may have several.
+struct PairImpact {
+  std::uint64_t pair = 0;
+  RememberedImpact impact;
+};
+
 struct PairMemory {
   static constexpr int capacity = 8;
   std::uint64_t pair = 0;

@@ -144,10 +144,6 @@ class SurfacePairs {
     double distance;
     Vec3 normal;
   };
-  struct PairImpact {
-    std::uint64_t pair;
-    RememberedImpact impact;
-  };
   struct Asked {
     std::uint64_t pair;
     double reach;  ///< m
