@@ -100,7 +100,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND void linearize(const WorldView<double>&, AllLaws<double>, AllRows<double>);                                                \
   KIND double worst_equality(AllLaws<double>, AllRows<double>);                                                                   \
   KIND Index row_count(AllRows<double>);                                                                                          \
-  KIND void add_restitution(const WorldView<double>&, AllLaws<double>, AllRows<double>, const Islands<double>&, const double* const*, const double* const*, double, double, Bounces<double>&); \
+  KIND void add_restitution(const WorldView<double>&, AllLaws<double>, AllRows<double>, const Islands<double>&, const double* const*, const double* const*, const std::size_t*, int, double, double, Bounces<double>&); \
   KIND class EnergyGuard<double>;                                                                                                 \
   KIND class inner::CoupledColumns<double>;                                                                                       \
   KIND class inner::NodalRows<double>;                                                                                            \

@@ -4,6 +4,7 @@
 #include <delassus/activity/hand_picked.hpp>
 #include <delassus/activity/inner/dormant.hpp>
 #include <delassus/collision/native_engine.hpp>
+#include <delassus/constraints/bounces.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
 #include <array>
@@ -21,7 +22,7 @@
 //
 //   bodies    of each set: x, q, v of all that are not fixed, and whether they are awake
 //   time      h, h of the last step, start, steps: the warm start is scaled with h/h_last
-//   bounces   of restitution: rows of the last step that may bounce; absent where there are none
+//   bounces   of restitution: rows of the last step that may bounce, velocities of the last two; may be absent where e = 0
 //   past      of GeneralizedAlpha, Newmark and Bdf2: two accelerations a point, and x and v as the last step
 //   left them shared    of JointByJoint: whether joints share bodies joints    of each law: by place whether
 //   there is one (2: asleep), its impulse, whether that is no start, its angle or
@@ -189,14 +190,15 @@ class Memory {
   template <std::derived_from<Materials> M>
   void part(M&) {}
 
-  void part(RowPasts& pasts) {
-    if (text_.reads() ? !text_.is_next("bounces") : pasts.empty()) return;
+  template <class T>
+  void part(Bounces<T>& bounces) {
+    if (text_.reads() && !text_.is_next("bounces")) return;
     text_.line("bounces");
-    pasts.memory(*this);
+    bounces.memory(*this);
   }
   void part(RowPast& r) {
-    text_.line("bounce"), text_(r.item), text_(r.generations), text_(r.feature), text_(r.row), text_(r.velocity), text_(r.free), text_(r.last),
-        text_(r.acceleration), text_(r.parts), text_(r.impulse);
+    text_.line("bounce"), text_(r.item), text_(r.generations), text_(r.feature), text_(r.row), text_(r.free), text_(r.acceleration),
+        text_(r.parts), text_(r.impulse);
   }
 
   // --- what sleeps
@@ -282,6 +284,11 @@ class Memory {
   }
   template <class E>
   void part(Array<E>& list) {
+    text_.size(list);
+    for (E& e : list) part(e);
+  }
+  template <class E>
+  void part(OwningArray<E>& list) {
     text_.size(list);
     for (E& e : list) part(e);
   }

@@ -24,11 +24,13 @@ struct Bounces {
   OwningArray<Array<T>> added;     ///< to the bias, m/s
   OwningArray<Array<T>> returned;  ///< to the bodies, of what they lost as they landed, J; empty: nothing in this pool
   RowPasts pasts;
+  OwningArray<Array<T>> velocities[2];  ///< of the bodies by set, at the start of the last step and of the one before; NaN: not there
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
   Array<Index> blocks;      ///< of each island; empty: nobody asked
 
   template <class AllRows>
-  void begin(const AllRows& all, double h) {
+  void begin(const AllRows& all, double h, const std::size_t* counts, int sets) {
+    for (auto& list : velocities) make_room(list, counts, std::size_t(sets));
     std::size_t items = 0;
     for (auto* list : {&added, &returned}) list->clear(), list->resize(all.size());
     for (std::size_t p = 0; p < all.size(); ++p) {
@@ -40,11 +42,29 @@ struct Bounces {
     rows.clear();
     blocks.clear();
   }
+  /// The step is over; v is that of its start.
+  void end(const T* const* v) {
+    pasts.end();
+    velocities[1].swap(velocities[0]);
+    for (std::size_t s = 0; s < velocities[0].size(); ++s)
+      for (std::size_t k = 0; k < velocities[0][s].size(); ++k) velocities[0][s][k] = v[s][k];
+  }
+  void memory(auto& archive) { archive(pasts, velocities[0], velocities[1]); }
   /// Whether nothing else that moves is in the island of the item.
   bool is_alone(const Islands<T>& islands, int p, Index i) {
     if (blocks.empty()) islands.count_blocks(blocks);
     const Index island = islands.island_of(p, i);
     return island >= 0 && blocks[island] == 1;
+  }
+
+ private:
+  static void make_room(OwningArray<Array<T>>& list, const std::size_t* counts, std::size_t sets) {
+    list.resize(sets);
+    for (std::size_t s = 0; s < sets; ++s) {
+      const std::size_t there = list[s].size();
+      list[s].resize_for_overwrite(counts[s]);
+      for (std::size_t k = there; k < counts[s]; ++k) list[s][k] = std::numeric_limits<T>::quiet_NaN();
+    }
   }
 };
 
@@ -52,20 +72,19 @@ namespace inner {
 
 /// A row with e > 0 in this step and in the last one, opening positive.
 struct BouncingRow {
-  double gap, velocity, free;  ///< free: the velocity without impulses
-  double h, last_h, theta;
+  double gap, velocity, free;      ///< free: the velocity without impulses
+  double last_velocity, earlier;   ///< H v of the last step and of the one before
+  double h, last_h, earlier_h, theta;
   const RowPast* past;  ///< null: it was not there
 
-  /// Of joints and neighbours the free motion knows nothing, the last two velocities do. Where the row pushed between them, this is
-  /// what it was before. Infinite of a new row.
-  double last_acceleration() const {
-    if (!past) return std::numeric_limits<double>::infinity();
-    return past->impulse > 0 ? past->acceleration : (velocity - past->velocity) / last_h;
-  }
-  /// The smaller one of the last two: an impact elsewhere, or a host who sets a velocity, is in one of them alone.
-  double acceleration(double last) const {
-    if (!past) return (free - velocity) / h;
-    return std::abs(past->last) < std::abs(last) ? past->last : last;
+  /// Of joints and neighbours the free motion knows nothing, the last velocities of the bodies do. Of two accelerations the smaller
+  /// one holds: an impact elsewhere, or a host who sets a velocity, is in one of them alone. Where the row pushed, this is what it
+  /// was before.
+  double acceleration() const {
+    if (past && past->impulse > 0) return past->acceleration;
+    const double last = (velocity - last_velocity) / last_h, before = (last_velocity - earlier) / earlier_h;
+    if (!std::isfinite(last)) return (free - velocity) / h;
+    return std::abs(before) < std::abs(last) ? before : last;
   }
   /// For θ = 1, v is the velocity of the middle of the last step, and moves the row. For θ = ½ it is that of the end, and the mean
   /// with u moves the row.
@@ -92,23 +111,25 @@ struct BouncingRow {
 /// landing is an impact of its own, which throws the boxes out of line.
 template <class Laws, class Rows, class T>
 void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free,
-                     const T* const* v, double h, double theta, Bounces<T>& bounces) {
-  bounces.begin(rows, h);
+                     const T* const* v, const std::size_t* counts, int sets, double h, double theta, Bounces<T>& bounces) {
+  bounces.begin(rows, h, counts, sets);
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const auto& pool = rows[p];
     const auto& law = *laws[p].law;
     Array<T>&added = bounces.added[p], &returned = bounces.returned[p];
     added.assign_zeros(pool.phi->size());
     if (!law.restitution) continue;
-    T free[most_rows], start[most_rows];
+    T free[most_rows], start[most_rows], last[most_rows], earlier[most_rows];
     for (Index i = 0; i < pool.items(); ++i) {
       const double restitution = law.restitution(laws[p].pool, i);
       if (!(restitution > 0)) continue;
       const ItemName name = law.name(laws[p].pool, world, i);
-      for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = T(0);
+      for (int k = 0; k < pool.rows; ++k) free[k] = start[k] = last[k] = earlier[k] = T(0);
       for (int s = 0; s < pool.sets; ++s) {
         pool.set[s].products->rate(pool.set[s], i, v_free[s], free, free);
         pool.set[s].products->rate(pool.set[s], i, v[s], start, start);
+        pool.set[s].products->rate(pool.set[s], i, bounces.velocities[0][std::size_t(s)].data(), last, last);
+        pool.set[s].products->rate(pool.set[s], i, bounces.velocities[1][std::size_t(s)].data(), earlier, earlier);
       }
       for (int k = 0; k < pool.rows; ++k) {
         const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
@@ -118,11 +139,11 @@ void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Isla
         const double plain = sign * double((*pool.bias)[row]);
         const std::uint32_t place = std::uint32_t(most_rows) * std::uint32_t(p) + std::uint32_t(k);
         const RowPast* const past = bounces.pasts.find(name, place);
-        const inner::BouncingRow is{phi, sign * double(start[k]), sign * double(free[k]), h, bounces.pasts.last_h(), theta, past};
+        const inner::BouncingRow is{phi,  sign * double(start[k]), sign * double(free[k]), sign * double(last[k]), sign * double(earlier[k]),
+                                     h,    bounces.pasts.last_h(),  bounces.pasts.earlier_h(), theta,  past};
         RowPast& now = bounces.pasts.add(name, place);
         bounces.rows.push_back(row);
-        now.velocity = is.velocity, now.free = is.free;
-        now.last = is.last_acceleration(), now.acceleration = is.acceleration(now.last);
+        now.free = is.free, now.acceleration = is.acceleration();
         double leaves = 0;
         if (past && past->parts > 0) {
           leaves = past->parts + 0.5 * h * std::min(0.0, past->acceleration);

@@ -167,17 +167,21 @@ struct NewtonImpact {
     using T = typename P::Rows::Scalar;
     Bounces<T> bounces;
     Array<T> newton, newton_velocity;
-    void memory(auto& archive) { archive(bounces.pasts); }
+    void memory(auto& archive) { archive(bounces); }
   };
 
   template <class Base>
   struct stages : Base {
     static void make_bias(auto& step) {
       Base::make_bias(step);
+      using T = typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T;
       auto& own = step.template state<NewtonImpact>();
       for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
-      add_restitution(step.view, step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, step.h,
+      using World = std::remove_cvref_t<decltype(step.world())>;
+      std::size_t counts[World::set_count + 1];
+      step.world().each([&](const auto& set, auto s) { counts[s] = set.velocity().size() * (sizeof(set.velocity()[0]) / sizeof(T)); });
+      add_restitution(step.view, step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, counts, World::set_count, step.h,
                       theta<std::remove_cvref_t<decltype(step.integrator())>>(), own.bounces);
     }
     static void solve_island(auto& step, auto& island) {
@@ -197,7 +201,8 @@ struct NewtonImpact {
       Base::keep_impulses(step);
     }
     static void advance(auto& step) {
-      step.template state<NewtonImpact>().bounces.pasts.end();
+      const inner::BodyVelocities v(std::as_const(step).world());
+      step.template state<NewtonImpact>().bounces.end(v.start);
       Base::advance(step);
     }
   };

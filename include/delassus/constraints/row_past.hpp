@@ -22,8 +22,8 @@ struct ItemName {
 struct RowPast {
   std::uint64_t item, generations;
   std::uint32_t feature, row;  ///< k of pool p: `most_rows` p + k
-  double velocity, free;  ///< at the start of that step, and after it without impulses
-  double last, acceleration;  ///< m/s² or rad/s², without its own impulse: in the last step, and that which holds
+  double free;          ///< its velocity without impulses
+  double acceleration;  ///< m/s² or rad/s², without its own impulse
   double parts;           ///< > 0: it landed, and parts with this speed; see `Rebound`
   double impulse;         ///< |λ|, N·s
 };
@@ -34,6 +34,7 @@ class RowPasts {
   /// The rows of a step of h seconds are made; anew, where it is solved again.
   void begin(double h) {
     if (!(last_h_ > 0)) last_h_ = h;
+    if (!(earlier_h_ > 0)) earlier_h_ = h;
     h_ = h;
     now_.clear();
     now_.reserve(before_.capacity());
@@ -45,10 +46,11 @@ class RowPasts {
     if (!inner::is_sorted(now_.data(), now_.data() + now_.size(), is_before)) inner::sort(now_, is_before);
     before_.swap(now_);
     now_.clear();
-    last_h_ = h_;
+    earlier_h_ = last_h_, last_h_ = h_;
   }
   bool empty() const { return before_.empty(); }  ///< no row was there
   double last_h() const { return last_h_; }  ///< of the step of the past, s
+  double earlier_h() const { return earlier_h_; }  ///< of the step before that one
   /// Null: the row was not there.
   const RowPast* find(const ItemName& name, std::uint32_t row) {
     const RowPast *const first = before_.data(), *const last = first + before_.size();
@@ -61,13 +63,13 @@ class RowPasts {
     return at;
   }
   RowPast& add(const ItemName& name, std::uint32_t row) {
-    now_.push_back({name.item, name.generations, name.feature, row, 0, 0, 0, 0, 0, 0});
+    now_.push_back({name.item, name.generations, name.feature, row, 0, 0, 0, 0});
     return now_.back();
   }
   /// The rows of this step, in the order in which they were added.
   Array<RowPast>& now() { return now_; }
 
-  void memory(auto& archive) { archive(before_, last_h_); }
+  void memory(auto& archive) { archive(before_, last_h_, earlier_h_); }
 
  private:
   struct Name {
@@ -86,7 +88,7 @@ class RowPasts {
   };
 
   Array<RowPast> before_, now_;
-  double h_ = 0, last_h_ = 0;
+  double h_ = 0, last_h_ = 0, earlier_h_ = 0;
   std::size_t next_ = 0;  ///< behind the one that was found last
 };
 
