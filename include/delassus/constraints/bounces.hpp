@@ -72,8 +72,8 @@ namespace inner {
 
 /// A row with e > 0 in this step and in the last one, opening positive.
 struct BouncingRow {
-  double gap, velocity, free;      ///< free: the velocity without impulses
-  double last_velocity, earlier;   ///< H v of the last step and of the one before
+  double gap, velocity, free;     ///< free: the velocity without impulses
+  double last_velocity, earlier;  ///< H v of the last step and of the one before
   double h, last_h, earlier_h, theta;
   const RowPast* past;  ///< null: it was not there
 
@@ -106,12 +106,13 @@ struct BouncingRow {
 
 }  // namespace inner
 
-/// A row with a bound (`RowKind::lower` or `upper`) that closes within the step gets the stronger of what `rebound` says and the
+/// `counts` are the numbers of v by set. A row with a bound (`RowKind::lower` or `upper`) that closes within the step gets the stronger of what `rebound` says and the
 /// push-out speed, never their sum. Rows may land where one body is alone in its island and moves by u (θ = 1). In a tower a
 /// landing is an impact of its own, which throws the boxes out of line.
 template <class Laws, class Rows, class T>
 void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Islands<T>& islands, const T* const* v_free,
-                     const T* const* v, const std::size_t* counts, int sets, double h, double theta, Bounces<T>& bounces) {
+                     const T* const* v, const std::size_t* counts, int sets, double h, double theta,
+                     Bounces<T>& bounces) {
   bounces.begin(rows, h, counts, sets);
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const auto& pool = rows[p];

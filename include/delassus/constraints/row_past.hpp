@@ -18,7 +18,7 @@ struct ItemName {
   std::uint32_t feature = 0;
 };
 
-/// A row in the last step. Velocities in m/s or rad/s, positive where it opens.
+/// A row in the last step, in m/s or rad/s and positive where it opens.
 struct RowPast {
   std::uint64_t item, generations;
   std::uint32_t feature, row;  ///< k of pool p: `most_rows` p + k
