@@ -336,7 +336,7 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
     inner::share_area(pair.area, a.pose, pair.count, out);
   }
   if constexpr (inner::KnowsWhoPushed<Filter>)
-    if (impact.is_there && filter.pushed(job.pair) && !inner::has_turned(a, h, scale) && !inner::has_turned(b, h, scale))
+    if (impact.is_there && filter.pushed(job.pair) && !inner::has_turned(a, h) && !inner::has_turned(b, h))
       finish_impact(a, b, job, impact, pair, first, out);
 }
 

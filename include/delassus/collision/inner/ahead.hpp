@@ -31,10 +31,8 @@ inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, 
   return h * (dot(normal, a.velocity - b.velocity) + spin(a) + spin(b)) >= distance;
 }
 
-/// Whether a body turns so much in a step that its points are elsewhere than an impact of the last one foresaw.
-inline bool has_turned(const Collider& c, double h, double scale) {
-  return c.shape.kind != ShapeKind::sphere && h * norm(c.angular_velocity) * outer_radius(c.shape) > 0.02 * scale;
-}
+/// Whether a body turns so much in a step, by 1e-3, that its points are elsewhere than an impact of the last one foresaw.
+inline bool has_turned(const Collider& c, double h) { return c.shape.kind != ShapeKind::sphere && h * norm(c.angular_velocity) > 1e-3; }
 
 /// How far any of its points may go in the step, m, and at least half the least margin.
 inline double longest_way(const Summary& of, double h, const CollisionSettings& s) {

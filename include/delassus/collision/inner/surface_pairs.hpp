@@ -76,7 +76,7 @@ class SurfacePairs {
         emit(pair, first, out);
       }
       if (!is_plane) hold_core(surface, pair, out);
-      if (filter.pushed(job.pair) && !has_turned(a, h, pair.scale) && !has_turned(b, h, pair.scale)) finish_impact(pair, first, out);
+      if (filter.pushed(job.pair) && !has_turned(a, h) && !has_turned(b, h)) finish_impact(pair, first, out);
     }
     sort_names(first, out);
     return queries;
