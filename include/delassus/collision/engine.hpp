@@ -160,7 +160,7 @@ class CollisionEngine {
       will_meet = is_new && r.distance > settings.contact_distance;
       if (r.distance - settings.contact_distance > inner::touch_share * scale) {
         if (!is_near || is_new) {
-          const inner::Apart apart{job, r.distance - settings.contact_distance - inner::touch_share * scale, now.normal};
+          const inner::Apart apart{job, r.distance - settings.contact_distance - inner::meeting_share * scale, now.normal};
           if (look_ahead(a, b, apart, scale, is_near, h, settings, last, now, out)) return;
         }
       }
@@ -186,7 +186,7 @@ class CollisionEngine {
   bool look_ahead(const Collider& a, const Collider& b, const inner::Apart& apart, double scale, bool is_near, double h,
                   const CollisionSettings& settings, const RestingPair& last, RestingPair& now, std::vector<ContactPoint>& out) {
     if (inner::may_close(a, b, apart.normal, apart.distance, h)) {
-      const double target = settings.contact_distance + inner::touch_share * scale;
+      const double target = settings.contact_distance + inner::meeting_share * scale;
       const inner::Impact hit = inner::time_of_impact(a, b, h, scale, target);
       if (hit.is_now) return false;
       if (hit.is_found) {
@@ -220,9 +220,9 @@ class CollisionEngine {
   }
   /// Of an impact that two rows of different normals share, the old one stops what it has left of the approach.
   void finish_impact(const Collider& a, const Collider& b, const Job& job, const RememberedImpact& impact, const RestingPair& now,
-                     std::size_t first, std::vector<ContactPoint>& out) {
+                     double h, std::size_t first, std::vector<ContactPoint>& out) {
     if (now.count > 0 && dot(now.normal, impact.normal) > inner::same_normal) return;
-    out.push_back(inner::row_ahead(job, a, b, impact.arm_a, impact.arm_b, impact.normal, 0, inner::unused(impact.id, first, out)));
+    out.push_back(inner::row_ahead(job, a, b, impact.arm_a, impact.arm_b, impact.normal, 0, h, inner::unused(impact.id, first, out)));
     sort_last(int(out.size() - first), out);
   }
   /// Looks for pairs of the colliders that go farther than `detect` took into account.
@@ -337,7 +337,7 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
   }
   if constexpr (inner::KnowsWhoPushed<Filter>)
     if (impact.is_there && filter.pushed(job.pair) && !inner::has_turned(a, h) && !inner::has_turned(b, h))
-      finish_impact(a, b, job, impact, pair, first, out);
+      finish_impact(a, b, job, impact, pair, h, first, out);
 }
 
 template <class Kernel, class Broad>
@@ -354,7 +354,7 @@ bool CollisionEngine<Kernel, Broad>::meet(const Collider& a, const Collider& b, 
   now.normal = hit.a.rotation * r.normal;
   const std::size_t first = out.size();
   inner::name_points(patch_, last, b_in_a, r.normal, scale, settings.max_points, first, out, now, [&](int i, std::uint32_t id) {
-    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, id));
+    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, h, id));
   });
   if (now.count == 0) return false;
   now.impact = impact_of(a, b, now, out);
@@ -419,7 +419,7 @@ void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> col
     const Collider &a = colliders[p.job.a], &b = colliders[p.job.b];
     if (!inner::may_close(a, b, p.normal, p.distance, h)) return false;
     const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale);
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, settings.contact_distance + inner::touch_share * scale);
+    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, settings.contact_distance + inner::meeting_share * scale);
     if (!hit.is_found) return false;
     RestingPair& now = memory_of(p.job.pair);
     const RestingPair last = now;

@@ -15,6 +15,8 @@ namespace delassus::inner {
 
 /// Two bodies touch when they are nearer than this share of their size.
 inline constexpr double touch_share = 1e-4;
+/// Two bodies meet when they come nearer than that.
+inline constexpr double meeting_share = 1e-6;
 /// Cosine of the angle, 4.5e-5, within which two normals count as one.
 inline constexpr double same_normal = 1 - 1e-9;
 
@@ -27,8 +29,7 @@ struct Apart {
 
 /// False where the plane between the two, or one that is nearer to both, proves that they stay apart in the step.
 inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, double distance, double h) {
-  const auto spin = [](const Collider& c) { return is_zero(c.angular_velocity) ? 0.0 : norm(c.angular_velocity) * outer_radius(c.shape); };
-  return h * (dot(normal, a.velocity - b.velocity) + spin(a) + spin(b)) >= distance;
+  return h * (dot(normal, a.velocity - b.velocity) + turning_speed(a) + turning_speed(b)) >= distance;
 }
 
 /// Whether a body turns so much in a step, by 1e-3, that its points are elsewhere than an impact of the last one foresaw.
@@ -51,21 +52,24 @@ inline Aabb box_of_way(const Collider& c, const Summary& of, double h, const Col
   return box.extend(now).extend(Aabb(Vec3(now.min() + h * c.velocity), Vec3(now.max() + h * c.velocity)));
 }
 
-/// A row at a point of both that lets them close in by the gap, with the arms that the point has then.
+/// A row that lets the points at these arms close in by the gap within h s. It acts at one point for both bodies, and what their turns
+/// add there is taken off the gap.
 inline ContactPoint row_ahead(const PairJob& job, const Collider& a, const Collider& b, const Vec3& arm_a, const Vec3& arm_b, const Vec3& n,
-                              double gap, std::uint32_t name) {
+                              double gap, double h, std::uint32_t name) {
   const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b,
              middle = !a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b));
-  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * gap * n, .point_b = middle + 0.5 * gap * n, .normal = n, .gap = gap, .pair = job.pair, .feature = name};
+  const double added = dot(n, cross(b.angular_velocity, Vec3(middle - on_b)) - cross(a.angular_velocity, Vec3(middle - on_a)));
+  const double way = std::max(gap - h * added, 0.0);
+  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * way * n, .point_b = middle + 0.5 * way * n, .normal = n, .gap = way, .pair = job.pair, .feature = name};
 }
 
 /// The row of a point p of the patch, in the frame of A, that the two have where they meet with the world normal n.
 inline ContactPoint impact_row(const PairJob& job, const Collider& a, const Collider& b, const Impact& hit, const PatchPoint& p,
-                               const Vec3& n, double contact_distance, std::uint32_t name) {
+                               const Vec3& n, double contact_distance, double h, std::uint32_t name) {
   const Vec3 arm_a = hit.a.to_world(p.a) - hit.a.position, arm_b = hit.a.to_world(p.b) - hit.b.position;
   const double closing = dot(n, a.velocity + cross(a.angular_velocity, arm_a) - b.velocity - cross(b.angular_velocity, arm_b));
   const double gap = std::max(hit.time * closing, 0.0) + std::max(p.gap - contact_distance, 0.0);
-  return row_ahead(job, a, b, arm_a, arm_b, n, gap, name);
+  return row_ahead(job, a, b, arm_a, arm_b, n, gap, h, name);
 }
 
 /// Whether a body may go farther in a step than the ball of half its thickness: an impulse beside its middle would turn it and

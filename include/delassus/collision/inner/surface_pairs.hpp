@@ -243,7 +243,7 @@ class SurfacePairs {
       const RememberedImpact& impact = at->impact;
       const auto goes_on = [&](const ContactPoint& c) { return dot(pair.a.key < pair.b.key ? c.normal : Vec3(-c.normal), impact.normal) > same_normal; };
       if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), goes_on)) continue;
-      add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, unused(impact.id, first, out)), out);
+      add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, pair.h, unused(impact.id, first, out)), out);
     }
   }
   static void add(const Pair& pair, const ContactPoint& c, std::vector<ContactPoint>& out) {
@@ -366,7 +366,7 @@ class SurfacePairs {
   }
   /// The row of a point of the place of impact.
   ContactPoint ahead(const Pair& pair, const PatchPoint& p, const Vec3& n, std::uint32_t id) const {
-    return impact_row(pair.job, pair.a, pair.b, hit_, p, hit_.a.rotation * n, pair.settings.contact_distance, id);
+    return impact_row(pair.job, pair.a, pair.b, hit_, p, hit_.a.rotation * n, pair.settings.contact_distance, pair.h, id);
   }
   /// Whether the plane of the normal was apart and is kept because it will be met.
   bool will_meet(const Vec3& n) const {

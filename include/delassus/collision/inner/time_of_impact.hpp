@@ -44,6 +44,12 @@ inline double core_of_motion(const Shape& s) {
   }
 }
 
+/// No point of the surface goes faster by the turn alone, m/s. A ball that turns stays where it is.
+inline double turning_speed(const Collider& c) {
+  if (c.shape.kind == ShapeKind::sphere || is_zero(c.angular_velocity)) return 0;
+  return norm(c.angular_velocity) * outer_radius(c.shape);
+}
+
 struct Impact {
   bool is_found = false;
   bool is_now = false;  ///< within the target from the start: not found, but `normal_in_a` holds
@@ -62,8 +68,7 @@ struct Impact {
 template <class Distance>
 Impact time_of_impact(const Collider& a, const Collider& b, double h, double target, const Distance& distance) {
   Impact hit;
-  const auto spin = [](const Collider& c) { return norm(c.angular_velocity) * outer_radius(c.shape); };
-  const double turning = spin(a) + spin(b);
+  const double turning = turning_speed(a) + turning_speed(b);
   Vec3 guess = zero<Vec3>();
   for (int look = 0; look < 200; ++look) {
     hit.a = pose_after(a, hit.time);
