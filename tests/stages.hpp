@@ -21,9 +21,11 @@ void solve_by_stages(Loop& loop, double h) {
   auto& step = loop.data();
   stage::begin(step, h);
   stage::detect(step);
-  linearize_to_build(step);
-  stage::solve(step);
-  stage::correct(step);
+  do {
+    linearize_to_build(step);
+    stage::solve(step);
+    stage::correct(step);
+  } while (stage::find_missed(step));
 }
 
 template <class Loop>

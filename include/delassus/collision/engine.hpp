@@ -142,6 +142,7 @@ class CollisionEngine {
     now = {};
     now.pair = job.pair;
     now.owner = last.owner;
+    if constexpr (!looks_ahead) now.impact = last.impact;
     ++report_.queries;
 
     double farthest = reach;
@@ -190,7 +191,9 @@ class CollisionEngine {
       const inner::Impact hit = inner::time_of_impact(a, b, h, scale, target);
       if (hit.is_now) return false;
       if (hit.is_found) {
-        if (is_near && dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal) return false;
+        // A row acts at one point for both bodies. Where both move, that of the place of impact is beside one of them.
+        const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal;
+        if (is_near && (is_same || (a.is_movable && b.is_movable))) return false;
         if (meet(a, b, apart.job, hit, scale, h, settings, last, now, out)) return true;
       }
     }
@@ -324,7 +327,7 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
   const std::uint64_t shapes = (of_a.shape * 3 + of_b.shape) * 11 + std::uint64_t(settings.max_points);
   const RememberedImpact impact = pair.impact;
   const std::size_t first = out.size();
-  pair.impact.is_there = false;
+  if constexpr (inner::KnowsWhoPushed<Filter>) pair.impact.is_there = false;
   Vec3 n;
   if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n)) {
     collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, filter, out);
@@ -422,6 +425,11 @@ void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> col
     const inner::Impact hit = inner::time_of_impact(a, b, h, scale, settings.contact_distance + inner::meeting_share * scale);
     if (!hit.is_found) return false;
     RestingPair& now = memory_of(p.job.pair);
+    if (a.is_movable && b.is_movable) {
+      const std::size_t known = out.size();
+      collide(colliders, p.job, h, settings, now, NoFilter{}, out);
+      if (out.size() > known) return true;
+    }
     const RestingPair last = now;
     now.count = 0;
     return meet(a, b, p.job, hit, scale, h, settings, last, now, out);

@@ -96,10 +96,8 @@ struct PlainStages : StagesWithoutConstraints {
       step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
       if (book.missed.empty()) return false;
       book.join_missed();
-      auto& said = step.summary;  // of this solve, and not of the one before
-      said.status = take_contacts(step) > 0 ? Status::unclaimed_contact : Status::converged;
-      said.residual = said.natural_map_error = 0;
-      said.contacts = Index(book.points.size());
+      take_contacts(step);
+      step.summary.contacts = Index(book.points.size());
       step.last_h = step.h;  // the impulses that it starts from are of this step
       return true;
     }

@@ -170,7 +170,8 @@ class SurfacePairs {
         const Vec3 n = pair.a.pose.rotation * p.normal;
         const ApartTriangle apart{pair.job.pair, p.triangle, p.point.gap - touch, n};
         const Impact hit = impact_on(surface, pair, apart);
-        stays = is_near && (hit.is_now || (hit.is_found && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
+        const bool do_both_move = pair.a.is_movable && pair.b.is_movable;  // as CollisionEngine does
+        stays = is_near && (hit.is_now || (hit.is_found && (do_both_move || dot(hit.a.rotation * hit.normal_in_a, n) > same_normal)));
         if (!stays) apart_.push_back(apart);
         if (!stays && hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
       }
