@@ -51,6 +51,7 @@ struct Seamless {
                          const Filter& filter = {}) {
     CollisionReport report = backend.detect(colliders, h, contacts, filter);
     leave_out_seams(colliders, contacts);
+    if constexpr (inner::KnowsWhoPushed<Filter>) known_ = contacts;
     report.points = Index(contacts.size());
     return report;
   }
@@ -59,10 +60,22 @@ struct Seamless {
     requires inner::DetectsMissed<Backend, Filter>
   {
     backend.detect_missed(colliders, h, contacts, filter);
-    leave_out_seams(colliders, contacts);
+    if (contacts.empty()) return;
+    // A seam is seen by what the body lies on.
+    std::vector<ContactPoint>& all = with_known_;
+    all = known_;
+    all.insert(all.end(), contacts.begin(), contacts.end());
+    inner::sort_by_name(all);
+    leave_out_seams(colliders, all);
+    std::erase_if(contacts, [&](const ContactPoint& c) {
+      return std::none_of(all.begin(), all.end(), [&](const ContactPoint& p) { return p.pair == c.pair && p.feature == c.feature; });
+    });
+    known_ = all;
   }
 
  private:
+  std::vector<ContactPoint> known_, with_known_;  ///< of this step
+
   /// The contacts [first, last) of a pair, seen from one of its bodies; normal from `body` to `other`, of the nearest of them the
   /// gap and the point on `other`.
   struct Side {

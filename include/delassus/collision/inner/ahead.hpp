@@ -16,7 +16,7 @@ namespace delassus::inner {
 /// Two bodies touch when they are nearer than this share of their size.
 inline constexpr double touch_share = 1e-4;
 /// Two bodies meet when they come nearer than that.
-inline constexpr double meeting_share = 1e-6;
+inline constexpr double meeting_share = 1e-4;
 /// Cosine of the angle, 4.5e-5, within which two normals count as one.
 inline constexpr double same_normal = 1 - 1e-9;
 
