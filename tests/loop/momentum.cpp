@@ -3,6 +3,8 @@
 #include "catch.hpp"
 #include "stages.hpp"
 
+#include <delassus/schemes/collisions_first.hpp>
+
 namespace momentum_tests {
 
 using namespace scenes;
@@ -56,9 +58,12 @@ TEST_CASE("contacts and joints keep momentum and angular momentum after any numb
     }
 }
 
-// Three hundred steps of kicks and turns: 1e-15 of the size each, added up.
-TEST_CASE("a cluster of bodies that collide with real geometry keeps momentum over many steps") {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+// Three hundred steps of kicks and turns: 1e-15 of the size each, added up. Bodies that meet elsewhere than at their nearest points
+// are pushed each at its own, and what this adds to the angular momentum is taken back when they touch, but for 1e-4 of their size, 1 m,
+// at which they count as touching. CollisionsFirst pushes at one point always.
+template <class... P>
+void keep_momentum_in_a_cluster(double share, const P&... policies) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, policies...};
   auto& set = rigid_bodies(loop);
   set.gravity.setZero();
   std::mt19937 random(2);
@@ -75,7 +80,11 @@ TEST_CASE("a cluster of bodies that collide with real geometry keeps momentum ov
   for (int n = 0; n < 300; ++n) contacts = std::max(contacts, loop.step(0.01).contacts);
   REQUIRE(contacts > 20);
   REQUIRE((momentum(set) - p).norm() <= 1e-13 * size);
-  REQUIRE((angular_momentum(set) - l).norm() <= 1e-12 * size);
+  REQUIRE((angular_momentum(set) - l).norm() <= share * size);
+}
+TEST_CASE("a cluster of bodies that collide with real geometry keeps momentum over many steps") {
+  keep_momentum_in_a_cluster(1e-4);
+  keep_momentum_in_a_cluster(1e-12, CollisionsFirst{});
 }
 
 }  // namespace momentum_tests

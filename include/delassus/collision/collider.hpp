@@ -60,6 +60,9 @@ struct ContactPoint {
   std::uint32_t feature = 0;  ///< names the point within its pair, kept from step to step
   double area = 0;            ///< m², of the faces that touch what this point stands for; 0: no more than itself
   Vec3 middle = zero<Vec3>();  ///< of that, on average, m: its place where friction brakes a spin
+  /// From the point of A to the point of B that will touch within the step, m, about `point()`: the impulse acts on each body at its own
+  /// point. Zero where it acts on both at `point()`.
+  Vec3 travel = zero<Vec3>();
 
   /// Between the witnesses.
   Vec3 point() const { return 0.5 * (point_a + point_b); }
@@ -68,6 +71,7 @@ struct ContactPoint {
     std::swap(a, b);
     std::swap(point_a, point_b);
     normal = -normal;
+    travel = -travel;
   }
 };
 

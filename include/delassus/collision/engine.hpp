@@ -92,6 +92,7 @@ class CollisionEngine {
         if (!boxes_[i].is_empty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
           add_job(colliders, plane, i, filter);
     inner::sort(jobs_);
+    add_jobs_of_impacts(colliders, filter);
     if constexpr (inner::KnowsWhoPushed<Filter>) apart_.reserve(jobs_.capacity()), asked_.reserve(jobs_.capacity());
     report_.pairs = Index(jobs_.size());
   }
@@ -119,6 +120,27 @@ class CollisionEngine {
     if (!may_meet(x, y) || !filter.lets(pair)) return;
     if (x.key > y.key) std::swap(a, b);
     jobs_.push_back({pair, a, b});
+  }
+
+  /// Fast bodies that met in the last step may be far from each other now: what is left of their impact is due.
+  template <class Filter>
+  void add_jobs_of_impacts(inner::Slice<const Collider> colliders, const Filter& filter) {
+    const std::size_t known = jobs_.size();
+    const auto place_of = [&](std::uint32_t key) {
+      return Index(std::find_if(colliders.begin(), colliders.end(), [&](const Collider& c) { return c.key == key; }) - colliders.begin());
+    };
+    for (const RestingPair& m : memory_) {
+      if (!m.impact.is_there) continue;
+      if constexpr (inner::KnowsWhoPushed<Filter>)
+        if (!filter.pushed(m.pair)) continue;
+      const Job *const end = jobs_.data() + known, *const at = inner::lower_bound(jobs_.data(), jobs_.data() + known, Job{m.pair, 0, 0});
+      if (at != end && at->pair == m.pair) continue;
+      const Index a = place_of(std::uint32_t(m.pair >> 32)), b = place_of(std::uint32_t(m.pair));
+      const bool are_there = a < Index(colliders.size()) && b < Index(colliders.size());
+      if (are_there && !(boxes_[a].is_empty() && !is_half_space(colliders[a])) && !(boxes_[b].is_empty() && !is_half_space(colliders[b])))
+        add_job(colliders, a, b, filter);
+    }
+    if (jobs_.size() > known) inner::sort(jobs_);
   }
 
   /// Gives every pair of this step its place in the memory. Mostly the pairs are those of the last one, and
@@ -191,9 +213,8 @@ class CollisionEngine {
       const inner::Impact hit = inner::time_of_impact(a, b, h, scale, target);
       if (hit.is_now) return false;
       if (hit.is_found) {
-        // A row acts at one point for both bodies. Where both move, that of the place of impact is beside one of them.
         const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal;
-        if (is_near && (is_same || (a.is_movable && b.is_movable))) return false;
+        if (is_near && is_same) return false;
         if (meet(a, b, apart.job, hit, scale, h, settings, last, now, out)) return true;
       }
     }
@@ -216,16 +237,16 @@ class CollisionEngine {
   /// The impact that a pair's last contacts foresee.
   static RememberedImpact impact_of(const Collider& a, const Collider& b, const RestingPair& pair, const std::vector<ContactPoint>& out) {
     const Vec3 n = pair.normal;
-    Vec3 middle = zero<Vec3>();
+    Vec3 middle = zero<Vec3>(), half = zero<Vec3>();
     const ContactPoint* const first = out.data() + out.size() - pair.count;
-    for (int k = 0; k < pair.count; ++k) middle += first[k].point() / double(pair.count);
-    return {n, middle - a.pose.position, middle - b.pose.position, first->feature, pair.count > 0};
+    for (int k = 0; k < pair.count; ++k) middle += first[k].point() / double(pair.count), half += 0.5 * first[k].travel / double(pair.count);
+    return {n, middle - half - a.pose.position, middle + half - b.pose.position, first->feature, pair.count > 0};
   }
   /// Of an impact that two rows of different normals share, the old one stops what it has left of the approach.
   void finish_impact(const Collider& a, const Collider& b, const Job& job, const RememberedImpact& impact, const RestingPair& now,
-                     double h, std::size_t first, std::vector<ContactPoint>& out) {
+                     std::size_t first, std::vector<ContactPoint>& out) {
     if (now.count > 0 && dot(now.normal, impact.normal) > inner::same_normal) return;
-    out.push_back(inner::row_ahead(job, a, b, impact.arm_a, impact.arm_b, impact.normal, 0, h, inner::unused(impact.id, first, out)));
+    out.push_back(inner::row_ahead(job, a, b, impact.arm_a, impact.arm_b, impact.normal, 0, inner::unused(impact.id, first, out)));
     sort_last(int(out.size() - first), out);
   }
   /// Looks for pairs of the colliders that go farther than `detect` took into account.
@@ -340,7 +361,7 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
   }
   if constexpr (inner::KnowsWhoPushed<Filter>)
     if (impact.is_there && filter.pushed(job.pair) && !inner::has_turned(a, h) && !inner::has_turned(b, h))
-      finish_impact(a, b, job, impact, pair, h, first, out);
+      finish_impact(a, b, job, impact, pair, first, out);
 }
 
 template <class Kernel, class Broad>
@@ -357,7 +378,7 @@ bool CollisionEngine<Kernel, Broad>::meet(const Collider& a, const Collider& b, 
   now.normal = hit.a.rotation * r.normal;
   const std::size_t first = out.size();
   inner::name_points(patch_, last, b_in_a, r.normal, scale, settings.max_points, first, out, now, [&](int i, std::uint32_t id) {
-    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, h, id));
+    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, id));
   });
   if (now.count == 0) return false;
   now.impact = impact_of(a, b, now, out);
@@ -426,9 +447,11 @@ void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> col
     if (!hit.is_found) return false;
     RestingPair& now = memory_of(p.job.pair);
     if (a.is_movable && b.is_movable) {
+      // Nearest points, where they are those that meet, have one place for both.
       const std::size_t known = out.size();
       collide(colliders, p.job, h, settings, now, NoFilter{}, out);
-      if (out.size() > known) return true;
+      if (out.size() > known && dot(hit.a.rotation * hit.normal_in_a, now.normal) > inner::same_normal) return true;
+      out.resize(known);
     }
     const RestingPair last = now;
     now.count = 0;

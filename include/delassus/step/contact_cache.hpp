@@ -14,6 +14,7 @@
 #include <delassus/step/contact_memory.hpp>
 #include <delassus/step/contact_result.hpp>
 #include <delassus/step/friction_places.hpp>
+#include <delassus/step/step_report.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -81,7 +82,8 @@ class BasicContactCache {
   };
   Pushed who_pushed() const { return {memory_}; }
 
-  int solves = 0;                    ///< of the step
+  int solves = 0;                    ///< of the step, but the first
+  StepReport report_of_detect;       ///< as the first solve found it
   std::vector<ContactPoint> missed;  ///< pairs that were left out and meet after all
   /// Adds them to the points of the step.
   void join_missed() {
@@ -125,7 +127,8 @@ class BasicContactCache {
                            .pair = p.pair,
                            .feature = p.feature,
                            .material_a = materials_[p.a],
-                           .material_b = materials_[p.b]};
+                           .material_b = materials_[p.b],
+                           .travel = p.travel};
     }
   }
 

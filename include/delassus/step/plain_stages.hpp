@@ -44,7 +44,7 @@ inline constexpr bool asks_who_meets<Step&> = asks_who_meets<Step>;
 
 /// A policy that changes a stage overrides it by name: its `stages<Base>` derives from Base, whose function of that name
 /// it calls or replaces. `step` is the StepData of the loop. A stage asks for its parts by `Stages`, so that those of
-/// policies are called. Bodies advance as they do without constraints.
+/// policies are called.
 struct PlainStages : StagesWithoutConstraints {
   /// Detection leaves pairs out that do not meet by what is known of their motion, and `find_missed` those that meet after all.
   /// A policy that cannot solve a step again says false.
@@ -72,6 +72,7 @@ struct PlainStages : StagesWithoutConstraints {
       const CollisionReport found = Step::Stages::find_contacts(step);
       const Index unclaimed = take_contacts(step);
       report_contacts(found, step.contact_cache.points, unclaimed, step.summary);
+      if constexpr (inner::asks_who_meets<Step>) step.contact_cache.report_of_detect = step.summary;
     }
   }
   /// A collider for each body.
@@ -91,12 +92,17 @@ struct PlainStages : StagesWithoutConstraints {
   static bool find_missed(auto& step) {
     if constexpr (inner::asks_who_meets<decltype(step)>) {
       auto& book = step.contact_cache;
-      if (++book.solves == inner::most_solves) return false;
       book.take_solved_motion(std::as_const(step).world());
       step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
       if (book.missed.empty()) return false;
+      if (++book.solves == inner::most_solves) {
+        step.summary.status = worse(step.summary.status, Status::max_iterations);
+        return false;
+      }
       book.join_missed();
-      take_contacts(step);
+      book.report_of_detect.sweeps = step.summary.sweeps;
+      step.summary = book.report_of_detect;  // what the solve before said is void
+      if (take_contacts(step) > 0) step.summary.status = worse(step.summary.status, Status::unclaimed_contact);
       step.summary.contacts = Index(book.points.size());
       step.last_h = step.h;  // the impulses that it starts from are of this step
       return true;
@@ -168,13 +174,16 @@ struct PlainStages : StagesWithoutConstraints {
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {
     delassus::keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache);
-    inner::note_broken(step.laws(), step.h);
     forget_lost_islands(step.pools.all(), step.law_set.views(), step.contact_cache, step.islands, step.reports);
     step.contact_cache.remember();
   }
 
   static void correct(auto& step) {
     delassus::correct(step.world(), step.arrays.all(), step.W, step.scratch, step.islands, step.reports, step.is_nonfinite);
+  }
+  static void advance(auto& step) {
+    inner::note_broken(step.laws(), step.h);
+    StagesWithoutConstraints::advance(step);
   }
 
  private:

@@ -52,24 +52,21 @@ inline Aabb box_of_way(const Collider& c, const Summary& of, double h, const Col
   return box.extend(now).extend(Aabb(Vec3(now.min() + h * c.velocity), Vec3(now.max() + h * c.velocity)));
 }
 
-/// A row that lets the points at these arms close in by the gap within h s. It acts at one point for both bodies, and what their turns
-/// add there is taken off the gap.
+/// A row that lets the points at these arms, one of each body, close in by the gap within a step.
 inline ContactPoint row_ahead(const PairJob& job, const Collider& a, const Collider& b, const Vec3& arm_a, const Vec3& arm_b, const Vec3& n,
-                              double gap, double h, std::uint32_t name) {
-  const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b,
-             middle = !a.is_movable ? on_b : !b.is_movable ? on_a : Vec3(0.5 * (on_a + on_b));
-  const double added = dot(n, cross(b.angular_velocity, Vec3(middle - on_b)) - cross(a.angular_velocity, Vec3(middle - on_a)));
-  const double way = std::max(gap - h * added, 0.0);
-  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * way * n, .point_b = middle + 0.5 * way * n, .normal = n, .gap = way, .pair = job.pair, .feature = name};
+                              double gap, std::uint32_t name) {
+  const Vec3 on_a = a.pose.position + arm_a, on_b = b.pose.position + arm_b, middle = 0.5 * (on_a + on_b);
+  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * gap * n, .point_b = middle + 0.5 * gap * n, .normal = n, .gap = gap, .pair = job.pair, .feature = name,
+          .travel = on_b - on_a};
 }
 
 /// The row of a point p of the patch, in the frame of A, that the two have where they meet with the world normal n.
 inline ContactPoint impact_row(const PairJob& job, const Collider& a, const Collider& b, const Impact& hit, const PatchPoint& p,
-                               const Vec3& n, double contact_distance, double h, std::uint32_t name) {
+                               const Vec3& n, double contact_distance, std::uint32_t name) {
   const Vec3 arm_a = hit.a.to_world(p.a) - hit.a.position, arm_b = hit.a.to_world(p.b) - hit.b.position;
   const double closing = dot(n, a.velocity + cross(a.angular_velocity, arm_a) - b.velocity - cross(b.angular_velocity, arm_b));
   const double gap = std::max(hit.time * closing, 0.0) + std::max(p.gap - contact_distance, 0.0);
-  return row_ahead(job, a, b, arm_a, arm_b, n, gap, h, name);
+  return row_ahead(job, a, b, arm_a, arm_b, n, gap, name);
 }
 
 /// Whether a body may go farther in a step than the ball of half its thickness: an impulse beside its middle would turn it and
@@ -78,10 +75,13 @@ inline bool flies_by(const Collider& c, double h) {
   return c.is_movable && c.shape.has_volume() && h * top_speed(c) > core_of_motion(c.shape);
 }
 
-/// The row of a middle; names are above all others.
-inline ContactPoint core_row(const PairJob& job, const Collider& core, const Vec3& n, double gap, std::uint32_t which) {
-  const Vec3& middle = core.pose.position;
-  return {.a = job.a, .b = job.b, .point_a = middle - 0.5 * gap * n, .point_b = middle + 0.5 * gap * n, .normal = n, .gap = gap, .pair = job.pair, .feature = 0xfffffff1u + which};
+/// The row of a middle, of A or else of B, whose core has this radius; names are above all others. It does not turn the body that it holds.
+inline ContactPoint core_row(const PairJob& job, const Collider& a, const Collider& b, bool is_a, const Impact& hit, double radius, const Vec3& n,
+                             std::uint32_t which) {
+  const Vec3 touch = is_a ? Vec3(hit.a.position + radius * n) : Vec3(hit.b.position - radius * n);
+  const Vec3 arm_a = is_a ? zero<Vec3>() : Vec3(touch - hit.a.position), arm_b = is_a ? Vec3(touch - hit.b.position) : zero<Vec3>();
+  const double closing = dot(n, a.velocity + cross(a.angular_velocity, arm_a) - b.velocity - cross(b.angular_velocity, arm_b));
+  return row_ahead(job, a, b, arm_a, arm_b, n, std::max(hit.time * closing, 0.0), 0xfffffff1u + which);
 }
 
 /// Holds the middle of such a body by a row, and says whether it was needed. The ball goes without turning.
@@ -97,7 +97,7 @@ inline bool hold_core(const PairJob& job, const Collider& a, const Collider& b, 
   const Vec3 n = hit.a.rotation * hit.normal_in_a;
   const double flight = dot(n, a.velocity - b.velocity);
   if (!(flight > 0) && !hit.is_now) return false;
-  out.push_back(core_row(job, core, n, hit.time * flight, is_a ? 0 : 1));
+  out.push_back(core_row(job, x, y, is_a, hit, radius, n, is_a ? 0 : 1));
   return true;
 }
 

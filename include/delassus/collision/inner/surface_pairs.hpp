@@ -170,8 +170,7 @@ class SurfacePairs {
         const Vec3 n = pair.a.pose.rotation * p.normal;
         const ApartTriangle apart{pair.job.pair, p.triangle, p.point.gap - touch, n};
         const Impact hit = impact_on(surface, pair, apart);
-        const bool do_both_move = pair.a.is_movable && pair.b.is_movable;  // as CollisionEngine does
-        stays = is_near && (hit.is_now || (hit.is_found && (do_both_move || dot(hit.a.rotation * hit.normal_in_a, n) > same_normal)));
+        stays = is_near && (hit.is_now || (hit.is_found && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
         if (!stays) apart_.push_back(apart);
         if (!stays && hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
       }
@@ -233,7 +232,7 @@ class SurfacePairs {
     const double flight = dot(n, pair.a.velocity - core.velocity);
     if (!(flight > 0)) return;
     cores_.push_back(pair.job.pair);
-    add(pair, core_row(pair.job, core, n, first.time * flight, pair.a.key < pair.b.key ? 1 : 0), out);
+    add(pair, core_row(pair.job, pair.a, core, false, first, radius, n, pair.a.key < pair.b.key ? 1 : 0), out);
   }
   /// As CollisionEngine does.
   void finish_impact(const Pair& pair, std::size_t first, std::vector<ContactPoint>& out) {
@@ -244,7 +243,7 @@ class SurfacePairs {
       const RememberedImpact& impact = at->impact;
       const auto goes_on = [&](const ContactPoint& c) { return dot(pair.a.key < pair.b.key ? c.normal : Vec3(-c.normal), impact.normal) > same_normal; };
       if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), goes_on)) continue;
-      add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, pair.h, unused(impact.id, first, out)), out);
+      add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, unused(impact.id, first, out)), out);
     }
   }
   static void add(const Pair& pair, const ContactPoint& c, std::vector<ContactPoint>& out) {
@@ -367,7 +366,7 @@ class SurfacePairs {
   }
   /// The row of a point of the place of impact.
   ContactPoint ahead(const Pair& pair, const PatchPoint& p, const Vec3& n, std::uint32_t id) const {
-    return impact_row(pair.job, pair.a, pair.b, hit_, p, hit_.a.rotation * n, pair.settings.contact_distance, pair.h, id);
+    return impact_row(pair.job, pair.a, pair.b, hit_, p, hit_.a.rotation * n, pair.settings.contact_distance, id);
   }
   /// Whether the plane of the normal was apart and is kept because it will be met.
   bool will_meet(const Vec3& n) const {
@@ -375,10 +374,11 @@ class SurfacePairs {
   }
   void remember_impact(const Pair& pair, std::size_t first, const std::vector<ContactPoint>& out) {
     if (first == out.size()) return;
-    Vec3 middle = zero<Vec3>();
-    for (std::size_t i = first; i < out.size(); ++i) middle += out[i].point() / double(out.size() - first);
-    const Vec3 n = pair.a.key < pair.b.key ? out[first].normal : Vec3(-out[first].normal);
-    next_impacts_.push_back({pair.job.pair, {n, middle - pair.a.pose.position, middle - pair.b.pose.position, out[first].feature, true}});
+    Vec3 middle = zero<Vec3>(), half = zero<Vec3>();
+    for (std::size_t i = first; i < out.size(); ++i) middle += out[i].point() / double(out.size() - first), half += 0.5 * out[i].travel / double(out.size() - first);
+    const double sign = pair.a.key < pair.b.key ? 1 : -1;
+    next_impacts_.push_back({pair.job.pair, {sign * out[first].normal, middle - sign * half - pair.a.pose.position, middle + sign * half - pair.b.pose.position,
+                                             out[first].feature, true}});
   }
 
   Array<SurfaceContact> points_, group_;

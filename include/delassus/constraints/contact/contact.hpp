@@ -39,7 +39,7 @@ Vec3 world_impulse(const Mat3& frame, const Vec<rows, T>& lambda) {
 
 }  // namespace inner
 
-/// u = frame · (v_B − v_A) at the middle of the witnesses, φ_n = gap. The first row is normal, the next two tangent, and those of
+/// u = frame · (v_B − v_A) at the middle of the witnesses, or of each body's own point that will touch, φ_n = gap. The first row is normal, the next two tangent, and those of
 /// a patch are taken `friction_arm` beside; a law with six rows goes on with (t₁, t₂, n) · (ω_B − ω_A). The law inside is solved and asked for what it refines, with
 /// `item.parameters`.
 template <class Law = inner::Absent>
@@ -71,17 +71,17 @@ struct Contact {
 
   void linearize(const Item& item, const auto& world, auto row) const {
     (void)world;
-    const Vec3& point = item.point;
+    const Vec3 half = 0.5 * item.record->travel;
     constexpr int along = inner::rows_along<rows>;
     Mat<along, 3> axes;
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < along; ++j) axes(j, k) = item.frame(j, k);
-    auto a = row.end(item.record->a, point);
+    auto a = row.end(item.record->a, item.point - half);
     const bool is_of_patch = along > 1 && !is_zero(item.record->friction_arm);
     a.along(axes, -1);
     if (is_of_patch) shift(a, item, -1);
     if constexpr (rows > along) turn(a, item.frame, -1);
-    auto b = row.end(item.record->b, point);
+    auto b = row.end(item.record->b, item.point + half);
     b.along(axes, 1);
     if (is_of_patch) shift(b, item, 1);
     if constexpr (rows > along) turn(b, item.frame, 1);

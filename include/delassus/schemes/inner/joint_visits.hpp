@@ -12,7 +12,6 @@
 #include <delassus/schemes/inner/point_visit.hpp>
 #include <delassus/solvers/inner/length_of_island.hpp>
 #include <delassus/solvers/solve_report.hpp>
-#include <delassus/step/drop_constraints.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/notify.hpp>
@@ -270,7 +269,6 @@ void visit_joints(auto& step) {
   if (step.reports.empty()) [[unlikely]] step.reports.emplace_back();
   step.template state<role::Scheme>().run(step.world(), step.laws(), step.stabilisation(), step.h, step.h / step.last_h,
                                           step.scheme(), step.summary, step.reports[0]);
-  inner::note_broken(step.laws(), step.h);
   summarise(step.reports, step.summary);
   step.summary.islands = 1;
   inner::notify<stage::Solve>(step);

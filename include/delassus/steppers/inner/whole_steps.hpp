@@ -5,7 +5,6 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/integrators/integrator.hpp>
 #include <delassus/solvers/solve_report.hpp>
-#include <delassus/step/drop_constraints.hpp>
 #include <delassus/step/notify.hpp>
 #include <delassus/step/plain_step.hpp>
 #include <delassus/step/warm_start.hpp>
@@ -33,7 +32,6 @@ void solve_at_once(auto& step) {
     step.summary.residual = std::max(step.summary.residual, step.reports[0].measure.residual);
     step.summary.islands = 1;
     keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache);
-    note_broken(step.laws(), step.h);
   } else {
     typename std::remove_reference_t<decltype(step)>::Policies::Rows none;
     const SolveReport report = own.solve(step.world(), step.laws(), none, step.integrator(), step.h);
