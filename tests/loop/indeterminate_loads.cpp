@@ -7,6 +7,8 @@
 #include <delassus/constraints/joints/motor.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
+#include <delassus/solvers/gauss_seidel.hpp>
+#include <delassus/solvers/minimum_norm.hpp>
 
 #include "catch.hpp"
 
@@ -116,6 +118,27 @@ TEST_CASE("loads of islands that are not asked are left to the order of sweeps")
   CHECK(first_load(8) == Approx(5 * g / 2).epsilon(0.01));
   CHECK(std::abs(first_load(7) - 5 * g / 2) > 1);
   CHECK(std::abs(first_load(0) - 5 * g / 2) > 1);
+}
+
+// A parcel that slides on two belts: decided by the rule, unless nobody asks it. A box at rest on its four corners is not asked, for its loads
+// move nothing, and MinimumNorm decides them. One ball has one load.
+TEST_CASE("the report counts the loads that no rule decides") {
+  Belts shared(belts_loop()), unshared(belts_loop({.share_loads_up_to = 0}));
+  CHECK(shared.step(1 / 60.).undecided_loads == 0);
+  CHECK(unshared.step(1 / 60.).undecided_loads == unshared.loop.report().contacts);
+  CHECK(unshared.loop.report().contacts >= 4);
+  const auto at_rest = [](auto loop, const Shape& shape, double height) {
+    auto& rigid = bodies<RigidBodies>(loop.world());
+    rigid.add_fixed(HalfSpace{});
+    rigid.add({.position = {0, 0, height}, .mass = 1, .shape = shape});
+    for (int n = 0; n < 9; ++n) loop.step(1 / 60.);
+    return loop.step(1 / 60.).undecided_loads;
+  };
+  const Constraints rough{Contact{Coulomb{.friction = 0.5}}};
+  CHECK(at_rest(AnimationLoop{World{RigidBodies{}}, rough}, Box{1, 1, 1}, 0.5) == 4);
+  CHECK(at_rest(AnimationLoop{World{RigidBodies{}}, rough, GaussSeidel{}}, Box{1, 1, 1}, 0.5) == 4);
+  CHECK(at_rest(AnimationLoop{World{RigidBodies{}}, rough, MinimumNorm{GaussSeidel{}}}, Box{1, 1, 1}, 0.5) == 0);
+  CHECK(at_rest(AnimationLoop{World{RigidBodies{}}, rough}, Sphere{0.5}, 0.5) == 0);
 }
 
 }  // namespace indeterminate_loads_tests

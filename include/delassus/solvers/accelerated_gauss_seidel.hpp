@@ -109,6 +109,7 @@ struct BasicAcceleratedGaussSeidel {
       problem.load(loads.solved_before);
       const int sweeps = report.sweeps;
       report = loads.before;
+      report.are_loads_decided = false;
       report.sweeps = sweeps;
     } else if (report.sweeps < max_iterations &&
                inner::settle_loads(problem, loads, share_loads_up_to, criterion == Criterion::residual && !all_verified ? tolerance : 0, report)) {

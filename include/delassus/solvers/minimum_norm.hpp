@@ -80,7 +80,7 @@ struct MinimumNorm {
     // Conjugate gradients end at 1e-13, a solve may by chance have come closer.
     if (after.residual <=
         std::max({2 * report.measure.residual, after.floor, inner::wanted_residual(solver)}))
-      report.measure = after;
+      report.measure = after, report.are_loads_decided = true;
     else
       problem.load(work.least.solved);
     return report;

@@ -1,6 +1,7 @@
 /// What a solver says of one island.
 #pragma once
 
+#include <delassus/core/index.hpp>
 #include <delassus/core/status.hpp>
 #include <delassus/solvers/measure.hpp>
 
@@ -13,6 +14,8 @@ struct SolveReport {
   Measure measure{};  ///< of the impulses that it left
   int factorizations = 0;  ///< of Newton's method, sweeps not counted
   const char* ended_by = "sweeps";  ///< the stage of the solver that came last
+  bool are_loads_decided = false;  ///< of the impulses that make the same motion these are chosen by a rule, not by the order of sweeps
+  Index undecided_loads = 0;  ///< see `StepReport::undecided_loads`
 };
 
 namespace inner {

@@ -169,7 +169,9 @@ struct PlainStages : StagesWithoutConstraints {
   }
   /// One of them, an `Island`.
   static void solve_island(auto& step, auto& island) {
-    step.reports[island.island()] = step.solver().solve(island, step.solver_workspace.itself());
+    SolveReport& report = step.reports[island.island()];
+    report = step.solver().solve(island, step.solver_workspace.itself());
+    report.undecided_loads = inner::undecided_loads<typename std::remove_reference_t<decltype(step)>::Scalar>(island, report);
   }
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <delassus/core/slice.hpp>
+#include <delassus/rows/row_kind.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/step_report.hpp>
 
@@ -16,7 +18,24 @@ inline void summarise(inner::Slice<const SolveReport> islands, StepReport& step)
     step.sweeps = std::max(step.sweeps, r.sweeps);
     step.residual = std::max(step.residual, r.measure.residual);
     step.natural_map_error = std::max(step.natural_map_error, r.measure.siconos);
+    step.undecided_loads += r.undecided_loads;
   }
 }
+
+namespace inner {
+
+/// Of an island whose solver says whether it decided the loads.
+template <class T>
+Index undecided_loads(const Island<T>& island, const SolveReport& report) {
+  if (report.are_loads_decided) return 0;
+  Index pushing = 0;
+  for (const Span<T>& span : island) {
+    if (span.pool->table->kinds[0] != RowKind::lower) continue;
+    for (const Index i : span) pushing += island.impulse(span, i)[0] > 0 ? 1 : 0;
+  }
+  return pushing < 3 ? 0 : pushing;
+}
+
+}  // namespace inner
 
 }  // namespace delassus

@@ -19,6 +19,9 @@ struct StepReport {
   bool overlaps_unseen = false;   ///< of a loop's first step: shapes overlap and no contact law is named
   Index contacts = 0;             ///< points, whether a law takes them or not
   Index rows = 0;
+  /// Contacts and stops that push, in islands of at least three of them whose loads no rule decides: redundant ones may share a load
+  /// otherwise and make the same motion.
+  Index undecided_loads = 0;
   Index islands = 0;              ///< groups that were solved on their own
   Index quarantined = 0;          ///< bodies left where they were because something was not finite
   Index pairs = 0;                ///< near pairs from the broad phase

@@ -68,6 +68,7 @@ bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tol
   LeastImpulses<T> least(problem, work.least);
   least.sort(report.measure);
   if (least.contacts() < 3) return false;
+  report.are_loads_decided = true;
   if (least.slipping() > 0 && work.rounds < most_rounds) {
     if (least.share(most_products) > least_way) {
       ++work.rounds;
@@ -86,7 +87,7 @@ bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tol
   if (after.residual <= std::max({2 * report.measure.residual, after.floor, tolerance}))
     report.measure = after;
   else
-    problem.load(work.least.solved);
+    problem.load(work.least.solved), report.are_loads_decided = false;
   return false;
 }
 
