@@ -83,7 +83,7 @@ TEST_CASE("a far pile, added later or before, changes no bit of a pile") {
   const auto c = add_pile(before, Vec3::Zero(), hull);
   int islands = 0, n = 0;
   bool was_solved_again = false;
-  const auto is_solved_again = [](auto& loop) { return loop.data().contact_cache.solves > 1; };
+  const auto is_solved_again = [](auto& loop) { return loop.data().contact_cache.solves > 0; };
   for (; n < 1000; ++n) {
     alone.step(h);
     islands = std::max(islands, int(later.step(h).islands));

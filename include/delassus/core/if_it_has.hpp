@@ -12,6 +12,10 @@ namespace delassus::inner {
 [[gnu::always_inline]] inline void memory_if_any(auto& part, auto& archive) {
   if constexpr (requires { part.memory(archive); }) part.memory(archive);
 }
+/// Once a step, before its first solve.
+[[gnu::always_inline]] inline void begin_step_if_it_can(auto& workspace) {
+  if constexpr (requires { workspace.begin_step(); }) workspace.begin_step();
+}
 /// Room for so many rows.
 [[gnu::always_inline]] inline void reset_if_it_can(auto& workspace, Index rows) {
   if constexpr (requires { workspace.reset(rows); }) workspace.reset(rows);

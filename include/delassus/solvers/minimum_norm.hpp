@@ -19,6 +19,7 @@ template <class T, class Space>
 struct NormSpace {
   Space solver;
   LeastImpulsesSpace<T> least;
+  void begin_step() { begin_step_if_it_can(solver); }
   void reset(Index rows) {
     reset_if_it_can(solver, rows);
     least.reserve(rows);

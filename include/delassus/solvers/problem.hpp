@@ -36,6 +36,7 @@ SolveReport solve(Problem<Laws, Rows, Operator>& problem, const Solver& solver,
                   SolverWorkspace<Problem<Laws, Rows, Operator>, Solver>& workspace) {
   auto& book = workspace.book;
   book.attach(problem.laws);
+  inner::begin_step_if_it_can(workspace.solver);
   inner::reset_if_it_can(workspace.solver, problem.rows.row_count());
   problem.W.reset(problem.rows);
   book.prepare(problem.W, problem.rows, problem.h);

@@ -33,6 +33,10 @@ struct TimedSpace {
     best.reserve(std::size_t(rows));
     const auto islands = std::size_t(rows);  // at most
     if (attempts.capacity() < islands) attempts.reserve(2 * islands);
+  }
+  /// A step that is solved again has one budget.
+  void begin_step() {
+    begin_step_if_it_can(solver);
     until = std::numeric_limits<double>::quiet_NaN();
   }
   void memory(auto& archive) { archive(attempts); }
@@ -40,8 +44,8 @@ struct TimedSpace {
 
 }  // namespace inner
 
-/// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one millisecond together. The
-/// clock is read after each sweep, and inside long sweeps, measures and factorizations of Newton's method in the velocities of
+/// `WithDeadline{AcceleratedGaussSeidel{.tolerance = 1e-6}, 1e-3}` gives the islands of a step one millisecond together, and
+/// all its solves. The clock is read after each sweep, and inside long sweeps, measures and factorizations of Newton's method in the velocities of
 /// the bodies. It is read before each of those too, which is not begun where it would end too late.
 ///
 /// When the time is up, what is half done is let go, and the iterate of the smallest measured residual is returned, with

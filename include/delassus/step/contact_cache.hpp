@@ -38,7 +38,6 @@ class BasicContactCache {
     colliders.clear();
     anchors_.clear();
     materials_.clear();
-    solves = 0;
     world.each([&](const auto& set, auto s) {
       for (const Index b : set.active())
         if (set.has_collider(b)) add(set, s, b, collider_moves(set, b));

@@ -75,7 +75,7 @@ class MiddleContacts {
       }
     }
   }
-  /// Whether the pair whose first contact is the i-th closes in by more than what counts as touching, at each of its contacts.
+  /// Whether the pair whose first contact is the i-th is apart and closes in by more than what counts as touching, at each of its contacts.
   bool meet(const ContactCache& cache, std::size_t i, double h) const {
     for (std::size_t k = i; k < cache.points.size() && cache.points[k].pair == cache.points[i].pair; ++k) {
       const ContactPoint& p = cache.points[k];
@@ -83,7 +83,8 @@ class MiddleContacts {
       const Vec3 on_a = p.point() - 0.5 * p.travel, on_b = p.point() + 0.5 * p.travel;
       const Vec3 speed = colliders_[p.a].velocity + cross(a.angular_velocity, Vec3(on_a - a.pose.position)) - colliders_[p.b].velocity -
                          cross(b.angular_velocity, Vec3(on_b - b.pose.position));
-      if (!(h * dot(p.normal, speed) > touch_share * pair_scale(a.shape, b.shape))) return false;
+      const double touch = touch_share * pair_scale(a.shape, b.shape);
+      if (!(p.gap > -touch && h * dot(p.normal, speed) > touch)) return false;
     }
     return true;
   }

@@ -65,6 +65,7 @@ struct PlainStages : StagesWithoutConstraints {
   static void detect(auto& step) {
     using Step = std::remove_reference_t<decltype(step)>;
     if constexpr (Step::Laws::has_contacts) {
+      step.contact_cache.solves = 0;
       Step::Stages::gather(step);
       if constexpr (requires { Step::Policies::Collision::asks_for_joints; })
         step.collision().refresh(std::as_const(step).world(), [&](const auto& f) { step.each_joint(f); });
@@ -159,6 +160,7 @@ struct PlainStages : StagesWithoutConstraints {
   static void solve_islands(auto& step, auto& observer) {
     using Stages = typename std::remove_reference_t<decltype(step)>::Stages;
     step.W.reset(step.rows);
+    if (step.contact_cache.solves == 0) inner::begin_step_if_it_can(step.solver_workspace);
     inner::reset_if_it_can(step.solver_workspace, step.rows.row_count());
     step.reports.resize(step.islands.count());
     for (Index k = 0; k < step.islands.count(); ++k) {

@@ -35,9 +35,15 @@ struct DormantStages : Base {
   /// A sleeper that is met wakes, and the step begins anew with it; so it does where one comes near that was no obstacle.
   static bool find_missed(auto& step) {
     const bool is_any = Base::find_missed(step);
-    const ContactCache& book = step.contact_cache;
+    ContactCache& book = step.contact_cache;
     const bool begins_anew = is_any ? own(step).wake_met(step.world(), step.laws(), book) : own(step).lacks_obstacles(book, step.h);
-    if (begins_anew) Base::detect(step), step.last_h = step.h;
+    if (begins_anew) {
+      const int solves = book.solves;
+      step.summary = book.report_of_detect;
+      Base::detect(step);
+      step.last_h = step.h;
+      book.solves = solves + 1;
+    }
     return is_any || begins_anew;
   }
   static void advance(auto& step) {
