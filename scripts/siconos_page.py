@@ -3,13 +3,17 @@
 
     scripts/siconos_page.py results RESULTS.csv [--svg FILE]    the tables of docs/evidence/siconos.md on stdout, performance profiles
     scripts/siconos_page.py curves CURVES.csv --svg FILE        error against time
+    scripts/siconos_page.py halves SCENES.csv --limit S         the problems of scenes, in two halves; S is the limit of a solve, s
+    scripts/siconos_page.py --self-test                         what tests of the tree run
 
+A problem is of the tuning half or of the reported half by a hash of its name: of FNV-1a with 64 bits, bit 32.
 A performance profile tells of each solver which share of the problems it solves within τ times the time of the fastest.
 Source: [DolanMore2002].
 """
 import argparse
 import csv
 import math
+import re
 import statistics
 from pathlib import Path
 
@@ -50,6 +54,18 @@ def best(row_of):
     return min(there, key=seconds) if there else None
 
 
+def fnv1a(text):
+    """FNV-1a with 64 bits."""
+    value = 0xCBF29CE484222325
+    for byte in text.encode():
+        value = (value ^ byte) * 0x100000001B3 % 2**64
+    return value
+
+
+def half(problem):
+    return "reported" if fnv1a(problem) >> 32 & 1 else "tuning"
+
+
 def milliseconds(row):
     return f"{1e3 * seconds(row):.3g}" if solved(row) else "–"
 
@@ -87,6 +103,66 @@ def print_times(rows, tolerances):
             if solved(plain):
                 default.append(seconds(plain) / seconds(own))
         print(f"| {t} | {len(large)} | {mean(large):.1f} | {mean(built):.1f} | {min(large):.1f} | {mean(default):.0f} ({len(default)} solved) | {mean(every):.1f} |")
+
+
+class Tally:
+    """Ratios of some problems at one tolerance: Siconos' fastest over ours."""
+
+    def __init__(self, rows_of, limit):
+        self.ratios, self.with_limit, self.ours, self.theirs, self.neither = [], [], 0, 0, 0
+        for row_of in rows_of:
+            own, other = row_of.get(OWN), best(row_of)
+            times = seconds(own) if solved(own) else None, seconds(other) if other else None
+            if None not in times:
+                self.ratios.append(times[1] / times[0])
+            self.ours += times[0] is not None
+            self.theirs += times[1] is not None
+            self.neither += times == (None, None)
+            if times != (None, None):  # who did not get there takes the limit at least
+                self.with_limit.append((times[1] or limit) / (times[0] or limit))
+        self.count = len(rows_of)
+
+    def cells(self):
+        least = f"{min(self.ratios):.2g}" if self.ratios else "–"
+        counts = f"{self.count} | {self.ours} | {self.theirs} | {self.neither}"
+        return f"{counts} | {len(self.ratios)} | {mean(self.ratios):.1f} | {least} | {mean(self.with_limit):.1f}"
+
+
+SIZES = [(20, 60), (60, 180), (180, 540), (540, 3001)]
+
+
+def halves_page(rows, limit):
+    """The tables of the problems of scenes, as text."""
+    tolerances = tolerances_of(rows)
+    tables = {t: by_problem(rows, t) for t in tolerances}
+    out = ["| half | error | problems | solved by delassus | by Siconos | by neither | by both | mean ratio | least | with the limit |",
+           "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
+    for which in ("reported", "tuning"):
+        for t in tolerances:
+            out.append(f"| {which} | {t} | {Tally([r for p, r in tables[t].items() if half(p) == which], limit).cells()} |")
+    out += ["", "By the number of contacts:", "", "| contacts | reported, tuning | " + " | ".join(f"{t}, reported | tuning" for t in tolerances) + " |",
+            "|---|--:|" + "--:|" * 2 * len(tolerances)]
+    for low, high in SIZES:
+        cells, counts = [], []
+        for t in tolerances:
+            for which in ("reported", "tuning"):
+                some = [r for p, r in tables[t].items() if half(p) == which and low <= int(r[OWN]["contacts"]) < high]
+                tally = Tally(some, limit)
+                counts.append(str(tally.count))
+                cells.append(f"{mean(tally.ratios):.1f} ({len(tally.ratios)})" if tally.ratios else "– (0)")
+        out.append(f"| {low} to {high - 1} | {', '.join(counts[:2])} | " + " | ".join(cells) + " |")
+    return "\n".join(out) + "\n"
+
+
+def means(rows, limit, which):
+    """`8.9, 12.7 and 13.3`, as the front page has them."""
+    figures = [f"{mean(Tally([r for p, r in by_problem(rows, t).items() if half(p) == which], limit).ratios):.1f}" for t in tolerances_of(rows)]
+    return ", ".join(figures[:-1]) + " and " + figures[-1]
+
+
+def tolerances_of(rows):
+    tolerances = [t for t in dict.fromkeys(r["tolerance"] for r in rows) if t != "sweep"]
+    return sorted(tolerances, key=float, reverse=True)
 
 
 def print_sweeps(rows):
@@ -211,17 +287,51 @@ def draw_curves(rows, path):
     write_svg(path, panels, names, 1000, 70 + 320 * math.ceil(len(problems) / 2) + 30)
 
 
+# --- its test ------------------------------------------------------------------------------------------------------------
+
+def self_test():
+    for text, value in [("", 0xCBF29CE484222325), ("a", 0xAF63DC4C8601EC8C), ("foobar", 0x85944171F73967E8)]:
+        assert fnv1a(text) == value, f"FNV-1a of '{text}'"
+    assert [half(p) for p in ("", "a", "foobar")] == ["tuning", "tuning", "reported"]
+
+    def row(solver, time):
+        return {"solver": solver, "status": "converged" if time else "time", "seconds": str(time or 0)}
+
+    both, alone, lost, none = ({r["solver"]: r for r in (row(OWN, a), row("NSGS", b), row("PROX", c))}
+                               for a, b, c in [(1, 8, 4), (1, 0, 0), (0, 2, 0), (0, 0, 0)])
+    tally = Tally([both, alone, lost, none], 16)
+    assert (tally.ours, tally.theirs, tally.neither, tally.ratios) == (2, 2, 1, [4])
+    assert tally.with_limit == [4, 16, 2 / 16], "who did not get there takes the limit"
+
+    docs = Path(__file__).resolve().parent.parent / "docs" / "evidence"
+    rows, page = read(docs / "siconos" / "scenes.csv"), (docs / "siconos.md").read_text(encoding="utf-8")
+    sizes = {r["problem"]: int(r["contacts"]) for r in rows}
+    assert len(sizes) >= 80 and min(sizes.values()) >= 20 and max(sizes.values()) <= 3000
+    limit = float(re.search(r"halves \S+ --limit ([0-9.]+)", page)[1])
+    assert halves_page(rows, limit) in page, "docs/evidence/siconos.md is not what halves prints of siconos/scenes.csv"
+    front = (docs.parent.parent / "README.md").read_text(encoding="utf-8")
+    for which in ("reported", "tuning"):
+        assert means(rows, limit, which) in front, f"README.md has other figures for the {which} half than siconos/scenes.csv"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["results", "curves"])
-    parser.add_argument("table")
+    parser.add_argument("what", choices=["results", "curves", "halves"], nargs="?")
+    parser.add_argument("table", nargs="?")
     parser.add_argument("--svg")
+    parser.add_argument("--limit", type=float)
+    parser.add_argument("--self-test", action="store_true")
     given = parser.parse_args()
+    if given.self_test:
+        return self_test()
+    if given.table is None or (given.what == "halves" and given.limit is None):
+        parser.error("name what to print, its table, and for halves the limit of a solve")
     rows = read(given.table)
+    if given.what == "halves":
+        return print(halves_page(rows, given.limit), end="")
     if given.what == "curves":
         return draw_curves(rows, given.svg)
-    tolerances = [t for t in dict.fromkeys(r["tolerance"] for r in rows) if t != "sweep"]
-    tolerances.sort(key=float, reverse=True)
+    tolerances = tolerances_of(rows)
     print_times(rows, tolerances)
     print()
     print_sweeps(rows)

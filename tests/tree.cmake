@@ -56,6 +56,7 @@ if(DELASSUS_TEST_ALL)
   delassus_tree_test(tree/site ${Python3_EXECUTABLE} ${scripts}/build_site.py --out ${PROJECT_BINARY_DIR}/site)
 endif()
 
+delassus_tree_test(tree/siconos_page_self_test ${Python3_EXECUTABLE} ${scripts}/siconos_page.py --self-test)
 delassus_tree_test(tree/front_page ${Python3_EXECUTABLE} ${scripts}/front_page.py --check)
 
 # --- the mutants of scripts/mutants.py still find what they replace --------------------------------------------------

@@ -1,16 +1,16 @@
 // The solver beside Siconos', on friction problems from files, in one run:
 //
-//   compare_siconos FOLDER|FILE... [--out siconos.csv] [--limit S] [--tolerances 1e-3,1e-6,1e-8] [--problems
-//   TEXT,...]
-//                   [--solvers TEXT,...] [--no-sweeps]
+//   compare_siconos FOLDER|FILE... [--out siconos.csv] [--limit S] [--repeat S] [--tolerances 1e-3,1e-6,1e-8]
+//                   [--problems TEXT,...] [--solvers TEXT,...] [--no-sweeps]
 //
 // For each problem, tolerance and solver one row: status, iterations, median of the processor time of the
 // solving thread, and both errors of the impulses found, measured by this library whoever found them. All
 // solvers stop by Siconos' error and start at λ = 0. The times of Siconos hold all that its driver does with
 // a matrix of blocks; ours is parted in `build`, the factors of the contacts' own blocks and the room for the
 // solve, and `seconds`, the solve. A row with the tolerance `sweep` is the time of one sweep: half of what 2
-// N sweeps cost more than N. What the clock takes between two looks is taken off all times. Each solve is a process of its own that ends after --limit seconds (2); what did
-// not end at one tolerance is not tried at a smaller one. Rows that the file has already are not made again.
+// N sweeps cost more than N. What the clock takes between two looks is taken off all times. Each solve is a process of
+// its own that ends after --limit seconds (2); what did not end at one tolerance is not tried at a smaller one. Short
+// solves are repeated, for --repeat seconds together (1). Rows that the file has already are not made again.
 // `load` is the mean number of processes that waited for a processor in the last minute.
 #include "given_to_siconos.hpp"
 
@@ -45,7 +45,7 @@ struct Options {
   std::vector<std::filesystem::path> files;
   std::vector<std::string> problems, solvers, tolerances{"1e-3", "1e-6", "1e-8"};
   std::string out = "siconos.csv";
-  double limit = 2;
+  double limit = 2, repeat = 1;
   bool sweeps = true;
 };
 
@@ -96,16 +96,18 @@ void start_alarm(double seconds) {
   setitimer(ITIMER_PROF, &t, nullptr);
 }
 
-/// 101 runs below 0.1 ms, 15 below 2 ms, 5 below 0.05 s, 3 below 0.2 s, else one; solve(result) returns the time
-/// of one.
+/// 101 runs below 0.1 ms, 15 below 2 ms, 5 below 0.05 s, 3 below 0.2 s, else one, and no more than fit into `most` seconds;
+/// solve(result) returns the time of one.
 template <class Solve>
-void repeat(Result& result, double limit, Solve&& solve) {
+void repeat(Result& result, double limit, double most, Solve&& solve) {
   std::vector<double> times, builds;
   for (int runs = 1; int(times.size()) < runs;) {
     start_alarm(limit);
     times.push_back(solve(result));
     builds.push_back(result.build);
-    if (times.size() == 1) runs = times[0] < 1e-4 ? 101 : times[0] < 2e-3 ? 15 : times[0] < 0.05 ? 5 : times[0] < 0.2 ? 3 : 1;
+    if (times.size() > 1) continue;
+    runs = times[0] < 1e-4 ? 101 : times[0] < 2e-3 ? 15 : times[0] < 0.05 ? 5 : times[0] < 0.2 ? 3 : 1;
+    if (runs * times[0] > most) runs = std::max(1, int(most / times[0]));
   }
   start_alarm(limit + 10);
   result.seconds = median(times);
@@ -231,6 +233,8 @@ Options parse(int count, char** words) {
         o.out = value;
       else if (word == "--limit")
         o.limit = positive(word, value);
+      else if (word == "--repeat")
+        o.repeat = positive(word, value);
       else if (word == "--problems")
         o.problems = split(value);
       else if (word == "--solvers")
@@ -346,7 +350,7 @@ void compare(const std::filesystem::path& file, const Options& o, Table& table) 
       const double number = positive("--tolerances", tolerance);
       const bool came = !has_failed && apart(
                                            [&](Result& r) {
-                                             repeat(r, o.limit, [&](Result& one) {
+                                             repeat(r, o.limit, o.repeat, [&](Result& one) {
                                                return run_once(p, e, number, no_limit, one);
                                              });
                                              measure(p, r);
