@@ -127,6 +127,78 @@ TEST_CASE("a ball without friction that lands inside an edge keeps its speed alo
     }
 }
 
+TEST_CASE("what comes down aslant on a mesh lands on the triangle that it meets") {
+  // Which is another one than it is over when the step begins. The face is flat, and the normal z: v_z ends, v_x stays.
+  AnimationLoop empty{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, WithMeshes{NativeCollision{}}};
+  const double h = 1 / 60.;
+  for (const int cells : {2, 20})
+    for (const Shape& body : {Shape(Sphere{0.05}), Shape(Box{0.1, 0.1, 0.1}), Shape(Capsule{0.05, 0.1})})
+      for (const double v : {3., 10., 30.}) {
+        double sinks = 0, slows = 0, parts = 0;
+        for (int phase = 0; phase < 10; ++phase) {
+          auto loop = empty.clone();
+          auto& set = bodies<RigidBodies>(loop.world());
+          set.gravity.setZero();
+          set.add_fixed(loop.template get<WithMeshes<NativeCollision>>().add(scenes::fine_box(4, 4, 1, cells)));
+          const double half = body.kind == ShapeKind::capsule ? 0.1 : 0.05;
+          const Vec3 velocity(0.8 * v, 0.1 * v, -0.6 * v), lands(0.31, 0.17, 0.5 + half);
+          const auto b = set.add({.position = lands - velocity * (h * (1 + phase / 10.)), .velocity = velocity, .mass = 1, .shape = body});
+          for (int i = 0; i < 4; ++i) {
+            loop.step(h);
+            sinks = std::max(sinks, 0.5 + half - set.position(b).z());
+          }
+          slows = std::max(slows, std::abs(set.velocity(b).x() - velocity.x()));
+          parts = std::max(parts, std::abs(set.velocity(b).z()));
+        }
+        CAPTURE(cells, int(body.kind), v);
+        CHECK(sinks < 1e-4 * 0.1);
+        CHECK(slows < 1e-5 * v);
+        CHECK(parts < 1e-4 * v);
+      }
+}
+
+TEST_CASE("a corner of a mesh that a fast body clips is met") {
+  AnimationLoop empty{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, WithMeshes{NativeCollision{}}};
+  const Vec3 out = Vec3(1, 1, 1).normalized(), along = Vec3(1, -1, 0).normalized();
+  const double h = 1 / 60.;
+  for (const Shape& body : {Shape(Sphere{0.1}), Shape(Cylinder{0.1, 0.2})})
+    for (const double v : {30., 100., 200.})
+      for (int phase = 0; phase < 10; ++phase) {
+        auto loop = empty.clone();
+        auto& set = bodies<RigidBodies>(loop.world());
+        set.gravity.setZero();
+        set.add_fixed(loop.template get<WithMeshes<NativeCollision>>().add(scenes::fine_box(1, 1, 1, 2)));
+        // 3 cm of it are in the way.
+        const auto b = set.add({.position = Vec3(0.5, 0.5, 0.5) + 0.07 * out - along * (v * h * (1 + phase / 10.) + 0.4),
+                                .orientation = Quat::FromTwoVectors(Vec3(0, 0, 1), out),
+                                .velocity = v * along,
+                                .mass = 1,
+                                .shape = body});
+        for (int i = 0; i < 4 + 1 / (v * h); ++i) loop.step(h);
+        CAPTURE(int(body.kind), v, phase);
+        CHECK(set.velocity(b).dot(out) > 1e-3 * v);  // it is pushed out
+      }
+}
+
+TEST_CASE("a box that lands flat inside an edge does not turn, though it is over the edge before the impact ends") {
+  AnimationLoop empty{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, WithMeshes{NativeCollision{}}};
+  const Shape mesh = empty.get<WithMeshes<NativeCollision>>().add(scenes::fine_box(1, 1, 1, 3));
+  const double h = 1 / 60., v = 15;
+  for (const Shape& table : {Shape(Box{1, 1, 1}), mesh})
+    for (int phase = 0; phase < 10; ++phase) {
+      auto loop = empty.clone();
+      auto& set = bodies<RigidBodies>(loop.world());
+      set.gravity.setZero();
+      set.add_fixed(table);
+      const Vec3 direction(std::cos(0.8), 0, -std::sin(0.8)), lands(0.445, 0.013, 0.55);
+      const auto b = set.add({.position = lands - direction * (v * h * (1 + phase / 10.)), .velocity = v * direction, .mass = 1, .shape = Box{0.1, 0.1, 0.1}});
+      for (int i = 0; i < 6; ++i) loop.step(h);
+      CAPTURE(int(table.kind), phase);
+      CHECK((set.velocity(b) - Vec3(v * direction.x(), 0, 0)).norm() < 1e-4 * v);
+      CHECK(0.05 * set.angular_velocity(b).norm() < 1e-4 * v);
+    }
+}
+
 TEST_CASE("balls without friction that meet beside each other part along the line of their centres") {
   // The centres of two balls of one mass and radius r, b beside each other, are 2 r apart where they meet: sin θ = b / 2r. The impulse
   // takes the approach v cos θ along that line, and turns neither. Bodies count as touching at 1e-4 of the size 2 r, which moves θ

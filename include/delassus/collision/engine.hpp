@@ -214,7 +214,7 @@ class CollisionEngine {
       if (hit.is_now) return false;
       if (hit.is_found) {
         const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal;
-        if (is_near && is_same) return false;
+        if (is_near && is_same && !inner::may_outgrow_margin(a, b, scale, h)) return false;
         if (meet(a, b, apart.job, hit, scale, h, settings, last, now, out)) return true;
       }
     }
@@ -242,10 +242,11 @@ class CollisionEngine {
     for (int k = 0; k < pair.count; ++k) middle += first[k].point() / double(pair.count), half += 0.5 * first[k].travel / double(pair.count);
     return {n, middle - half - a.pose.position, middle + half - b.pose.position, first->feature, pair.count > 0};
   }
-  /// Of an impact that two rows of different normals share, the old one stops what it has left of the approach.
+  /// Of an impact that goes on at other places, or with another normal, the old row stops what it has left of the approach.
   void finish_impact(const Collider& a, const Collider& b, const Job& job, const RememberedImpact& impact, const RestingPair& now,
                      std::size_t first, std::vector<ContactPoint>& out) {
-    if (now.count > 0 && dot(now.normal, impact.normal) > inner::same_normal) return;
+    const bool is_same = now.count > 0 && dot(now.normal, impact.normal) > inner::same_normal;
+    if (is_same && inner::is_there(impact, a, b, first, out, std::min(summary_[job.a].scale, summary_[job.b].scale))) return;
     out.push_back(inner::row_ahead(job, a, b, impact.arm_a, impact.arm_b, impact.normal, 0, inner::unused(impact.id, first, out)));
     sort_last(int(out.size() - first), out);
   }

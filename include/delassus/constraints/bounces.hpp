@@ -27,6 +27,7 @@ struct Bounces {
   OwningArray<Array<T>> velocities[2];  ///< of the bodies by set, at the start of the last step and of the one before; NaN: not there
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
   Array<Index> blocks;      ///< of each island; empty: nobody asked
+  Array<Together> choices;  ///< of each island with one body
 
   template <class AllRows>
   void begin(const AllRows& all, double h, const std::size_t* counts, int sets) {
@@ -38,9 +39,11 @@ struct Bounces {
       returned[p].reserve(all[p].phi->capacity());  // now, and not when a row lands
     }
     blocks.reserve(items);
+    choices.reserve(items);
     pasts.begin(h);
     rows.clear();
     blocks.clear();
+    choices.clear();
   }
   /// The step is over; v is that of its start.
   void end(const T* const* v) {
@@ -50,11 +53,11 @@ struct Bounces {
       for (std::size_t k = 0; k < velocities[0][s].size(); ++k) velocities[0][s][k] = v[s][k];
   }
   void memory(auto& archive) { archive(pasts, velocities[0], velocities[1]); }
-  /// Whether nothing else that moves is in the island of the item.
-  bool is_alone(const Islands<T>& islands, int p, Index i) {
-    if (blocks.empty()) islands.count_blocks(blocks);
+  /// What the rows of the item's island do, where nothing else that moves is in it; else null.
+  Together* choice_of(const Islands<T>& islands, int p, Index i) {
+    if (blocks.empty()) islands.count_blocks(blocks), choices.assign(blocks.size(), Together::undecided);
     const Index island = islands.island_of(p, i);
-    return island >= 0 && blocks[island] == 1;
+    return island >= 0 && blocks[island] == 1 ? &choices[island] : nullptr;
   }
 
  private:
@@ -90,7 +93,8 @@ struct BouncingRow {
   /// with u moves the row.
   double now(double acceleration) const { return velocity + (theta - 0.5) * last_h * acceleration; }
   double height(double acceleration) const { return gap + (1 - theta) * (h * velocity + 0.25 * h * h * acceleration); }
-  bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < 0; }
+  /// Or comes to the surface at the end of the step: which side of it is rounding, and another one for each corner of a face.
+  bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < -1e-9 * h * velocity; }
   Closing closing(double acceleration, bool may_land) const {
     const double a = std::min(0.0, acceleration), fall = std::max(std::max(0.0, velocity - free), -h * a);
     return {.gap = gap, .velocity = now(a), .acceleration = a, .height = height(a), .least = 0.5 * fall, .h = h, .may_land = may_land};
@@ -152,8 +156,12 @@ void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Isla
           if (returned.empty()) returned.assign_zeros(pool.phi->size());
           returned[row] = T(is.taken());
         } else if (is.closes(now.acceleration)) {
-          const bool may_land = theta == 1 && bounces.is_alone(islands, int(p), i);
-          const Rebound does = rebound(is.closing(now.acceleration, may_land), restitution);
+          Together* const choice = theta == 1 ? bounces.choice_of(islands, int(p), i) : nullptr;
+          Closing closing = is.closing(now.acceleration, choice);
+          if (choice) closing.others = *choice;
+          const Rebound does = rebound(closing, restitution);
+          if (choice && *choice == Together::undecided)
+            *choice = does.leaves > 0 ? Together::leave_at_once : does.parts > 0 ? Together::land : Together::undecided;
           now.parts = does.parts;
           leaves = does.leaves > 0 || does.parts > 0 ? does.leaves : is.comes_back(now.acceleration);
         }

@@ -7,6 +7,9 @@
 
 namespace delassus {
 
+/// What the rows of a body do together: else corners of a face that lands would differ by rounding.
+enum class Together : unsigned char { undecided, leave_at_once, land };
+
 /// What a row that closes does. Both zero: it comes to the surface and stays.
 struct Rebound {
   double leaves = 0;  ///< the velocity at the end of this step, > 0
@@ -22,6 +25,7 @@ struct Closing {
   double least;         ///< with less than this speed it does not part
   double h;
   bool may_land;
+  Together others = Together::undecided;  ///< what other rows of the body do
 };
 
 /// The row has the speed V_s at the surface, V_s² = V² − 2 a x. It leaves with
@@ -38,7 +42,8 @@ inline Rebound rebound(const Closing& c, double e) {
   const double square = parts * parts + 2 * a * c.height, starts = std::sqrt(std::max(0.0, square)), leaves = starts + 0.5 * a * c.h;
   if (square > 0 && leaves > 0) {
     const double down = 2 * x / (meets - c.velocity), up = 2 * x / (parts + starts);  // s
-    if (!c.may_land || a == 0 || e == 1 || down + up < c.h - down) return {.leaves = leaves};
+    const bool is_sooner = c.others == Together::undecided ? down + up < c.h - down : c.others == Together::leave_at_once;
+    if (!c.may_land || a == 0 || e == 1 || is_sooner) return {.leaves = leaves};
   }
   return c.may_land ? Rebound{.parts = parts} : Rebound{};
 }

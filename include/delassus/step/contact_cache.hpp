@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/summary.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
@@ -84,6 +85,14 @@ class BasicContactCache {
   int solves = 0;                    ///< of the step, but the first
   StepReport report_of_detect;       ///< as the first solve found it
   std::vector<ContactPoint> missed;  ///< pairs that were left out and meet after all
+  /// Whether some of them would overlap by more than the least margin when a step of h (s) is over.
+  bool any_missed_is_deep(double h) const {
+    return std::any_of(missed.begin(), missed.end(), [&](const ContactPoint& p) {
+      const Collider &a = colliders[p.a], &b = colliders[p.b];
+      const double closing = dot(p.normal, a.velocity_at(p.point() - 0.5 * p.travel) - b.velocity_at(p.point() + 0.5 * p.travel));
+      return h * closing - p.gap > inner::margin_share * inner::pair_scale(a.shape, b.shape);
+    });
+  }
   /// Adds them to the points of the step.
   void join_missed() {
     points.insert(points.end(), missed.begin(), missed.end());

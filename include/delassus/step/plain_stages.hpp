@@ -96,6 +96,8 @@ struct PlainStages : StagesWithoutConstraints {
       book.take_solved_motion(std::as_const(step).world());
       step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
       if (book.missed.empty()) return false;
+      // A motion that was not found to the tolerance is not worth a second solve for so little.
+      if (step.summary.status >= Status::max_iterations && !book.any_missed_is_deep(step.h)) return false;
       if (++book.solves == inner::most_solves) {
         step.summary.status = worse(step.summary.status, Status::max_iterations);
         return false;

@@ -6,6 +6,7 @@
 #include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/summary.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
+#include <delassus/collision/pair_memory.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -30,6 +31,12 @@ struct Apart {
 /// False where the plane between the two, or one that is nearer to both, proves that they stay apart in the step.
 inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, double distance, double h) {
   return h * (dot(normal, a.velocity - b.velocity) + turning_speed(a) + turning_speed(b)) >= distance;
+}
+
+/// Whether the two may close in by more than the widest margin: then some points of a face may be within it and others not.
+inline bool may_outgrow_margin(const Collider& a, const Collider& b, double scale, double h) {
+  if (a.shape.kind == ShapeKind::sphere || b.shape.kind == ShapeKind::sphere) return false;  // one point
+  return h * (norm(Vec3(a.velocity - b.velocity)) + turning_speed(a) + turning_speed(b)) > margin_limit * scale;
 }
 
 /// Whether a body turns so much in a step, by 1e-3, that its points are elsewhere than an impact of the last one foresaw.
@@ -67,6 +74,15 @@ inline ContactPoint impact_row(const PairJob& job, const Collider& a, const Coll
   const double closing = dot(n, a.velocity + cross(a.angular_velocity, arm_a) - b.velocity - cross(b.angular_velocity, arm_b));
   const double gap = std::max(hit.time * closing, 0.0) + std::max(p.gap - contact_distance, 0.0);
   return row_ahead(job, a, b, arm_a, arm_b, n, gap, name);
+}
+
+/// Whether the contacts from `first` on are about the point of one of the bodies where they met.
+inline bool is_there(const RememberedImpact& impact, const Collider& a, const Collider& b, std::size_t first, const std::vector<ContactPoint>& out,
+                     double scale) {
+  Vec3 middle = zero<Vec3>();
+  for (std::size_t i = first; i < out.size(); ++i) middle += out[i].point() / double(out.size() - first);
+  const auto beside = [&](const Vec3& x) { return norm(x - middle - dot(impact.normal, Vec3(x - middle)) * impact.normal); };
+  return std::min(beside(a.pose.position + impact.arm_a), beside(b.pose.position + impact.arm_b)) <= 1e-2 * scale;
 }
 
 /// Whether a body may go farther in a step than the ball of half its thickness: an impulse beside its middle would turn it and

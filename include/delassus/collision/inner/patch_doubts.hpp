@@ -17,10 +17,11 @@ namespace delassus::inner {
 class PatchDoubts {
  public:
   /// Calls add(t, patch, normal) for the triangles that the shape, posed in their frame, comes
-  /// as near as `reach` m, and judges them. Returns how many triangles were looked at.
-  template <class Surface, class Add>
+  /// as near as `reach` m, and judges them. Returns how many triangles were looked at. skip(triangle, t) is called for those whose
+  /// neighbours are nearer to the shape.
+  template <class Surface, class Add, class Skip>
   Index collect(const Surface& surface, const Shape& shape, const Pose& pose, double reach, double scale,
-                const Add& add) {
+                const Add& add, const Skip& skip) {
     answers_.clear();
     false_.clear();
     const Bounds near = bounds_around(shape, pose, reach);
@@ -33,7 +34,7 @@ class PatchDoubts {
       ++queries;
       Vec3 n;
       const PatchTrust trust = triangle_patch(triangle, shape, pose, reach, scale, patch_, n);
-      if (trust == PatchTrust::none) return;
+      if (trust == PatchTrust::none) return skip(triangle, t);
       add(t, patch_, n);
       answers_.push_back({t, n, patch_.point[deepest(patch_)].gap, trust});
     });

@@ -29,7 +29,7 @@ class SoftPairs {
     const auto add_to_found = [&](Index t, const Patch& patch, const Vec3& n) {
       for (int i = 0; i < patch.count; ++i) add(soft, t, patch.point[i], n);
     };
-    const Index queries = doubts_.collect(soft, shape, pose, reach, scale, add_to_found);
+    const Index queries = doubts_.collect(soft, shape, pose, reach, scale, add_to_found, [](const Triangle&, Index) {});
     for (std::size_t i = 0; i < found.size(); ++i) found[i].is_dropped = doubts_.is_false(found_on_[i]);
     drop();
     drop_twins_of_edges(scale);

@@ -63,9 +63,13 @@ class SurfacePairs {
         const auto corner = [&](int k) -> const Vec3& { return patch.point[k].a; };
         if (patch.corners >= 3) pieces_.add(patch.corners, corner, n, patch.point[deepest(patch)].gap);
       };
-      queries = doubts_.collect(surface, b.shape, pair.b_in_a, pair.reach, pair.scale, add);
-      erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
+      skipped_.clear();
+      const bool goes_far = KnowsWhoPushed<Filter> && h * (top_speed(a) + top_speed(b)) > margin_share * pair.scale;
+      queries = doubts_.collect(surface, b.shape, pair.b_in_a, pair.reach, pair.scale, add, [&](const Triangle& triangle, Index t) {
+        if (goes_far && triangle.height(pair.b_in_a.to_world(middle(b.shape))) >= 0) skipped_.push_back(t);
+      });
       if constexpr (KnowsWhoPushed<Filter>) look_ahead(surface, pair);
+      else erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
     }
     const std::size_t first = out.size();
     find_last(job.pair);
@@ -152,30 +156,48 @@ class SurfacePairs {
   static double touch_of(const Pair& pair) { return pair.settings.contact_distance + touch_share * pair.scale; }
 
   /// Leaves out of `points_` those of triangles that are apart and not met, or met elsewhere than at their nearest points; `hit_`
-  /// is the first such impact. What continues a plane that is touched stays.
+  /// is the first such impact. What continues a plane that is touched stays. Of a triangle far off a doubt about its nearest point says
+  /// nothing of where it is met.
   void look_ahead(const auto& surface, const Pair& pair) {
     touched_.clear();
     const double touch = touch_of(pair);
     for (const SurfaceContact& p : points_)
-      if (p.point.gap <= touch) touched_.push_back(p.normal);
+      if (p.point.gap <= touch && !doubts_.is_false(p.triangle)) touched_.push_back(p.normal);
     asked_.push_back({pair.job.pair, pair.reach});
-    const bool are_alone = pair.a.goes_alone && pair.b.goes_alone;
+    ask_skipped(surface, pair, touch);
+    const bool are_alone = pair.a.goes_alone && pair.b.goes_alone, is_fast = may_outgrow_margin(pair.a, pair.b, pair.scale, pair.h);
     Index last = -1;
     bool stays = true;
     erase_if(points_, [&](const SurfaceContact& p) {
-      const bool is_near = is_within_margin(pair, p.point, p.normal);
+      const bool is_near = is_within_margin(pair, p.point, p.normal), is_false = doubts_.is_false(p.triangle);
+      if (is_false && (is_near || p.point.gap <= touch)) return true;
       if (p.point.gap <= touch || (is_near && (!are_alone || is_among(touched_, p.normal)))) return false;
       if (p.triangle != last) {
         last = p.triangle;
         const Vec3 n = pair.a.pose.rotation * p.normal;
         const ApartTriangle apart{pair.job.pair, p.triangle, p.point.gap - touch, n};
         const Impact hit = impact_on(surface, pair, apart);
-        stays = is_near && (hit.is_now || (hit.is_found && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
+        stays = is_near && (hit.is_now || (hit.is_found && !is_fast && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
         if (!stays) apart_.push_back(apart);
         if (!stays && hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
       }
       return !stays;
     });
+  }
+  /// Triangles whose neighbours are nearer may be those that the body meets.
+  void ask_skipped(const auto& surface, const Pair& pair, double touch) {
+    for (const Index t : skipped_) {
+      const SignedPair r = distance_to(surface.triangle(t), pair.b.shape, pair.b_in_a, pair.b_in_a.position);
+      if (r.status != PairStatus::near || !(r.distance > touch)) continue;
+      const ApartTriangle apart{pair.job.pair, t, r.distance - touch, pair.a.pose.rotation * r.normal};
+      apart_.push_back(apart);
+      const Impact hit = impact_on(surface, pair, apart);
+      if (hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
+    }
+  }
+  static SignedPair distance_to(const Triangle& t, const Shape& s, const Pose& b_in_a, const Vec3& guess) {
+    if (s.kind == ShapeKind::sphere) return triangle_and_sphere(t, s.size[0], b_in_a.to_world(middle(s)));
+    return GjkEpa::convex(t, s, b_in_a, std::numeric_limits<double>::infinity(), guess);
   }
   static bool is_among(const Array<Vec3>& normals, const Vec3& n) {
     return std::any_of(normals.begin(), normals.end(), [&](const Vec3& other) { return dot(other, n) > 0.9962; });
@@ -186,8 +208,7 @@ class SurfacePairs {
     const Triangle t = surface.triangle(apart.triangle);
     const Shape& s = pair.b.shape;
     return time_of_impact(pair.a, pair.b, pair.h, touch_of(pair), [&](const Pose& b_in_a, const Vec3& guess) {
-      if (s.kind == ShapeKind::sphere) return triangle_and_sphere(t, s.size[0], b_in_a.to_world(middle(s)));
-      return GjkEpa::convex(t, s, b_in_a, std::numeric_limits<double>::infinity(), guess);
+      return distance_to(t, s, b_in_a, guess);
     });
   }
   /// Fills `points_` with those of the place of `hit_`, in planes where `known` has no contacts of the pair.
@@ -202,7 +223,7 @@ class SurfacePairs {
     doubts_.collect(surface, pair.b.shape, hit_.a.to_local(hit_.b), margin, pair.scale, [&](Index t, const Patch& patch, const Vec3& n) {
       for (int i = 0; i < patch.count; ++i)
         if (patch.point[i].gap <= margin && !is_among(touched_, n)) points_.push_back({patch.point[i], n, t, true});
-    });
+    }, [](const Triangle&, Index) {});
     erase_if(points_, [&](const SurfaceContact& p) { return doubts_.is_false(p.triangle); });
   }
   /// A row through the middle of B where it flies by, see `flies_by`, and has none: the ball about it goes without turning.
@@ -242,7 +263,7 @@ class SurfacePairs {
          at != end && at->pair == pair.job.pair; ++at) {
       const RememberedImpact& impact = at->impact;
       const auto goes_on = [&](const ContactPoint& c) { return dot(pair.a.key < pair.b.key ? c.normal : Vec3(-c.normal), impact.normal) > same_normal; };
-      if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), goes_on)) continue;
+      if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), goes_on) && is_there(impact, pair.a, pair.b, first, out, pair.scale)) continue;
       add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, unused(impact.id, first, out)), out);
     }
   }
@@ -395,6 +416,7 @@ class SurfacePairs {
   Array<Vec3> touched_;  ///< normals of what the pair touches, in the frame of A
   Array<ApartTriangle> apart_;
   Array<Asked> asked_;
+  Array<Index> skipped_;  ///< triangles whose neighbours are nearer
   Array<std::uint64_t> cores_;  ///< pairs whose middle of B is held
   Array<PairImpact> impacts_, next_impacts_;
   std::size_t last_ = 0;
@@ -425,6 +447,12 @@ void SurfacePairs::collide_missed(const Surface& surface, std::span<const Collid
       const double gap = patch.point[deepest(patch)].gap;
       if (!(gap > std::max(reach, touch))) return;
       apart_.push_back({job.pair, t, gap - touch, a.pose.rotation * n});
+      ask(apart_[apart_.size() - 1]);
+    }, [&](const Triangle& triangle, Index t) {
+      if (!(triangle.height(pair.b_in_a.to_world(middle(b.shape))) >= 0)) return;
+      const SignedPair r = distance_to(triangle, b.shape, pair.b_in_a, pair.b_in_a.position);
+      if (r.status != PairStatus::near || !(r.distance > std::max(reach, touch))) return;
+      apart_.push_back({job.pair, t, r.distance - touch, a.pose.rotation * r.normal});
       ask(apart_[apart_.size() - 1]);
     });
   }
