@@ -90,6 +90,7 @@ void sort_part(T* first, T* last, int tries, const Less& less) {
       last = middle;
     }
   }
+  if (first == last) return;  // of nothing there is no next
   for (T* next = first + 1; next < last; ++next) {
     if (!less(*next, next[-1])) continue;
     T x = static_cast<T&&>(*next);
@@ -155,6 +156,7 @@ template <class List, class Key>
 template <class T, class Less = Smaller>
 [[gnu::always_inline]] inline bool is_sorted(const T* first, const T* last, const Less& less = {}) {
   bool is_so = true;
+  if (first == last) return is_so;
   for (const T* next = first + 1; next < last && is_so; ++next) is_so = !less(*next, next[-1]);
   return is_so;
 }

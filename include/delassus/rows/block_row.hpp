@@ -121,7 +121,7 @@ template <class T>
   double even[3] = {}, odd[3] = {};
   const T *w = W + 9 * std::ptrdiff_t(first), *end = W + 9 * std::ptrdiff_t(last);
   column += first;
-  for (; w + 9 < end; w += 18, column += 2)
+  for (; end - w > 9; w += 18, column += 2)
     for (int k = 0; k < 3; ++k) {
       even[k] += double(w[3 * k]) * double(x[3 * std::ptrdiff_t(column[0]) + k]);
       odd[k] += double(w[9 + 3 * k]) * double(x[3 * std::ptrdiff_t(column[1]) + k]);

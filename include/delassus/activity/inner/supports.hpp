@@ -81,7 +81,13 @@ class Supports {
     for (; then != supports_.end(); ++then) near(then->box);
   }
 
-  std::array<Vec3, World::set_count> gravity_{};
+  static std::array<Vec3, World::set_count> none() {
+    std::array<Vec3, World::set_count> all;
+    all.fill(Vec3::Zero());
+    return all;
+  }
+
+  std::array<Vec3, World::set_count> gravity_ = none();
   std::vector<Support> supports_, now_;
 };
 
