@@ -267,6 +267,36 @@ TEST_CASE("balls that are pushed within the step do not go through each other") 
   }
 }
 
+TEST_CASE("what would overlap by little in a large island waits for the next step") {
+  // A ball hits the top one of `count` boxes, which goes on with half its speed and reaches a second ball, `gap` away, within the step.
+  const auto after = [](int count, double speed, double gap) {
+    AnimationLoop loop{World{RigidBodies{}}, rough};
+    auto& set = bodies<RigidBodies>(loop.world());
+    set.add_fixed(HalfSpace{});
+    for (int i = 0; i < count; ++i) set.add({.position = {0, 0, 0.1 + 0.2 * i}, .mass = 1, .shape = Box{0.2, 0.2, 0.2}});
+    for (int i = 0; i < 10; ++i) loop.step(1 / 60.);
+    const double top = 0.2 * count - 0.1;
+    set.add({.position = {-0.2 - 1e-3, 0, top}, .velocity = {speed, 0, 0}, .mass = 1, .shape = Sphere{0.1}});
+    set.add({.position = {0.2 + gap, 0, top}, .mass = 1, .shape = Sphere{0.1}});
+    loop.step(1 / 60.);
+    const int solves = loop.data().contact_cache.solves;
+    return std::pair(solves, loop.step(1 / 60.).max_penetration);
+  };
+  const double gap = 6e-3, slow = 1.2, fast = 12, length = 0.2;
+  const double overlap = 0.5 * slow / 60 - gap;
+  REQUIRE((overlap > 0 && overlap < 0.05 * 0.5 * length));
+  // One box has 4 contacts, twelve have 48: 144 rows.
+  const auto [solves_of_one, of_one] = after(1, slow, gap);
+  CHECK(solves_of_one == 1);
+  CHECK(of_one < 1e-4 * length);
+  const auto [solves_of_twelve, of_twelve] = after(12, slow, gap);
+  CHECK(solves_of_twelve == 0);
+  CHECK((of_twelve > 1e-4 * length && of_twelve < overlap + 1e-4 * length));  // friction below brakes the box, and nothing drives it
+  const auto [solves_of_deep, of_deep] = after(12, fast, gap);
+  CHECK(solves_of_deep > 0);
+  CHECK(of_deep < 0.05 * length);
+}
+
 TEST_CASE("what breaks in a step that is solved again breaks once") {
   // Balls in a row need several solves; beside them a load that tears off at once.
   using Joint = Breakable<BallJoint>;

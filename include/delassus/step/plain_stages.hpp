@@ -19,6 +19,7 @@
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stages_without_constraints.hpp>
 #include <delassus/step/warm_start.hpp>
+#include <delassus/step/worth_solving_again.hpp>
 
 #include <algorithm>
 #include <span>
@@ -96,8 +97,7 @@ struct PlainStages : StagesWithoutConstraints {
       book.take_solved_motion(std::as_const(step).world());
       step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
       if (book.missed.empty()) return false;
-      // A motion that was not found to the tolerance is not worth a second solve for so little.
-      if (step.summary.status >= Status::max_iterations && !book.any_missed_is_deep(step.h)) return false;
+      if (!inner::is_worth_solving_again(step)) return false;
       if (++book.solves == inner::most_solves) {
         step.summary.status = worse(step.summary.status, Status::max_iterations);
         return false;
