@@ -1,4 +1,4 @@
-// expect: delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out
+// expect: delassus: Substeps and ErrorControlled make a step in parts; take the activity, Sleeping or HandPicked, out
 #include <delassus/delassus.hpp>
 #include <delassus/schemes/substeps.hpp>
 

@@ -15,6 +15,7 @@ namespace delassus {
 /// `inner::HeldTurn`.
 struct ImplicitMidpoint {
   using plays = role::Integrator;
+  static constexpr int order = 2;  ///< read by `ErrorControlled`
   using each_block_alone = ImplicitMidpoint;
   static constexpr double theta = 0.5;  ///< share of v⁺ in the velocity that moves q
   static constexpr bool takes_middle_contacts = true;  ///< read by the step: contacts of what is not soft are seen in the middle too

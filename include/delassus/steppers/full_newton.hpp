@@ -17,6 +17,7 @@ namespace delassus {
 /// swings.
 struct FullNewton {
   using plays = role::Integrator;
+  static constexpr int order = 2;  ///< read by `ErrorControlled`
   template <class P>
   using State = StepBySets<inner::ElasticNewton, typename P::World, typename P::Laws>;
   /// Soft bodies and rods.

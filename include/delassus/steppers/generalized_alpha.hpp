@@ -15,6 +15,7 @@ namespace delassus {
 /// lags: the method is for what changes smoothly.
 struct GeneralizedAlpha {
   using plays = role::Integrator;
+  static constexpr int order = 2;  ///< read by `ErrorControlled`
   template <class P>
   using State = StepBySets<inner::StepByAcceleration, typename P::World, typename P::Laws>;
   /// Particles and soft bodies.

@@ -14,6 +14,7 @@ namespace delassus {
 /// the energy of linear forces. With γ > ½ it is of first order and damped. Source: docs/references.md, [Newmark1959].
 struct Newmark {
   using plays = role::Integrator;
+  static constexpr int order = 2;  ///< read by `ErrorControlled`
   template <class P>
   using State = StepBySets<inner::StepByAcceleration, typename P::World, typename P::Laws>;
   /// Particles and soft bodies.

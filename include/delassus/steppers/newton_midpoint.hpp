@@ -19,6 +19,7 @@ namespace delassus {
 /// islands are solved as one. The solver, the compliance and the stabilisation of the loop are not asked.
 struct NewtonMidpoint {
   using plays = role::Integrator;
+  static constexpr int order = 2;  ///< read by `ErrorControlled`
   template <class P>
   using State = std::conditional_t<(P::Laws::pool_count > 0), MidpointHold<typename P::World, typename P::Laws, typename P::Rows>,
                                    MidpointAlone<typename P::World>>;

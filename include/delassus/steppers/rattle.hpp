@@ -18,6 +18,7 @@ namespace delassus {
 /// `LiePoisson`. Source: [LeimkuhlerMatthews2016].
 struct Rattle {
   using plays = role::Integrator;
+  static constexpr int order = 2;  ///< read by `ErrorControlled`
   template <class P>
   using State = RattleStep<typename P::World, typename P::Laws, typename P::Rows>;
   /// Rigid bodies and particles.

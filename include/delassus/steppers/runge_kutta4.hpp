@@ -15,6 +15,7 @@ namespace delassus {
 /// are those of the start, and constant over the step.
 struct RungeKutta4 {
   using plays = role::Integrator;
+  static constexpr int order = 4;  ///< read by `ErrorControlled`
   template <class P>
   using State = RungeKuttaStep<typename P::World, typename P::Laws, typename P::Rows>;
   /// Rigid bodies and particles.

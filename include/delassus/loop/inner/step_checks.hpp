@@ -80,7 +80,7 @@ consteval bool whole_step_fits() {
 template <class Scheme, class Activity>
 consteval bool substeps_fit() {
   constexpr bool fit = !(requires { requires Scheme::divides_step; } && OverridesStages<Activity>);
-  static_assert(fit, "delassus: Substeps solves several times for one detection; take the activity, Sleeping or HandPicked, out");
+  static_assert(fit, "delassus: Substeps and ErrorControlled make a step in parts; take the activity, Sleeping or HandPicked, out");
   return fit;
 }
 

@@ -9,9 +9,9 @@
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/soft.hpp>
 #include <delassus/solvers/island_problem.hpp>
-#include <delassus/stabilisation/inner/position_laws.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/middle_contacts.hpp>
+#include <delassus/step/position_laws.hpp>
 #include <delassus/step/row_types.hpp>
 #include <delassus/step/solve.hpp>
 
@@ -110,7 +110,7 @@ void find_displacements(Step& step, const typename Step::Rows* at_end) {
   exchange();
   make_position_bias<inner::has_middle_contacts<typename Step::Policies>>(std::as_const(step).world(), step.laws(), rows, step.stabilisation(), step.h, at_end);
   step.W.reset(rows);
-  inner::PositionLaws<typename Step::Laws, typename Step::Scalar, inner::needs_of<std::remove_cvref_t<decltype(step.solver())>>> book;
+  auto& book = own.book;
   book.show(step.W, rows);
   NoObserver nobody;
   Status worst = Status::converged;
@@ -147,6 +147,7 @@ namespace inner {
 template <class P>
 struct ProjectionState {
   Impulses<typename P::Rows> lambda, d;  ///< those of the velocities, meanwhile
+  PositionLaws<typename P::Laws, typename P::World::Scalar, needs_of<typename P::Solver>> book;
   typename P::World::template PerSet<VelocitiesOf> displacement;  ///< w, m/s
 };
 

@@ -1,0 +1,33 @@
+/// What `ErrorControlled` says of a step.
+#pragma once
+
+#include <delassus/core/index.hpp>
+
+namespace delassus {
+
+/// What an error is made by.
+enum class ErrorEffect : unsigned char {
+  motion,   ///< flight and spin, and forces that nothing stops
+  joint,    ///< a body that a joint holds
+  contact,  ///< something pushes all along: it slides, sticks or rolls
+  impact,   ///< something begins to push
+};
+
+/// As the enumerator is written.
+constexpr const char* name(ErrorEffect effect) {
+  constexpr const char* names[] = {"motion", "joint", "contact", "impact"};
+  return unsigned(effect) < 4 ? names[unsigned(effect)] : "unknown";
+}
+
+/// Of one step of the host.
+struct ErrorReport {
+  long steps = 0;       ///< inner steps that were accepted, each of two halves
+  long rejections = 0;  ///< trials that were not
+  long at_floor = 0;    ///< steps of `min_step` that were accepted with a larger error than asked
+  double error = 0;     ///< the largest estimate of an accepted step, in the unit of `accuracy`
+  double least_step = 0, last_step = 0;  ///< s
+  Index set = -1, block = -1;            ///< the body with that largest error
+  ErrorEffect effect = ErrorEffect::motion;  ///< what made it
+};
+
+}  // namespace delassus

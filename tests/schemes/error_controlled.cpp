@@ -1,0 +1,338 @@
+// Steps whose size follows the error that is asked for.
+#include <delassus/fem/elasticity/st_venant_kirchhoff.hpp>
+#include <delassus/fem/tetrahedral_fem.hpp>
+#include <delassus/geometry/box_mesh.hpp>
+#include <delassus/io/checkpoint.hpp>
+#include <delassus/schemes/error_controlled.hpp>
+#include <delassus/steppers/newton_midpoint.hpp>
+
+#include "scenes.hpp"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "catch.hpp"
+
+namespace error_controlled_tests {
+
+using namespace scenes;
+
+namespace {
+
+/// What the steps of a run took.
+struct Work {
+  long steps = 0, rejections = 0, at_floor = 0;
+  void add(const ErrorReport& r) { steps += r.steps, rejections += r.rejections, at_floor += r.at_floor; }
+};
+
+/// Of log y over log x.
+double slope(const std::vector<std::pair<double, double>>& points) {
+  double x = 0, y = 0, xx = 0, xy = 0;
+  const double n = double(points.size());
+  for (const auto& [a, b] : points) {
+    const double u = std::log(a), v = std::log(b);
+    x += u, y += v, xx += u * u, xy += u * v;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+/// error(accuracy): the true error must follow the asked one over four decades.
+void follows(const std::function<double(double)>& error, double least_ratio, double most_ratio) {
+  std::vector<std::pair<double, double>> points;
+  for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    const double e = error(accuracy);
+    INFO("accuracy " << accuracy << ", true error " << e);
+    CHECK(e >= least_ratio * accuracy);
+    CHECK(e <= most_ratio * accuracy);
+    points.emplace_back(accuracy, e);
+  }
+  const double s = slope(points);
+  INFO("slope " << s);
+  CHECK(s >= 0.8);
+  CHECK(s <= 1.2);
+}
+
+/// A double pendulum of rods of 1 m and 1 kg, let go level, after 2 s.
+template <class Integrator>
+Vec3 double_pendulum(double accuracy, const Integrator& integrator) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, Integrator{integrator}, PositionProjection{.rate = 1},
+                     AcceleratedGaussSeidel{.tolerance = 1e-10}, ErrorControlled{.accuracy = accuracy}};
+  auto& set = rigid_bodies(loop);
+  const Mat3 inertia = Vec3(0.01, 0.1, 0.1).asDiagonal();
+  const auto upper = set.add({.position = {0.5, 0, 0}, .mass = 1, .inertia = inertia}), lower = set.add({.position = {1.5, 0, 0}, .mass = 1, .inertia = inertia});
+  loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor_at(set, upper, Vec3(0, 0, 0))});
+  loop.add(BallJoint::Item{anchor_at(set, upper, Vec3(1, 0, 0)), anchor_at(set, lower, Vec3(1, 0, 0))});
+  for (int i = 0; i < 20; ++i) loop.step(0.1);
+  CHECK((set.position(upper) - set.orientation(upper) * Vec3(0.5, 0, 0)).norm() < 1e-2 * accuracy + 1e-9);
+  return set.position(lower);
+}
+
+template <class Integrator = ImplicitMidpoint>
+auto bouncing(double accuracy) {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0.5}, 0.8}}}, Integrator{}, PositionProjection{},
+                     AcceleratedGaussSeidel{.tolerance = 1e-9}, ErrorControlled{.accuracy = accuracy}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  set.add({.position = {0, 0, 1.1}, .mass = 1, .shape = Sphere{0.1}});
+  return loop;
+}
+/// Height above the ground of a ball let fall from 1 m, e = 0.8; 0 once it rests.
+double height_of_bounces(double t) {
+  double v = std::sqrt(2 * g), start = -v / g;  // as if it had come up from the ground
+  while (v > 1e-7 && t >= start + 2 * v / g) start += 2 * v / g, v *= 0.8;
+  return v > 1e-7 ? v * (t - start) - g / 2 * (t - start) * (t - start) : 0;
+}
+
+/// Leads a floor to and fro.
+struct Shaken {
+  using plays = role::Listener;
+  using listens = Listens<>;
+  RigidBodies::Handle floor{};
+  double amplitude = 0.1, rate = 2 * std::numbers::pi;
+  void lead(auto& world, double t, double h) const { bodies<RigidBodies>(world).move_to(floor, {amplitude * std::sin(rate * (t + h)), 0, 0}); }
+};
+
+/// Counts the parts that it hears of.
+struct Heard {
+  using plays = role::Listener;
+  using listens = Listens<stage::Advance, stage::Step>;
+  long parts = 0, steps = 0;
+  std::vector<double> times{};
+  void after(stage::Advance, const auto& step) { ++parts, times.push_back(step.time()); }
+  void after(stage::Step, const auto&) { ++steps; }
+};
+
+}  // namespace
+
+// A top about its middle axis turns over and over. The reference is the same at an accuracy a thousand times finer.
+TEST_CASE("the error of a spinning top follows the accuracy") {
+  const auto top = [](double accuracy) {
+    AnimationLoop loop{World{RigidBodies{}}, ImplicitMidpoint{}, ErrorControlled{.accuracy = accuracy, .max_step = 1}};
+    auto& set = rigid_bodies(loop);
+    set.gravity.setZero();
+    const Mat3 inertia = Vec3(1, 2, 3).asDiagonal();
+    const auto body = set.add({.angular_velocity = {0.01, 5, 0.01}, .mass = 1, .inertia = inertia});
+    for (int i = 0; i < 5; ++i) loop.step(1);
+    return set.orientation(body);
+  };
+  const Quat reference = top(1e-8);
+  follows([&](double accuracy) { return top(accuracy).angularDistance(reference); }, 0.1, 10);
+}
+
+TEST_CASE("the error of a double pendulum follows the accuracy, and its joints are closed") {
+  const Vec3 reference = double_pendulum(1e-8, NewtonMidpoint{});
+  const auto error = [&](auto integrator) {
+    return [&reference, integrator](double accuracy) { return (double_pendulum(accuracy, integrator) - reference).norm() / std::sqrt(2.5 * 0.1); };
+  };
+  follows(error(ImplicitMidpoint{}), 0.05, 10);
+  follows(error(NewtonMidpoint{}), 0.05, 10);
+}
+
+// The largest error at all tenths of a second, in radii: bounces without end come to rest after 9 √(2/g) = 4.06 s.
+TEST_CASE("the error of a bouncing ball follows the accuracy, and it rests in time") {
+  const auto error = [](auto loop) {
+    double worst = 0;
+    Work work;
+    for (int i = 1; i <= 45; ++i) {
+      loop.step(0.1);
+      work.add(error_report(loop));
+      worst = std::max(worst, std::abs(rigid_bodies(loop).pose(1).position.z() - 0.1 - height_of_bounces(0.1 * i)) / 0.1);
+    }
+    CHECK(work.at_floor == 0);
+    CHECK(rigid_bodies(loop).velocity()[1].norm() < 1e-6);
+    return worst;
+  };
+  follows([&](double accuracy) { return error(bouncing(accuracy)); }, 0.1, 10);
+  // By Euler's rule a step and its halves can make the same bounce too early, which only the gap tells.
+  CHECK(error(bouncing<SymplecticEuler>(1e-2)) <= 10 * 1e-2);
+}
+
+// Coulomb's block stops after v²/(2 µ g). Each decade costs a few steps, all of them where it stops.
+TEST_CASE("a sliding block stops where it should") {
+  for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.3}}}, ImplicitMidpoint{}, PositionProjection{},
+                       AcceleratedGaussSeidel{.tolerance = 1e-9}, ErrorControlled{.accuracy = accuracy}};
+    auto& set = rigid_bodies(loop);
+    set.add_fixed(HalfSpace{});
+    const auto block = set.add({.position = {0, 0, 0.1}, .velocity = {2, 0, 0}, .mass = 1, .shape = Box{0.2, 0.2, 0.2}});
+    Work work;
+    for (int i = 0; i < 10; ++i) loop.step(0.1), work.add(error_report(loop));
+    CHECK(std::abs(set.position(block).x() - 4 / (2 * 0.3 * g)) <= accuracy * 0.1 * std::sqrt(3));
+    CHECK(work.steps < 60);
+  }
+}
+
+// A block on a floor that goes to and fro with 3.9 m/s² at most, and friction for 2.9: it sticks and slips. The closed form is
+// piecewise a parabola or the floor's sine, from event to event.
+TEST_CASE("a block on a shaken floor sticks and slips by what is asked") {
+  const double mu = 0.3, A = 0.1, rate = 2 * std::numbers::pi;
+  std::vector<double> exact;
+  {
+    double x = 0, v = A * rate, t = 0;
+    bool slips = false;
+    int sign = 0;
+    const double dt = 1e-6;  // events to a microsecond, arcs in closed form of second order
+    for (int i = 1; i <= 2000000; ++i, t += dt) {
+      const double acceleration = -A * rate * rate * std::sin(rate * (t + dt)), floor = A * rate * std::cos(rate * (t + dt));
+      if (!slips && std::abs(acceleration) > mu * g) slips = true, sign = acceleration > 0 ? 1 : -1;
+      const double before = v;
+      if (slips) {
+        v += sign * mu * g * dt;
+        if (sign * (floor - v) <= 0) {
+          v = floor;
+          slips = std::abs(acceleration) > mu * g;
+          sign = acceleration > 0 ? 1 : -1;
+        }
+      } else {
+        v = floor;
+      }
+      x += 0.5 * (before + v) * dt;
+      if (i % 100000 == 0) exact.push_back(x);
+    }
+  }
+  for (const double accuracy : {1e-2, 1e-3, 1e-4}) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = mu}}}, ImplicitMidpoint{}, PositionProjection{},
+                       AcceleratedGaussSeidel{.tolerance = 1e-9}, Shaken{}, ErrorControlled{.accuracy = accuracy}};
+    auto& set = rigid_bodies(loop);
+    loop.data().get<Shaken>().floor = set.add({.shape = HalfSpace{}, .motion = Motion::kinematic});
+    const auto block = set.add({.position = {0, 0, 0.1}, .velocity = {A * rate, 0, 0}, .mass = 1, .shape = Box{0.4, 0.4, 0.2}});
+    double worst = 0;
+    for (const double x : exact) {
+      loop.step(0.1);
+      worst = std::max(worst, std::abs(set.position(block).x() - x) / 0.3);
+    }
+    INFO("accuracy " << accuracy << ", true error " << worst);
+    CHECK(worst <= 10 * accuracy);
+  }
+}
+
+// Elements couple their nodes beyond the order of the integrator: the halves are taken, by error per step, whose slope is ½ for
+// first order. The reference is the same at an accuracy of 1e-6.
+TEST_CASE("a soft beam that is let go errs less where less is asked") {
+  const auto tip = [](double accuracy) {
+    using Soft = TetrahedralFem<StVenantKirchhoff>;
+    AnimationLoop loop{World{Soft{}}, ImplicitMidpoint{}, ErrorControlled{.accuracy = accuracy}};
+    auto& set = bodies<Soft>(loop.world());
+    const auto beam = set.add({.mesh = box_mesh({1, 0.1, 0.1}, {6, 1, 1}), .elasticity = {.young = 1e6, .poisson = 0.3}, .density = 1000});
+    set.fix(beam, [](const Vec3& x) { return x.x() < 1e-6; });
+    for (int i = 0; i < 3; ++i) loop.step(0.1);
+    return set.position(set.node(beam, 6));
+  };
+  const Vec3 reference = tip(1e-6);
+  std::vector<std::pair<double, double>> points;
+  for (const double accuracy : {1e-2, 1e-3, 1e-4}) points.emplace_back(accuracy, (tip(accuracy) - reference).norm() / 0.5);
+  CHECK(slope(points) >= 0.4);
+  CHECK(points.back().second <= 20 * 1e-4);
+}
+
+TEST_CASE("a stack at rest takes the largest step from the tenth on, and none twice") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ImplicitMidpoint{}, PositionProjection{}, ErrorControlled{}};
+  add_stack(rigid_bodies(loop), 5, Box{1, 1, 1}, 0);
+  Work work;
+  for (int i = 0; i < 60; ++i) loop.step(1), work.add(error_report(loop));
+  CHECK(work.rejections == 0);
+  CHECK(work.steps <= 610);
+  CHECK(error_report(loop).last_step == Approx(0.1).epsilon(1e-9));
+}
+
+TEST_CASE("what a step tried and gave up leaves no trace") {
+  auto loop = bouncing(1e-4);
+  for (int i = 0; i < 4; ++i) loop.step(0.1);
+  const std::vector<char> before = checkpoint(loop);
+  inner::StepCopy copy;
+  copy.keep(loop.data());
+  auto& step = loop.data();
+  step.h = 0.07;
+  stage::detect(step);
+  stage::move(step);
+  REQUIRE(checkpoint(loop) != before);
+  copy.bring_back(step);
+  CHECK(checkpoint(loop) == before);
+}
+
+TEST_CASE("runs under error control repeat to the bit, from the start and from a checkpoint") {
+  auto loop = bouncing(1e-4), other = bouncing(1e-4);
+  for (int i = 0; i < 7; ++i) loop.step(0.1), other.step(0.1);
+  auto restored = bouncing(1e-4);
+  restore(restored, checkpoint(loop));
+  for (int i = 0; i < 13; ++i) {
+    loop.step(0.1), other.step(0.1), restored.step(0.1);
+    REQUIRE(state_hash(loop) == state_hash(other));
+    REQUIRE(state_hash(loop) == state_hash(restored));
+    REQUIRE(error_report(loop).steps == error_report(restored).steps);
+  }
+}
+
+TEST_CASE("loads act over the whole step, led bodies arrive at its end, impulses are those of all of it") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, ImplicitMidpoint{}, PositionProjection{}, ErrorControlled{}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  const auto block = set.add({.position = {0, 0, 0.5}, .mass = 2, .shape = Box{1, 1, 1}});
+  const auto carried = set.add({.position = {9, 0, 5}, .motion = Motion::kinematic});
+  set.move_to(carried, {9, 1, 5});
+  set.apply_force(block, {0, 0, -5});
+  loop.step(0.5);
+  double sum = 0;
+  for (const ContactResult& contact : loop.contacts()) sum += contact.impulse.z();
+  CHECK(std::abs(sum) == Approx((2 * g + 5) * 0.5).epsilon(1e-5));
+  CHECK(set.position(carried) == Vec3(9, 1, 5));
+  CHECK(loop.time() == 0.5);
+  loop.step(0.5);
+  sum = 0;
+  for (const ContactResult& contact : loop.contacts()) sum += contact.impulse.z();
+  CHECK(std::abs(sum) == Approx(2 * g * 0.5).epsilon(1e-5));  // the load acted once
+}
+
+TEST_CASE("listeners hear accepted steps alone, and these end at each output") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Frictionless{}, 0.8}}}, ImplicitMidpoint{}, PositionProjection{}, Heard{},
+                     ErrorControlled{.output_step = 0.03}};
+  auto& set = rigid_bodies(loop);
+  set.add_fixed(HalfSpace{});
+  set.add({.position = {0, 0, 0.6}, .mass = 1, .shape = Sphere{0.1}});
+  Work work;
+  for (int i = 0; i < 6; ++i) loop.step(0.25), work.add(error_report(loop));
+  const auto& heard = loop.data().get<Heard>();
+  CHECK(work.rejections > 0);
+  CHECK(heard.steps == 6);
+  CHECK(heard.parts == work.steps);
+  for (int k = 1; k * 0.03 <= 1.5 + 1e-9; ++k) {
+    double nearest = 1;
+    for (const double t : heard.times) nearest = std::min(nearest, std::abs(t - 0.03 * k));
+    CHECK(nearest < 1e-12);
+  }
+}
+
+TEST_CASE("the report names the body and what its error is made by") {
+  auto loop = bouncing(1e-3);
+  while (loop.time() < 0.39) loop.step(0.1);
+  CHECK(error_report(loop).effect == ErrorEffect::motion);
+  loop.step(0.1);  // it strikes after √(2/g) = 0.45 s
+  CHECK(error_report(loop).effect == ErrorEffect::impact);
+  CHECK(error_report(loop).set == 0);
+  CHECK(error_report(loop).block == 1);
+  CHECK(error_report(loop).rejections > 0);
+  CHECK(error_report(loop).error <= 1e-3);
+}
+
+TEST_CASE("numbers of ErrorControlled that cannot be are one sentence") {
+  const auto step = [](const ErrorControlled& asked, double tolerance = 1e-9) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Frictionless{}}}, ImplicitMidpoint{}, AcceleratedGaussSeidel{.tolerance = tolerance},
+                       ErrorControlled{asked}};
+    rigid_bodies(loop).add({.mass = 1, .shape = Sphere{0.1}});
+    loop.step(0.01);
+  };
+  CHECK_THROWS_WITH(step({.accuracy = 0}), Catch::Contains("ErrorControlled: accuracy"));
+  CHECK_THROWS_WITH(step({.accuracy = 0.2}), Catch::Contains("ErrorControlled: accuracy"));
+  CHECK_THROWS_WITH(step({.min_step = 1, .max_step = 0.1}), Catch::Contains("min_step"));
+  CHECK_THROWS_WITH(step({.max_step = -1}), Catch::Contains("max_step"));
+  CHECK_THROWS_WITH(step({.accuracy = 1e-6}, 1e-6), Catch::Contains("the solver's tolerance"));
+  AnimationLoop euler{World{RigidBodies{}}, ErrorControlled{.accuracy = 1e-4}};
+  rigid_bodies(euler).add({.mass = 1, .shape = Sphere{0.1}});
+  CHECK_THROWS_WITH(euler.step(0.01), Catch::Contains("first order"));
+}
+
+}  // namespace error_controlled_tests
