@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/inner/wrapped.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/archive.hpp>
 #include <delassus/core/if_it_has.hpp>
