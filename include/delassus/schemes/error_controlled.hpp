@@ -18,6 +18,9 @@ namespace delassus {
 /// is at most `accuracy`, or the step is repeated, smaller. Where nothing pushes the end is extrapolated, and one order better
 /// than the integrator; joints are closed after it. Elsewhere the halves are taken. Where something begins to push τ is the
 /// step and the gap at which it does counts with (1 + e) gap/L. `error_report(loop)` says what happened.
+///
+/// A listener with `lead(world, t, h)` is called before each inner step of h s from t, tried ones too, and says by `move_to` where
+/// kinematic bodies are at its end. It then leads all of them: what the host told them is taken for the end of an inner step.
 struct ErrorControlled {
   using plays = role::Scheme;
   static constexpr bool takes_whole_steps = true;  ///< read by the checks: suits integrators that make a whole step at once

@@ -43,16 +43,15 @@ class ControlledSteps {
     report_.least_step = std::numeric_limits<double>::infinity();
     last_h_ = step.last_h;
     t_ = begin;
+    is_kept_ = false;
     if (!control_.has_begun()) control_.begin(std::min({1e-3, asked.max_step, H}));
-    is_trying_ = true;
     for (double left = H; left > 0;) {
       const double now = control_.propose(asked.max_step, asked.min_step, std::min(left, to_output(asked.output_step)));
-      if (!attempt(step, asked, now, now == left)) continue;
+      if (!attempt_or_leave(step, asked, now, now == left)) continue;
       left = now == left ? 0 : end - (t_ + now);
       t_ = left > 0 ? t_ + now : end;
       notify_all(step);
     }
-    is_trying_ = false;
     impulses_.give_to(step);
     step.h = H;
     step.start = start;
@@ -66,9 +65,23 @@ class ControlledSteps {
   }
 
  private:
+  /// The same as `attempt`; where that throws, the bodies are where the inner step began.
+  bool attempt_or_leave(auto& step, const auto& asked, double now, bool is_last) {
+    struct Trying {
+      bool& is_so;
+      ~Trying() { is_so = false; }
+    } trying{is_trying_};
+    is_trying_ = true;
+    try {
+      return attempt(step, asked, now, is_last);
+    } catch (...) {
+      if (std::exchange(is_kept_, false)) copy_.bring_back(step);
+      throw;
+    }
+  }
   /// One inner step of `now` s from t; false where it is to be repeated.
   bool attempt(auto& step, const auto& asked, double now, bool is_last) {
-    copy_.keep(step);
+    if (!std::exchange(is_kept_, true)) copy_.keep(step);
     move(step, now, last_h_, is_last);
     close_joints(step, of_whole_.take(step, lengths_, now));
     const bool is_whole_lost = step.summary.quarantined > 0;
@@ -106,6 +119,7 @@ class ControlledSteps {
       end_of_whole_.extrapolate(step.world(), 1 / (std::ldexp(1.0, p) - 1));
       close_joints_.run(step);
     }
+    is_kept_ = false;
     note(step, error, estimate, now, E <= 1 ? 0 : 1, change, pushes);
     control_.accept(t_ + now, now, E, k, change.is_any);
     std::swap(impulses_, trial_);
@@ -243,7 +257,7 @@ class ControlledSteps {
   StepSizeControl control_;
   ErrorReport report_;
   double t_ = 0, last_h_ = 0;  ///< s: the start of the inner step, and the size of the one before
-  bool is_trying_ = false;
+  bool is_trying_ = false, is_kept_ = false;  ///< `copy_` has the start of this inner step
 };
 
 }  // namespace delassus::inner
