@@ -148,8 +148,9 @@ inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, co
     inner::overlap_of_faces(clip_is_a ? face_b : face_a, clip_is_a ? face_a : face_b, n, !clip_is_a, margin,
                             slack, patch);
   }
-  if (face_a.count == 2) inner::lay_on_side(a, Pose{}, n, true, patch);
-  if (face_b.count == 2) inner::lay_on_side(b, b_in_a, n, false, patch);
+  const double least = r.distance - inner::face_slack * scale;
+  if (face_a.count == 2) inner::lay_on_side(a, Pose{}, n, true, least, patch);
+  if (face_b.count == 2) inner::lay_on_side(b, b_in_a, n, false, least, patch);
   inner::drop_twins(scale, patch);
   patch.area = inner::area_of_patch(patch, n, inner::round_face(a, face_a, zero<Vec3>()), inner::round_face(b, face_b, b_in_a.position));
   inner::add_witness({r.point_a, r.point_b, r.distance, Patch::witness}, scale,

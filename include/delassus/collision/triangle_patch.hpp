@@ -140,7 +140,7 @@ inline PatchTrust triangle_patch(const Triangle& t, const Shape& s, const Pose& 
     else if (rim.count == 2 && face.count >= 3 && -dot(face.normal, n) > 0.2)
       inner::overlap_of_faces(rim, face, n, true, margin, slack, patch);
   }
-  if (face.count == 2) inner::lay_on_side(s, pose, n, false, patch);
+  if (face.count == 2) inner::lay_on_side(s, pose, n, false, r.distance - inner::face_slack * scale, patch);
   inner::drop_twins(scale, patch);
   if (is_flat && face.count >= 3) patch.corners = patch.count;
   // A round shape over an edge that is nearly flat is beside both its triangles: the shortest way is its

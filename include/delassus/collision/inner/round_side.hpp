@@ -48,15 +48,16 @@ inline bool leave_side(const Shape& s, const Vec3& x, const Vec3& d, double& way
 }
 
 /// Moves the points of a patch on this body to its round side, along the normal n from A to B; those that no such line
-/// meets go. A point of a patch is made of straight lines: where these cross, or a capsule leans, it lies inside.
-inline void lay_on_side(const Shape& s, const Pose& pose, const Vec3& n, bool is_a, Patch& patch) {
+/// meets go, and those that would then be deeper than `least`, a gap: no point is deeper than the bodies. A point of a patch is made of
+/// straight lines: where these cross, or a capsule leans, it lies inside.
+inline void lay_on_side(const Shape& s, const Pose& pose, const Vec3& n, bool is_a, double least, Patch& patch) {
   const Vec3 out = is_a ? n : Vec3(-n), d = transposed_times(pose.rotation, out);
   int kept = 0;
   for (int i = 0; i < patch.count; ++i) {
     PatchPoint p = patch.point[i];
     Vec3& own = is_a ? p.a : p.b;
     double way = 0;
-    if (!leave_side(s, pose.to_local(own), d, way)) continue;
+    if (!leave_side(s, pose.to_local(own), d, way) || p.gap - way < least) continue;
     own += way * out;
     p.gap -= way;
     patch.point[kept++] = p;
