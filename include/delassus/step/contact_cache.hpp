@@ -85,15 +85,14 @@ class BasicContactCache {
   int solves = 0;                    ///< of the step, but the first
   StepReport report_of_detect;       ///< as the first solve found it
   std::vector<ContactPoint> missed;  ///< pairs that were left out and meet after all
-  /// Whether some of them would overlap by more than `share(a, b)`, of anchors, of their size when a step of h (s) is over.
-  template <class Share>
-  bool is_any_missed_deeper(double h, const Share& share) const {
-    return std::any_of(missed.begin(), missed.end(), [&](const ContactPoint& p) {
-      const Collider &a = colliders[p.a], &b = colliders[p.b];
-      const double closing = dot(p.normal, a.velocity_at(p.point() - 0.5 * p.travel) - b.velocity_at(p.point() + 0.5 * p.travel));
-      return h * closing - p.gap > share(anchors_[p.a], anchors_[p.b]) * inner::pair_scale(a.shape, b.shape);
-    });
+  /// By how much of their size the two of such a pair would overlap when a step of h (s) is over.
+  double overlap_of(const ContactPoint& p, double h) const {
+    const Collider &a = colliders[p.a], &b = colliders[p.b];
+    const double closing = dot(p.normal, a.velocity_at(p.point() - 0.5 * p.travel) - b.velocity_at(p.point() + 0.5 * p.travel));
+    return (h * closing - p.gap) / inner::pair_scale(a.shape, b.shape);
   }
+  const Anchor& anchor_of(Index collider) const { return anchors_[collider]; }
+  Index material_of(Index collider) const { return materials_[collider]; }
   /// Adds them to the points of the step.
   void join_missed() {
     points.insert(points.end(), missed.begin(), missed.end());

@@ -96,8 +96,8 @@ struct PlainStages : StagesWithoutConstraints {
       auto& book = step.contact_cache;
       book.take_solved_motion(std::as_const(step).world());
       step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
-      if (book.missed.empty()) return false;
-      if (!inner::is_worth_solving_again(step)) return false;
+      inner::leave_what_bounces(step);
+      if (book.missed.empty() || !inner::is_worth_solving_again(step)) return false;
       if (++book.solves == inner::most_solves) {
         step.summary.status = worse(step.summary.status, Status::max_iterations);
         return false;

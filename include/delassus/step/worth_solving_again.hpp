@@ -1,7 +1,9 @@
 /// Whether what a solved motion brings together is worth solving the step once more.
 #pragma once
 
+#include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/constraints/constraints.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/islands.hpp>
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 namespace delassus::inner {
 
@@ -30,15 +33,42 @@ Index rows_about(const Islands<T>& islands, AllRows<T> rows, const Index* first_
   return count;
 }
 
+/// e between two materials, of the law that takes them.
+double restitution_between(auto& step, Index a, Index b) {
+  double e = 0;
+  each_contact_pool(step.laws(), [&](auto, auto& pool) {
+    using Law = std::remove_cvref_t<decltype(pool.law)>;
+    if constexpr ((refinements_of<Law> & refine::restitution) != 0) {
+      if (!pool.law.takes(a, b)) return;
+      auto parameters = pool.law.law.parameters();
+      if (!step.material_pairs.empty())
+        if (const auto pair = step.material_pairs.between(a, b)) pool.law.set_pair(parameters, *pair);
+      e = std::max(e, double(parameters.restitution));
+    }
+  });
+  return e;
+}
+
+/// What bounces is left to the next step, which sees with what speed it meets: in this one it would have e times the speed that it
+/// had before it was pushed. Not what would overlap by more than a contact may.
+void leave_what_bounces(auto& step) {
+  auto& book = step.contact_cache;
+  std::erase_if(book.missed, [&](const ContactPoint& p) {
+    return book.overlap_of(p, step.h) <= margin_limit && restitution_between(step, book.material_of(p.a), book.material_of(p.b)) > 0;
+  });
+}
+
 /// A motion that was not found to the tolerance is not worth a second solve for what overlaps by less than the least margin.
 bool is_worth_solving_again(auto& step) {
   using World = std::remove_cvref_t<decltype(step.world())>;
   const bool is_found = step.summary.status < Status::max_iterations;
+  const auto& book = step.contact_cache;
   Index first[World::set_count + 1] = {};
   step.world().each([&](const auto& set, auto s) { first[s + 1] = first[s] + set.blocks(); });
-  return step.contact_cache.is_any_missed_deeper(step.h, [&](const Anchor& a, const Anchor& b) {
-    if (rows_about(step.islands, step.arrays.all(), first, a, b) > small_island) return shallow_share;
-    return is_found ? std::numeric_limits<double>::lowest() : margin_share;
+  return std::any_of(book.missed.begin(), book.missed.end(), [&](const ContactPoint& p) {
+    const bool is_large = rows_about(step.islands, step.arrays.all(), first, book.anchor_of(p.a), book.anchor_of(p.b)) > small_island;
+    if (is_found && !is_large) return true;
+    return book.overlap_of(p, step.h) > (is_large ? shallow_share : margin_share);
   });
 }
 
