@@ -81,13 +81,17 @@ struct BouncingRow {
   const RowPast* past;  ///< null: it was not there
 
   /// Of joints and neighbours the free motion knows nothing, the last velocities of the bodies do. Of two accelerations the smaller
-  /// one holds: an impact elsewhere, or a host who sets a velocity, is in one of them alone. Where the row pushed, this is what it
+  /// one holds: an impact elsewhere, or a host who sets a velocity, is in one of them alone. Where they differ, both may have one, and
+  /// the free motion holds if it is smaller still. Where the row pushed, this is what it
   /// was before.
   double acceleration() const {
     if (past && past->impulse > 0) return past->acceleration;
     const double last = (velocity - last_velocity) / last_h, before = (last_velocity - earlier) / earlier_h;
-    if (!std::isfinite(last)) return (free - velocity) / h;
-    return std::abs(before) < std::abs(last) ? before : last;
+    const double falling = (free - velocity) / h;
+    if (!std::isfinite(last)) return falling;
+    const double smaller = std::abs(before) < std::abs(last) ? before : last;
+    const bool was_hit = std::abs(last - before) > 0.5 * std::max(std::abs(last), std::abs(before));
+    return was_hit && std::abs(falling) < std::abs(smaller) ? falling : smaller;
   }
   /// For θ = 1, v is the velocity of the middle of the last step, and moves the row. For θ = ½ it is that of the end, and the mean
   /// with u moves the row.
