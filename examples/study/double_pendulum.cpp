@@ -3,6 +3,8 @@
 #include "scene_study.hpp"
 
 #include <delassus/delassus.hpp>
+#include <delassus/schemes/error_controlled.hpp>
+#include <delassus/solvers/direct_gauss_seidel.hpp>
 
 #include <array>
 #include <cmath>
@@ -38,19 +40,20 @@ Vec3 tip(double t) {
   return {std::sin(s[0]) + std::sin(s[1]), 0, -std::cos(s[0]) - std::cos(s[1])};
 }
 
+const auto scene = [](auto... policies) {
+  AnimationLoop loop{World{Particles{}}, Constraints{DistanceJoint{}}, policies...};
+  auto& points = bodies<Particles>(loop.world());
+  const auto a = points.add({.position = {1, 0, 0}, .mass = 1.0}),
+             b = points.add({.position = {2, 0, 0}, .mass = 1.0});
+  loop.add(DistanceJoint::Item{.a = anchor(points, a), .b = world_anchor({0, 0, 0}), .length = 1});
+  loop.add(DistanceJoint::Item{.a = anchor(points, b), .b = anchor(points, a), .length = 1});
+  return loop;
+};
+const auto place = [](const auto& loop) { return loop.world().template set<0>().pose(1).position; };
+
 }  // namespace
 
 bool double_pendulum(const Options& options) {
-  const auto scene = [](auto... policies) {
-    AnimationLoop loop{World{Particles{}}, Constraints{DistanceJoint{}}, policies...};
-    auto& points = bodies<Particles>(loop.world());
-    const auto a = points.add({.position = {1, 0, 0}, .mass = 1.0}),
-               b = points.add({.position = {2, 0, 0}, .mass = 1.0});
-    loop.add(DistanceJoint::Item{.a = anchor(points, a), .b = world_anchor({0, 0, 0}), .length = 1});
-    loop.add(DistanceJoint::Item{.a = anchor(points, b), .b = anchor(points, a), .length = 1});
-    return loop;
-  };
-  const auto place = [](const auto& loop) { return loop.world().template set<0>().pose(1).position; };
   return run_study(options, "double_pendulum", 1e-3, scene,
                    Combinations{Choices{SymplecticEuler{}, ImplicitMidpoint{}},
                                 Choices{Baumgarte{}, WholeViolation{}, PositionProjection{.rate = 1}},
@@ -59,6 +62,20 @@ bool double_pendulum(const Options& options) {
                     .duration = 3,
                     .steps = {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002},
                     .tolerances = {1e-3, 1e-6, 1e-10},
+                    .outputs = 30,
+                    .repeats = 3},
+                   Measures{Compared{"place of the tip", "m", place, tip}, energy_change(), joint_drift()});
+}
+
+bool double_pendulum_accuracy(const Options& options) {
+  return run_study(options, "double_pendulum_accuracy", 1e-3, scene,
+                   Combinations{Choices{PlainOrder{}, ErrorControlled{.length = 1}}, Choices{ImplicitMidpoint{}},
+                                Choices{PositionProjection{.rate = 1}}, Choices{DirectGaussSeidel{}}},
+                   {.name = "Double pendulum",
+                    .duration = 3,
+                    .steps = {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002},
+                    .accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
+                    .tolerances = {1e-12},
                     .outputs = 30,
                     .repeats = 3},
                    Measures{Compared{"place of the tip", "m", place, tip}, energy_change(), joint_drift()});

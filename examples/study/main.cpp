@@ -1,4 +1,4 @@
-// delassus_study: what accuracy costs, for five scenes that are built in.
+// delassus_study: what accuracy costs, for scenes that are built in.
 #include "scene_study.hpp"
 
 #include <delassus/core/expect.hpp>
@@ -16,12 +16,13 @@ namespace study_program {
 namespace {
 
 constexpr const char* help =
-    R"text(delassus_study [--scene NAME] [--budget E] [--shard I/N] [--out DIR] [--quick] [--quiet]
+    R"text(delassus_study [--accuracy] [--scene NAME] [--budget E] [--shard I/N] [--out DIR] [--quick] [--quiet]
 
 Runs scenes over integrators, stabilisations, solvers, builders, tolerances and steps; draws error against time; and names
 the cheapest combination that holds an error budget. A run that was interrupted goes on from its log in DIR.
 
-  --scene NAME   sliding_box, double_pendulum, ten_boxes, heavy_chain or soft_bar; all five if not said
+  --accuracy     fixed steps beside steps that keep an error, of the same parts: double_pendulum and bouncing_ball
+  --scene NAME   sliding_box, double_pendulum, ten_boxes, heavy_chain or soft_bar; all that there are if not said
   --budget E     the largest error of a place, m; 1 mm if not said
   --shard I/N    every Nth run, from the Ith, I = 0 ... N-1; logs of shards joined in NAME.log are the whole study
   --out DIR      the folder of NAME.svg, NAME.csv and NAME.log, made if missing; "out/study" if not said
@@ -39,9 +40,15 @@ constexpr Part parts[] = {{"sliding_box", sliding_box},
                           {"ten_boxes", ten_boxes},
                           {"heavy_chain", heavy_chain},
                           {"soft_bar", soft_bar}};
+constexpr Part parts_of_accuracy[] = {{"double_pendulum", double_pendulum_accuracy}, {"bouncing_ball", bouncing_ball_accuracy}};
 
-bool is_scene(std::string_view name) {
-  for (const Part& part : parts)
+std::span<const Part> parts_for(const Options& options) {
+  if (options.has_accuracy) return parts_of_accuracy;
+  return parts;
+}
+
+bool is_scene(std::span<const Part> among, std::string_view name) {
+  for (const Part& part : among)
     if (name == part.name) return true;
   return false;
 }
@@ -66,13 +73,15 @@ Options read_options(std::span<char*> arguments) {
     const bool has_value = i + 1 < arguments.size();
     if (word == "--quick")
       options.is_quick = true;
+    else if (word == "--accuracy")
+      options.has_accuracy = true;
     else if (word == "--quiet")
       options.is_quiet = true;
     else if (word == "--help" || word == "-h")
       options.wants_help = true;
     else if (word == "--out" && has_value)
       options.out = arguments[++i];
-    else if (word == "--scene" && has_value && is_scene(arguments[i + 1]))
+    else if (word == "--scene" && has_value)
       options.scene = arguments[++i];
     else if (word == "--budget" && has_value && read_budget(arguments[i + 1], options))
       ++i;
@@ -81,6 +90,7 @@ Options read_options(std::span<char*> arguments) {
     else
       options.unknown = word;
   }
+  if (options.unknown.empty() && !options.scene.empty() && !is_scene(parts_for(options), options.scene)) options.unknown = options.scene;
   return options;
 }
 
@@ -100,7 +110,7 @@ int main(int count, char** arguments) {
   try {
     std::filesystem::create_directories(options.out);
     bool holds = true;
-    for (const Part& part : parts)
+    for (const Part& part : parts_for(options))
       if (options.scene.empty() || options.scene == part.name) holds = part.run(options) && holds;
     return holds ? 0 : 1;
   } catch (const std::exception& error) {

@@ -7,6 +7,8 @@
 #include <delassus/study/sweep.hpp>
 #include <delassus/study/tables.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -19,7 +21,7 @@ struct Options {
   std::string out = "out/study", scene, unknown;
   double budget = 0;  ///< in the unit of the scene's first measure; 0: the scene's own
   int shard = 0, shards = 1;
-  bool is_quick = false, is_quiet = false, wants_help = false;
+  bool has_accuracy = false, is_quick = false, is_quiet = false, wants_help = false;
 };
 
 /// Announces the study, runs it, writes <out>/<file>.svg and .csv, prints the best and what failed, and
@@ -32,7 +34,7 @@ bool run_study(const Options& options, const char* file, double usual_budget, co
   plan.shard = options.shard;
   plan.shards = options.shards;
   plan.max_seconds = 20;
-  if (options.is_quick) plan.repeats = 1, plan.steps.resize(2), plan.tolerances.resize(1);
+  if (options.is_quick) plan.repeats = 1, plan.steps.resize(2), plan.tolerances.resize(1), plan.accuracies.resize(std::min<std::size_t>(plan.accuracies.size(), 2));
   const std::string base = (std::filesystem::path(options.out) / file).string();
   plan.log = base +
              (plan.shards > 1 ? "." + std::to_string(plan.shard) + "of" + std::to_string(plan.shards) : "") +
@@ -78,5 +80,9 @@ bool double_pendulum(const Options& options);
 bool ten_boxes(const Options& options);
 bool heavy_chain(const Options& options);
 bool soft_bar(const Options& options);
+/// Fixed steps and steps that keep an accuracy, of the same parts.
+bool double_pendulum_accuracy(const Options& options);
+/// The same.
+bool bouncing_ball_accuracy(const Options& options);
 
 }  // namespace study_program

@@ -54,6 +54,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   WHAT(KIND, Rack)                           \
   WHAT(KIND, Limit<Turn>)                    \
   WHAT(KIND, Limit<Slide>)                   \
+  WHAT(KIND, Limit<Length>)                  \
   WHAT(KIND, Motor<Turn>)                    \
   WHAT(KIND, Motor<Slide>)                   \
   WHAT(KIND, Drive<Turn>)                    \

@@ -44,6 +44,7 @@ struct Frictionless;
 
 struct Turn;
 struct Slide;
+struct Length;
 template <class Coordinate>
 struct Limit;
 template <class Coordinate>

@@ -18,7 +18,7 @@ using namespace delassus;
 using namespace poses;
 
 TEMPLATE_TEST_CASE("the row of a free axis is the derivative of its coordinate, in every pose", "", Turn,
-                   Slide) {
+                   Slide, Length) {
   each_pair([](int a, int b, Scene& scene) {
     if (a == 2 || a == 3 || (TestType::winds && b == 2)) return;
     const typename Drive<TestType>::Item item{.a = scene.end(a, scene.turn()),

@@ -120,6 +120,34 @@ TEST_CASE("a diagram joins the steps of each choice where it is asked to, in pla
   CHECK(count(diagram_svg(study), "class=\"front\"") == 1);
 }
 
+TEST_CASE("a diagram of fixed steps and of accuracies has a line for each, and says what the dearer kind costs") {
+  Study study = example();
+  CHECK(count(diagram_svg(study, {.budget = 1e-3}), "front kept") == 0);
+  for (int k = 0; k < 2; ++k) {
+    StudyRun run = study.runs[1];
+    run.number += 10 + k, run.accuracy = k == 0 ? 1e-2 : 1e-3, run.inner_steps = 40, run.repeated = 3;
+    run.cost = k == 0 ? 2e-4 : 4e-4, run.errors[0] = k == 0 ? 2e-3 : 2e-4;
+    study.runs.push_back(run);
+  }
+  const std::string svg = diagram_svg(study, {.budget = 1e-3});
+  CHECK(count(svg, "class=\"front\"") == 1);
+  CHECK(count(svg, "class=\"front kept\"") == 1);
+  CHECK(svg.find("40 steps, 3 repeated") != svg.npos);
+  CHECK(svg.find("The cheapest fixed step takes 5 times as long: loop.step(0.1).") != svg.npos);
+  // 1e-6 m is run 3's alone, and below what the reference is sure to.
+  study.measures[0].uncertainty = 0;
+  CHECK(diagram_svg(study, {.budget = 1e-5}).find("No accuracy that is kept is known to hold 10 µm.") != std::string::npos);
+}
+
+TEST_CASE("a diagram says until when the references agree to the budget") {
+  Study study = example();
+  study.measures[0].uncertainty = 0.5;
+  study.measures[0].uncertainty_until.assign(std::size_t(study.plan.outputs), 0.5);
+  study.measures[0].uncertainty_until[0] = 1e-4;
+  const std::string svg = diagram_svg(study, {.budget = 1e-3});
+  CHECK(svg.find("The references agree to 1 mm for " + inner::with_prefix(study.plan.duration / study.plan.outputs, "s")) != svg.npos);
+}
+
 TEST_CASE("the tables hold the front, what did not work, and every run with every digit") {
   const Study study = example();
   const Table front = front_table(study);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/clock.hpp>
+#include <delassus/schemes/error_report.hpp>
 #include <delassus/step/step_report.hpp>
 #include <delassus/study/sweep.hpp>
 
@@ -33,16 +34,27 @@ struct Blows {};
 struct Vanishes {};  // a value that is not a number, without a status that says so
 struct Refuses {};
 
+/// A "scheme" that takes steps which leave an error of `accuracy`, and repeats each third.
+struct Keeps {
+  double accuracy = 1e-3;
+};
+
 struct Loop {
   double* clock;
+  Keeps keeps{0};
   double factor = 0, order = 1, price = 1, tolerance = 0;
   int fault = 0;
   double time = 0, h = 0;
   long count = 0;
 
+  const Loop& data() const { return *this; }
+  template <class Role>
+  const Keeps& policy() const {
+    return keeps;
+  }
   double value() const {
     if (fault == 3 && time > 0.5) return std::numeric_limits<double>::quiet_NaN();
-    return time + (time > 0 ? factor * std::pow(h, order) + tolerance : 0);
+    return time + (time > 0 ? (keeps.accuracy > 0 ? keeps.accuracy : factor * std::pow(h, order)) + tolerance : 0);
   }
   StepReport step(double by) {
     h = by;
@@ -55,6 +67,9 @@ struct Loop {
     return report;
   }
 };
+
+/// What `sweep` asks a loop that keeps an accuracy.
+inline ErrorReport error_report(const Loop&) { return {.steps = 6, .rejections = 2}; }
 
 /// The scene: how many loops it built is counted.
 struct Scene {
@@ -76,6 +91,7 @@ struct Scene {
     loop.order = order;
     loop.price = m.price;
   }
+  static void take(Loop& loop, const Keeps& k) { loop.keeps = k; }
   static void take(Loop& loop, const Sweeps& s) { loop.tolerance = s.tolerance; }
   static void take(Loop&, const Sound&) {}
   static void take(Loop& loop, const Caps&) { loop.fault = 1; }

@@ -213,7 +213,7 @@ TEST_CASE(
   // Numbers that no run has, in the fields of the number, the outcome and the steps of one line.
   std::ifstream file(plan.log);
   const std::string sound((std::istreambuf_iterator<char>(file)), {});
-  for (const int field : {2, 7, 11})
+  for (const int field : {2, 7, 11, 14})
     for (const char* wrong : {"1e300", "-1", "nan", "9e99"}) {
       std::size_t start = sound.rfind('\n', sound.find("\trun\t")) + 1;
       for (int k = 0; k < field; ++k) start = sound.find('\t', start) + 1;
@@ -228,6 +228,63 @@ TEST_CASE(
   longer.duration = 2;
   CHECK(sweep(stage.scene, list, longer, measures, references, stage.clock()).resumed == 0);
   std::filesystem::remove(plan.log);
+}
+
+TEST_CASE("combinations that keep an accuracy are run at each accuracy in place of each step") {
+  Stage stage;
+  const Combinations list{Choices{Method<1>{}, Method<2>{}}, Choices{Sound{}, Keeps{}}};
+  StudyPlan plan = plan_of({0.25, 0.125, 0.0625}, {1e-6, 1e-8});
+  plan.accuracies = {1e-2, 1e-4};
+  plan.log = fresh_file("delassus_study_accuracies.log");
+  const Study study = sweep(stage.scene, list, plan, compared(), References{}, stage.clock());
+  CHECK(announcement(list, plan) ==
+        "scripted: 2 combinations × 2 tolerances × 3 steps + 2 combinations × 2 tolerances × 2 accuracies = 20 runs, each "
+        "measured once and timed 3 times");
+  REQUIRE(study.runs.size() == 20);
+  CHECK(study.run_count() == 20);
+  for (int k = 0; k < 20; ++k) CHECK(study.runs[std::size_t(k)].number == k);
+  const StudyRun& kept = study.runs[9];  // after six of the first combination: 1e-6 at two, 1e-8 at the second
+  CHECK(kept.combination == 1);
+  CHECK(kept.is_controlled());
+  CHECK(kept.accuracy == 1e-4);
+  CHECK(kept.tolerance == 1e-8);
+  CHECK(kept.h == 0.5);  // from output to output
+  CHECK(kept.steps == 2);
+  CHECK(kept.inner_steps == 12);
+  CHECK(kept.repeated == 4);
+  CHECK(kept.errors[0] == Approx(1e-4));
+  CHECK(study.line(kept) == "auto loop = scene(Method<1, 0>{}, scripted::Keeps{.accuracy = 0.0001});  // then loop.step(0.5)");
+  // Of fixed steps the second order at 1/16, 16 steps, is the best; what keeps 1e-4 takes 2.
+  CHECK(study.cheapest(0, 5e-3)->number == 7);
+  CHECK(study.cheapest(0, 5e-3, Stepping::fixed)->errors[0] == Approx(1. / 256));
+  CHECK(study.front(0, Stepping::fixed).size() == 3);
+  CHECK(study.front(0, Stepping::controlled).size() == 1);  // both cost the same here
+  const Study known = sweep(stage.scene, list, plan, compared(), References{}, stage.clock());
+  CHECK(known.resumed == 20);
+  CHECK(known.runs[9].accuracy == 1e-4);
+  CHECK(known.runs[9].inner_steps == 12);
+
+  plan.accuracies.clear();  // as the policy says
+  plan.log.clear();
+  const Study usual = sweep(stage.scene, list, plan, compared(), References{}, stage.clock());
+  REQUIRE(usual.runs.size() == 16);
+  CHECK(usual.runs[6].accuracy == 1e-3);
+}
+
+TEST_CASE("beyond the horizon the references do not agree") {
+  Stage stage;
+  // The one is t + 0, the other t + tolerance of its scheme: their difference is 2^-4 at every output.
+  const References agree{refined(4, Method<2>{.factor = 0}), refined(4, Keeps{1. / 16})};
+  const Combinations list{Choices{Method<2>{}}};
+  const auto measures = Measures{Compared{"value", "m", value}};
+  const Study even = sweep(stage.scene, list, plan_of({1. / 8}), measures, agree, stage.clock());
+  CHECK(even.horizon(0, 0.1) == 1);
+  CHECK(even.horizon(0, 0.05) == 0);
+  // A difference that grows: value · (1 + t) against value.
+  const auto growing = [](const Loop& loop) { return loop.time + loop.keeps.accuracy * loop.time * loop.time; };
+  const Study parting = sweep(stage.scene, list, plan_of({1. / 8}), Measures{Compared{"value", "m", growing}}, agree, stage.clock());
+  CHECK(parting.measures[0].uncertainty_until == std::vector<double>{1. / 64, 1. / 16});
+  CHECK(parting.horizon(0, 0.05) == 0.5);
 }
 
 TEST_CASE("shards do every run once, and their logs joined are the whole study") {

@@ -3,6 +3,8 @@
 
 #include <delassus/core/index.hpp>
 
+#include <array>
+
 namespace delassus {
 
 /// What an error is made by.
@@ -19,6 +21,12 @@ constexpr const char* name(ErrorEffect effect) {
   return unsigned(effect) < 4 ? names[unsigned(effect)] : "unknown";
 }
 
+/// The inner steps whose largest error one effect made.
+struct EffectSteps {
+  long steps = 0, rejections = 0;  ///< accepted, and tried in vain
+  double least_step = 0;           ///< s, of the accepted ones; 0 where there is none
+};
+
 /// Of one step of the host.
 struct ErrorReport {
   long steps = 0;       ///< inner steps that were accepted, each of two halves
@@ -28,6 +36,7 @@ struct ErrorReport {
   double least_step = 0, last_step = 0;  ///< s
   Index set = -1, block = -1;            ///< the body with that largest error
   ErrorEffect effect = ErrorEffect::motion;  ///< what made it
+  std::array<EffectSteps, 4> by_effect{};    ///< in the order of `ErrorEffect`
 };
 
 }  // namespace delassus

@@ -31,7 +31,7 @@ namespace delassus {
 class Audit {
  public:
   using plays = role::Listener;
-  using listens = Listens<stage::Begin, stage::Step>;
+  using listens = Listens<stage::Begin, stage::Advance, stage::Step>;
   double least = 1e-4;  ///< of the speed of the scene, in (0, 1)
 
   Audit() = default;
@@ -46,15 +46,20 @@ class Audit {
     if (seen_.steps == 0) see_bodies(loop.world());
   }
 
-  void after(stage::Step, const auto& loop) {
-    ++seen_.steps;
+  /// Each part of a step that a scheme divides has rows of its own.
+  void after(stage::Advance, const auto& loop) {
     using Loop = std::remove_cvref_t<decltype(loop)>;
     constexpr bool has_W = !Loop::has_constraints || Loop::has_problem;
     static_assert(has_W,
                   "delassus: Audit weighs impulses by W, which NewtonMidpoint, Rattle and RungeKutta4 do without, and "
                   "JointByJoint too; take another integrator, such as ImplicitMidpoint, or PlainOrder, or take Audit out");
     if constexpr (Loop::has_constraints && has_W) see_constraints(loop);
+  }
+
+  void after(stage::Step, const auto& loop) {
+    ++seen_.steps;
     see_motion(loop.world());
+    if constexpr (requires { loop.template state<role::Scheme>().report().by_effect; }) see_inner_steps(loop);
   }
 
   /// Of the steps so far.
@@ -94,6 +99,24 @@ class Audit {
       body.end = set.pose(b);
       body.has_moved = body.has_moved || (body.end.position - body.start.position).norm() > least * size_ ||
                        (body.end.rotation - body.start.rotation).norm() > least;
+    });
+  }
+
+  /// What made the error of the inner steps, and whose was the largest.
+  void see_inner_steps(const auto& loop) {
+    const ErrorReport& report = loop.template state<role::Scheme>().report();
+    for (std::size_t k = 0; k < report.by_effect.size(); ++k) {
+      const EffectSteps& own = report.by_effect[k];
+      StepCause& cause = seen_.causes[k];
+      if (own.steps > 0) cause.least_step = cause.steps == 0 ? own.least_step : std::min(cause.least_step, own.least_step);
+      cause.steps += own.steps;
+      cause.rejections += own.rejections;
+    }
+    StepCause& largest = seen_.causes[std::size_t(report.effect)];
+    if (!(report.error > largest.error)) return;
+    largest.error = report.error;
+    loop.world().each([&](const auto& set, auto s) {
+      if (Index(s) == report.set) largest.body = set.who(report.block);
     });
   }
 

@@ -6,8 +6,10 @@
 #include <delassus/core/status.hpp>
 #include <delassus/io/table.hpp>
 #include <delassus/math/pose.hpp>
+#include <delassus/schemes/error_report.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -54,12 +56,22 @@ struct AuditedBody {
   Vec3 position;  ///< at the end, m, world
 };
 
+/// The inner steps of a run under `ErrorControlled` whose error one effect made.
+struct StepCause {
+  ErrorEffect effect = ErrorEffect::motion;  ///< its kind
+  long steps = 0, rejections = 0;  ///< accepted, and tried in vain
+  double least_step = 0;           ///< s, of the accepted ones
+  double error = 0;  ///< the largest that was accepted in a step of the host which it ruled, in the unit of the accuracy
+  std::string body;  ///< whose error that was
+};
+
 /// What a run used, and what it paid for.
 struct AuditReport {
   long steps = 0;  ///< that were seen
   double work = 0;  ///< visits of rows, Σ rows × (sweeps + factorizations): no machine changes them
   std::vector<EffectUse> uses;  ///< laws in their order, then bodies
   std::vector<AuditedBody> bodies;  ///< all that move
+  std::vector<StepCause> causes;  ///< of the size of inner steps, those that had any; none without `ErrorControlled`
 
   /// Those whose verdict is `never`.
   std::vector<EffectUse> unused() const {
@@ -111,6 +123,15 @@ inline Table audit_table(const AuditReport& report) {
   return table;
 }
 
+/// What set the size of the inner steps: one row an effect.
+inline Table step_table(const AuditReport& report) {
+  Table table{.title = "What set the size of the steps",
+              .columns = {"effect", "steps", "repeated", "smallest step (s)", "largest error", "of"}};
+  for (const StepCause& cause : report.causes)
+    table.add({name(cause.effect), cause.steps, cause.rejections, Cell(cause.least_step, 3), Cell(cause.error, 3), cause.body});
+  return table;
+}
+
 namespace inner {
 
 struct PoolUse {
@@ -132,6 +153,7 @@ struct AuditSeen {
   long steps = 0;
   std::vector<PoolUse> pools;
   std::vector<BodyUse> bodies;
+  std::array<StepCause, 4> causes{};  ///< in the order of `ErrorEffect`
 };
 
 inline Verdict verdict_of(long acted) { return acted > 0 ? Verdict::acted : Verdict::never; }
@@ -175,6 +197,11 @@ inline AuditReport audit_report(const AuditSeen& seen) {
     report.uses.push_back({Effect::body, body.name, -1, verdict_of(body.has_moved), body.has_moved, 1, 0});
     report.bodies.push_back({body.set, body.block, body.end.position});
   }
+  for (std::size_t k = 0; k < seen.causes.size(); ++k)
+    if (seen.causes[k].steps + seen.causes[k].rejections > 0) {
+      report.causes.push_back(seen.causes[k]);
+      report.causes.back().effect = ErrorEffect(k);
+    }
   return report;
 }
 

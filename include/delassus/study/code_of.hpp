@@ -97,6 +97,13 @@ std::string code_of(const P& policy) {
   list.append("max_speed", policy, usual, [](const auto& p) -> decltype((p.max_speed)) { return p.max_speed; });
   list.append("max_joint_speed", policy, usual, [](const auto& p) -> decltype((p.max_joint_speed)) { return p.max_joint_speed; });
   list.append("joint_rate", policy, usual, [](const auto& p) -> decltype((p.joint_rate)) { return p.joint_rate; });
+  list.append("accuracy", policy, usual, [](const auto& p) -> decltype((p.accuracy)) { return p.accuracy; });
+  list.append("length", policy, usual, [](const auto& p) -> decltype((p.length)) { return p.length; });
+  list.append("horizon", policy, usual, [](const auto& p) -> decltype((p.horizon)) { return p.horizon; });
+  list.append("min_step", policy, usual, [](const auto& p) -> decltype((p.min_step)) { return p.min_step; });
+  list.append("max_step", policy, usual, [](const auto& p) -> decltype((p.max_step)) { return p.max_step; });
+  list.append("output_step", policy, usual, [](const auto& p) -> decltype((p.output_step)) { return p.output_step; });
+  list.append("per_second", policy, usual, [](const auto& p) -> decltype((p.per_second)) { return p.per_second; });
   list.append("rayleigh_mass", policy, usual, [](const auto& p) -> decltype((p.rayleigh_mass)) { return p.rayleigh_mass; });
   list.append("rayleigh_stiffness", policy, usual, [](const auto& p) -> decltype((p.rayleigh_stiffness)) { return p.rayleigh_stiffness; });
   return list.text + "}";

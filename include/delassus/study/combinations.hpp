@@ -3,6 +3,8 @@
 
 #include <delassus/study/code_of.hpp>
 
+#include <concepts>
+#include <cstddef>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -10,11 +12,23 @@
 
 namespace delassus {
 
+namespace inner {
+
+/// What is asked for an accuracy, as `ErrorControlled` is, makes its steps itself.
+template <class P>
+concept ChoosesItsSteps = requires(P policy) {
+  { policy.accuracy } -> std::same_as<double&>;
+};
+
+}  // namespace inner
+
 /// One axis: `Choices{SymplecticEuler{}, ImplicitMidpoint{}}`. Each is a type of its own, so each is
 /// compiled.
 template <class... P>
 struct Choices {
   static constexpr int count = int(sizeof...(P));
+  /// How many of them take a step size, and choose none.
+  static constexpr int fixed = (0 + ... + int(!inner::ChoosesItsSteps<P>));
   std::tuple<P...> policies;
 
   explicit Choices(P... choices) : policies(std::move(choices)...) {}
@@ -28,6 +42,8 @@ template <class... Axes>
 class Combinations {
  public:
   static constexpr int count = (1 * ... * Axes::count);
+  /// How many have a fixed step: no policy of theirs chooses it.
+  static constexpr int fixed = (1 * ... * Axes::fixed);
   static_assert(((Axes::count > 0) && ...),
                 "delassus: every Choices{...} of a study needs at least one policy");
 

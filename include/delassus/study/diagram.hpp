@@ -35,6 +35,7 @@ text{fill:#1f2328}.small{font-size:12px;fill:#59636e}.title{font-size:18px;font-
 .c0{fill:#0072b2;stroke:#0072b2}.c1{fill:#d55e00;stroke:#d55e00}.c2{fill:#009e73;stroke:#009e73}
 .c3{fill:#cc79a7;stroke:#cc79a7}.c4{fill:#b8860b;stroke:#b8860b}.c5{fill:#56b4e9;stroke:#56b4e9}.ink{fill:#59636e;stroke:#59636e}
 .front{fill:none;stroke:#1f2328;stroke-width:1.5}.budget{stroke:#1f2328;stroke-width:1.5;stroke-dasharray:7 5}
+.kept{stroke-dasharray:9 4 2 4}
 polyline.curve{fill:none;stroke-width:1.5}.chosen{fill:none;stroke:#1f2328;stroke-width:2.5}.cross{fill:none;stroke-width:1.8}
 @media(prefers-color-scheme:dark){svg{background:#0d1117}text{fill:#e6edf3}.small{fill:#9198a1}.halo{stroke:#0d1117}.page{fill:#0d1117}.grid{stroke:#262c36}
 .c0{fill:#58a6ff;stroke:#58a6ff}.c1{fill:#ff8f45;stroke:#ff8f45}.c2{fill:#2fd0a0;stroke:#2fd0a0}.c3{fill:#eba3cb;stroke:#eba3cb}
@@ -58,6 +59,8 @@ class Diagram {
           options_.marker_axis = a;
       }
     chosen_ = options.budget > 0 ? study.cheapest(options.measure, options.budget) : nullptr;
+    const auto controlled = std::count_if(study.runs.begin(), study.runs.end(), [](const StudyRun& run) { return run.is_controlled(); });
+    has_both_ = controlled > 0 && std::size_t(controlled) < study.runs.size();
     find_ranges();
   }
 
@@ -70,6 +73,7 @@ class Diagram {
                   " s. Lower is more accurate, further left is cheaper. " +
                   (options_.joins_steps ? "Lines join the steps of one choice." : "The line joins the best."),
               "small");
+    if (!options_.joins_steps && has_both_) svg_.text(left, 68, "Solid: the best of fixed steps. Dashed: the best that keep an accuracy.", "small");
     draw_axes(measure);
     if (measure.uncertainty > 0) draw_uncertainty(measure.uncertainty);
     if (options_.budget > 0) draw_budget(measure);
@@ -87,7 +91,7 @@ class Diagram {
   }
 
  private:
-  static constexpr double width = 960, height = 640, left = 100, top = 92, plot_width = 590,
+  static constexpr double width = 960, height = 664, left = 100, top = 92, plot_width = 590,
                           plot_height = 430;
   static constexpr double bottom = top + plot_height, right = left + plot_width;
 
@@ -142,7 +146,9 @@ class Diagram {
   }
 
   std::string hint(const StudyRun& run) const {
-    std::string text = run.code + "\nstep " + step_text(run.h) + " s, " + name(run.outcome) + "\n";
+    std::string text = run.code + "\n" + (run.is_controlled() ? std::to_string(run.inner_steps) + " steps, " + std::to_string(run.repeated) + " repeated, "
+                                                              : "step " + step_text(run.h) + " s, ") +
+                       name(run.outcome) + "\n";
     if (run.is_usable()) text += "error " + with_prefix(error(run), study_.measures[m_].unit) + ", ";
     text += with_prefix(seconds(run), "s") + " per s, " +
             number_text(run.sweeps / double(std::max(run.steps, 1l)), 3) + " sweeps a step";
@@ -192,15 +198,20 @@ class Diagram {
     }
   }
 
-  /// Down and to the right from one best run to the next: nothing lies below or left of it.
+  /// Down and to the right from one best run to the next: nothing lies below or left of it. Fixed steps and those that keep
+  /// an accuracy have a line each.
   void draw_front() {
-    std::vector<std::pair<double, double>> points;
-    for (const StudyRun* run : study_.front(options_.measure)) {
-      const double x = x_.at(seconds(*run)), y = y_.at(error(*run));
-      if (!points.empty()) points.push_back({x, points.back().second});
-      points.push_back({x, y});
-    }
-    if (points.size() > 1) svg_.polyline(points, "front");
+    const auto draw = [&](Stepping stepping, std::string_view cls) {
+      std::vector<std::pair<double, double>> points;
+      for (const StudyRun* run : study_.front(options_.measure, stepping)) {
+        const double x = x_.at(seconds(*run)), y = y_.at(error(*run));
+        if (!points.empty()) points.push_back({x, points.back().second});
+        points.push_back({x, y});
+      }
+      if (points.size() > 1) svg_.polyline(points, cls);
+    };
+    draw(has_both_ ? Stepping::fixed : Stepping::any, "front");
+    if (has_both_) draw(Stepping::controlled, "front kept");
     if (chosen_)
       svg_.marker(0, x_.at(seconds(*chosen_)), y_.at(error(*chosen_)), 9, "chosen", hint(*chosen_));
   }
@@ -252,6 +263,7 @@ class Diagram {
                          ? ": the reference itself is only sure to " +
                                with_prefix(measure.uncertainty, measure.unit) + "."
                          : "; smaller steps or tolerances may."));
+      draw_horizon(budget);
       return;
     }
     svg_.text(left, bottom + 72,
@@ -260,12 +272,32 @@ class Diagram {
                   " for " + with_prefix(seconds(*chosen_), "s") + " of processor time per simulated second");
     svg_.text(left, bottom + 94, "auto loop = " + study_.call(*chosen_) + ";", "code");
     svg_.text(left, bottom + 111, "loop.step(" + step_text(chosen_->h) + ");", "code");
+    if (has_both_) svg_.text(left, bottom + 131, other_choice(budget));
+  }
+
+  /// What the cheapest of the other kind costs.
+  std::string other_choice(const std::string& budget) const {
+    const bool keeps = chosen_->is_controlled();
+    const StudyRun* other = study_.cheapest(options_.measure, options_.budget, keeps ? Stepping::fixed : Stepping::controlled);
+    const std::string what = keeps ? "fixed step" : "accuracy that is kept";
+    if (!other) return "No " + what + " is known to hold " + budget + ".";
+    return "The cheapest " + what + " takes " + number_text(other->cost / chosen_->cost, 2) + " times as long: " +
+           (keeps ? "loop.step(" + step_text(other->h) + ")" : "accuracy " + number_text(other->accuracy, 3)) + ".";
+  }
+  /// What is known of the end of the run, where the references part before it.
+  void draw_horizon(const std::string& budget) {
+    const double until = study_.horizon(options_.measure, options_.budget);
+    if (until < study_.plan.duration)
+      svg_.text(left, bottom + 94,
+                "The references agree to " + budget + " for " + with_prefix(until, "s") +
+                    ". If finer ones do no longer, the scene is chaotic: then no run has a true error beyond.");
   }
 
   const Study& study_;
   DiagramOptions options_;
   std::size_t m_;
   const StudyRun* chosen_ = nullptr;
+  bool has_both_ = false;  ///< runs of fixed steps, and runs that keep an accuracy
   LogAxis x_, y_;
   Svg svg_{width, height};
 };

@@ -15,12 +15,13 @@
 
 namespace delassus {
 
-/// The run-time side of a study. Runs are numbered: combinations, within them tolerances, within them steps.
+/// The run-time side of a study. Runs are numbered: combinations, within them tolerances, within them steps or accuracies.
 struct StudyPlan {
   std::string name;                  ///< of the scene, for titles
   std::string call = "scene";        ///< how the user's program calls the scene, for the C++ line
   double duration = 1;               ///< s, simulated
   std::vector<double> steps{};       ///< h, s; each divides duration/outputs
+  std::vector<double> accuracies{};  ///< in place of steps for combinations with `ErrorControlled`; none: as it says
   std::vector<double> tolerances{};  ///< of the solver; none: as the policies say
   int outputs = 10;                  ///< moments at which a run is compared, evenly spaced, the end included
   int repeats = 3;                   ///< timed runs; the cost is their median
@@ -40,6 +41,8 @@ struct StudyPlan {
                         std::to_string(shards - 1));
     DELASSUS_EXPECT(!steps.empty(), "study '" + name + "': steps is empty; name at least one step size");
     for (const double h : steps) steps_between_outputs(h);
+    for (const double a : accuracies)
+      inner::expect_number(a > 0 && a <= 0.1, "study '" + name + "': accuracy", a, "must be in (0, 0.1]");
     for (const double t : tolerances) inner::expect_not_negative("study '" + name + "': tolerance", t);
   }
   /// Whole steps from one output to the next.
@@ -69,21 +72,32 @@ constexpr const char* name(Outcome outcome) {
   return inner::name_in(names, outcome);
 }
 
-/// One combination at one tolerance and one step size.
+/// Which runs are asked about.
+enum class Stepping : std::uint8_t {
+  any,
+  fixed,       ///< one step size, chosen by the plan
+  controlled,  ///< an accuracy, which chooses the steps
+};
+
+/// One combination at one tolerance and one step size or accuracy.
 struct StudyRun {
   int number = -1;  ///< from 0, see StudyPlan
   int combination = -1;  ///< from 0, in the order of the list
   std::string code;       ///< its policies as C++
   double tolerance = -1;  ///< of the solver; -1 where the plan names none
-  double h = 0;           ///< s
+  double h = 0;           ///< s; with an accuracy the time between two outputs
+  double accuracy = -1;   ///< that was asked of `ErrorControlled`; -1: the steps are fixed
   Outcome outcome = Outcome::failed;  ///< `failed` until it is known
   double cost = 0;        ///< s, median of the repeats, all steps, without set-up
   double least_cost = 0;  ///< s, the smallest of the repeats
   double sweeps = 0;      ///< of all steps: the count that no machine changes
-  long steps = 0;  ///< that it took, up to where it was stopped
+  long steps = 0;  ///< of the loop, up to where it was stopped
+  long inner_steps = 0, repeated = 0;  ///< that an accuracy took, and trials that it refused
   long capped_steps = 0;       ///< that did not converge
   std::vector<double> errors;  ///< by measure
 
+  /// Whether a policy chose its steps.
+  bool is_controlled() const { return accuracy > 0; }
   /// Whether its errors and cost count: sound or capped.
   bool is_usable() const { return outcome == Outcome::sound || outcome == Outcome::capped; }
 };
@@ -93,12 +107,14 @@ struct StudyMeasure {
   /// For titles.
   std::string name, unit;  ///< of its errors
   double uncertainty = 0;  ///< of the reference; 0 where it is exact or none is needed
+  std::vector<double> uncertainty_until{};  ///< the same up to each output; the last is `uncertainty`
 };
 
 /// A plan and what its runs showed.
 struct Study {
   StudyPlan plan;  ///< as it was given
   int combinations = 0;  ///< how many there are
+  int fixed = 0;         ///< of them, those with fixed steps
   std::vector<std::vector<std::string>> axes;  ///< the C++ text of each choice
   std::vector<StudyMeasure> measures;  ///< in the order of the errors of a run
   std::vector<StudyRun> runs;  ///< in the order of their numbers
@@ -106,7 +122,8 @@ struct Study {
 
   /// Of the whole plan, whatever the shard.
   int run_count() const {
-    return combinations * int(plan.steps.size()) * int(plan.tolerances.empty() ? 1 : plan.tolerances.size());
+    const std::size_t tolerances = std::max<std::size_t>(plan.tolerances.size(), 1), accuracies = std::max<std::size_t>(plan.accuracies.size(), 1);
+    return int(tolerances * (std::size_t(fixed) * plan.steps.size() + std::size_t(combinations - fixed) * accuracies));
   }
   /// The number of a measure by name.
   int measure(std::string_view wanted) const {
@@ -130,12 +147,21 @@ struct Study {
     return at;
   }
 
+  /// The time (s) of the last output up to which the references agree to `error` in measure m: beyond it no run is
+  /// known to be that accurate. `plan.duration` where they always do; 0 where they never do.
+  double horizon(int m, double error) const {
+    const std::vector<double>& until = measures[std::size_t(m)].uncertainty_until;
+    std::size_t good = 0;
+    while (good < until.size() && until[good] <= error) ++good;
+    return good == until.size() ? plan.duration : plan.duration * double(good) / plan.outputs;
+  }
+
   /// The cheapest run whose error bound in measure m is within `budget`; null where there is none. Of two
   /// that cost the same the more accurate, then the first.
-  const StudyRun* cheapest(int m, double budget) const {
+  const StudyRun* cheapest(int m, double budget, Stepping stepping = Stepping::any) const {
     const StudyRun* best = nullptr;
     for (const StudyRun& run : runs) {
-      if (!run.is_usable() || !(error_bound(run, m) <= budget)) continue;
+      if (!run.is_usable() || !is_of(run, stepping) || !(error_bound(run, m) <= budget)) continue;
       if (!best || run.cost < best->cost ||
           (run.cost == best->cost && error_bound(run, m) < error_bound(*best, m)))
         best = &run;
@@ -144,10 +170,10 @@ struct Study {
   }
   /// Runs that no other run beats in both cost and error, cheapest first. Errors below the uncertainty of the
   /// reference are all alike, so at most one of them is in it.
-  std::vector<const StudyRun*> front(int m) const {
+  std::vector<const StudyRun*> front(int m, Stepping stepping = Stepping::any) const {
     std::vector<const StudyRun*> front;
     for (const StudyRun& run : runs)
-      if (run.is_usable() && std::isfinite(run.errors[std::size_t(m)])) front.push_back(&run);
+      if (run.is_usable() && is_of(run, stepping) && std::isfinite(run.errors[std::size_t(m)])) front.push_back(&run);
     const auto error = [&](const StudyRun* run) {
       return std::max(run->errors[std::size_t(m)], measures[std::size_t(m)].uncertainty);
     };
@@ -159,6 +185,11 @@ struct Study {
       if (kept == 0 || error(front[k]) < error(front[kept - 1])) front[kept++] = front[k];
     front.resize(kept);
     return front;
+  }
+
+  /// Whether a run is one of these.
+  static bool is_of(const StudyRun& run, Stepping stepping) {
+    return stepping == Stepping::any || run.is_controlled() == (stepping == Stepping::controlled);
   }
 
   /// `auto loop = scene(ImplicitMidpoint{}, GaussSeidel{.tolerance = 1e-08});  // then loop.step(0.005)`

@@ -27,7 +27,7 @@ class StudyLog {
     std::ifstream file(path_);
     for (std::string line; std::getline(file, line);) {
       ends_midway_ = file.eof();
-      if (!ends_midway_) read(line, study.measures.size());
+      if (!ends_midway_) read(line, study.measures.size(), std::size_t(study.plan.outputs));
     }
   }
 
@@ -37,7 +37,7 @@ class StudyLog {
       if (run.number == number && run.code == code) return &run;
     return nullptr;
   }
-  /// The uncertainties of the references, if they were found out before.
+  /// The uncertainties of the references by measure and output, if they were found out before.
   const std::optional<std::vector<double>>& uncertainties() const { return uncertainties_; }
 
   /// Appends a line and closes the file. Throws InvalidArgument when it cannot be written.
@@ -45,11 +45,12 @@ class StudyLog {
     std::string line = key_ + "\trun\t" + std::to_string(run.number) + "\t" +
                        std::to_string(run.combination) + "\t" + run.code;
     for (const double x : {run.tolerance, run.h, double(run.outcome), run.cost, run.least_cost, run.sweeps,
-                           double(run.steps), double(run.capped_steps)})
+                           double(run.steps), double(run.capped_steps), run.accuracy, double(run.inner_steps),
+                           double(run.repeated)})
       line += "\t" + inner::number_text(x, 17);
     append(line, run.errors);
   }
-  /// The same of the references, by measure.
+  /// The same of the references, by measure and within it by output.
   void keep_uncertainties(const std::vector<double>& uncertainties) {
     append(key_ + "\treference", uncertainties);
   }
@@ -60,6 +61,7 @@ class StudyLog {
     std::string text =
         plan.name + "|" + inner::number_text(plan.duration, 17) + "|" + std::to_string(plan.outputs);
     for (const double h : plan.steps) text += "|h" + inner::number_text(h, 17);
+    for (const double a : plan.accuracies) text += "|a" + inner::number_text(a, 17);
     for (const double t : plan.tolerances) text += "|t" + inner::number_text(t, 17);
     for (const StudyMeasure& m : study.measures) text += "|" + m.name + "," + m.unit;
     for (const auto& axis : study.axes)
@@ -85,7 +87,7 @@ class StudyLog {
                     "cannot write all of the study's log '" + path_ + "'; is the disk full?");
   }
 
-  void read(const std::string& line, std::size_t measures) {
+  void read(const std::string& line, std::size_t measures, std::size_t outputs) {
     std::vector<std::string> fields;
     std::istringstream stream(line);
     for (std::string field; std::getline(stream, field, '\t');) fields.push_back(field);
@@ -96,11 +98,11 @@ class StudyLog {
       return value >= 0 && value <= most ? long(value) : -1l;
     };
     if (fields.size() < 2 || fields[0] != key_) return;
-    if (fields[1] == "reference" && fields.size() == 2 + measures) {
+    if (fields[1] == "reference" && fields.size() == 2 + measures * outputs) {
       uncertainties_.emplace();
       for (std::size_t k = 2; k < fields.size(); ++k) uncertainties_->push_back(number(k));
     }
-    if (fields[1] != "run" || fields.size() != 13 + measures) return;
+    if (fields[1] != "run" || fields.size() != 16 + measures) return;
     const long outcome = count(7, double(Outcome::too_slow));
     constexpr double most_runs = std::numeric_limits<int>::max(), most_steps = 9007199254740992.0;  // 2⁵³
     StudyRun run{.number = int(count(2, most_runs)),
@@ -108,15 +110,19 @@ class StudyLog {
                  .code = fields[4],
                  .tolerance = number(5),
                  .h = number(6),
+                 .accuracy = number(13),
                  .outcome = Outcome(outcome),
                  .cost = number(8),
                  .least_cost = number(9),
                  .sweeps = number(10),
                  .steps = count(11, most_steps),
+                 .inner_steps = count(14, most_steps),
+                 .repeated = count(15, most_steps),
                  .capped_steps = count(12, most_steps),
                  .errors = {}};
-    if (std::min({long(run.number), long(run.combination), outcome, run.steps, run.capped_steps}) < 0) return;
-    for (std::size_t k = 13; k < fields.size(); ++k) run.errors.push_back(number(k));
+    if (std::min({long(run.number), long(run.combination), outcome, run.steps, run.inner_steps, run.repeated, run.capped_steps}) < 0)
+      return;
+    for (std::size_t k = 16; k < fields.size(); ++k) run.errors.push_back(number(k));
     runs_.push_back(std::move(run));
   }
 

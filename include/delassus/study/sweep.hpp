@@ -4,6 +4,7 @@
 #include <delassus/core/clock.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/status.hpp>
+#include <delassus/core/roles.hpp>
 #include <delassus/io/progress.hpp>
 #include <delassus/study/combinations.hpp>
 #include <delassus/study/error_measures.hpp>
@@ -18,6 +19,7 @@
 #include <ctime>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -43,20 +45,41 @@ P with_tolerance(P policy, double tolerance) {
   return policy;
 }
 
+template <class P>
+P with_accuracy(P policy, double accuracy) {
+  if constexpr (ChoosesItsSteps<P>)
+    if (accuracy > 0) policy.accuracy = accuracy;
+  return policy;
+}
+
+/// The accuracy that one of them keeps; -1 where none does.
+template <class... P>
+double accuracy_of(const P&... policies) {
+  double accuracy = -1;
+  const auto look = [&](const auto& policy) {
+    if constexpr (ChoosesItsSteps<std::remove_cvref_t<decltype(policy)>>) accuracy = policy.accuracy;
+  };
+  (look(policies), ...);
+  return accuracy;
+}
+
+template <class P>
+concept ChoosesItsStepsToo = ChoosesItsSteps<std::remove_cvref_t<P>>;
+
 /// What a run showed of itself while it was measured.
 template <std::size_t measures>
-struct Trace {
+struct Observed {
   std::array<Observation, measures> seen{};
   double sweeps = 0;
-  long steps = 0, capped_steps = 0;
+  long steps = 0, inner_steps = 0, repeated = 0, capped_steps = 0;
   bool is_lost = false, is_too_slow = false;
 };
 
 /// One run with every measure looking on; stops where the scene is lost or the time is up.
 template <class Loop, class... M, class C>
-Trace<sizeof...(M)> trace(Loop& loop, const Measures<M...>& measures, long between, int outputs, double h,
+Observed<sizeof...(M)> observed(Loop& loop, const Measures<M...>& measures, long between, int outputs, double h,
                           double max_seconds, const C& clock) {
-  Trace<sizeof...(M)> t;
+  Observed<sizeof...(M)> t;
   const double start = clock.now();
   measures.each([&](const auto& m, std::size_t k) { m.begin(loop, t.seen[k]); });
   for (int output = 0; output < outputs; ++output) {
@@ -64,6 +87,10 @@ Trace<sizeof...(M)> trace(Loop& loop, const Measures<M...>& measures, long betwe
       const StepReport report = loop.step(h);
       ++t.steps;
       t.sweeps += report.sweeps;
+      if constexpr (requires { { loop.data().template policy<role::Scheme>() } -> ChoosesItsStepsToo; }) {
+        t.inner_steps += error_report(loop).steps;
+        t.repeated += error_report(loop).rejections;
+      }
       t.capped_steps += report.status != Status::converged && report.status != Status::stalled;
       t.is_lost = report.status == Status::quarantined;
       t.is_too_slow = !t.is_lost && clock.now() - start > max_seconds;
@@ -104,6 +131,7 @@ class Sweeper {
     plan.check();
     study_.plan = plan;
     study_.combinations = List::count;
+    study_.fixed = List::fixed;
     study_.axes = list.names();
     measures.each([&](const auto& m, std::size_t) { study_.measures.push_back({m.name, m.unit}); });
     tolerances_ = plan.tolerances.empty() ? std::vector<double>{-1} : plan.tolerances;
@@ -120,13 +148,17 @@ class Sweeper {
       keep(*log_->uncertainties());
     else
       find_reference();
+    int number = 0;
+    const StudyPlan& plan = study_.plan;
     list_.each([&](int combination, const auto&... policies) {
-      for (std::size_t t = 0; t < tolerances_.size(); ++t)
-        for (std::size_t s = 0; s < study_.plan.steps.size(); ++s) {
-          const int number =
-              int((std::size_t(combination) * tolerances_.size() + t) * study_.plan.steps.size() + s);
-          visit(number, combination, tolerances_[t], study_.plan.steps[s],
-                with_tolerance(policies, tolerances_[t])...);
+      for (const double tolerance : tolerances_)
+        if constexpr ((ChoosesItsSteps<std::remove_cvref_t<decltype(policies)>> || ...)) {
+          const double own[] = {accuracy_of(policies...)};
+          for (const double accuracy : plan.accuracies.empty() ? std::span<const double>(own) : std::span<const double>(plan.accuracies))
+            visit(number++, combination, tolerance, plan.duration / plan.outputs,
+                  with_accuracy(with_tolerance(policies, tolerance), accuracy)...);
+        } else {
+          for (const double h : plan.steps) visit(number++, combination, tolerance, h, with_tolerance(policies, tolerance)...);
         }
     });
     return std::move(study_);
@@ -152,6 +184,7 @@ class Sweeper {
                    .code = std::move(code),
                    .tolerance = tolerance,
                    .h = h,
+                   .accuracy = accuracy_of(policies...),
                    .errors = {}};
       run.errors.assign(measure_count, std::numeric_limits<double>::infinity());
       try {
@@ -170,8 +203,10 @@ class Sweeper {
     const StudyPlan& plan = study_.plan;
     const long between = plan.steps_between_outputs(run.h);
     auto loop = scene_(policies...);
-    const auto seen = trace(loop, measures_, between, plan.outputs, run.h, plan.max_seconds, clock_);
+    const auto seen = observed(loop, measures_, between, plan.outputs, run.h, plan.max_seconds, clock_);
     run.steps = seen.steps;
+    run.inner_steps = seen.inner_steps;
+    run.repeated = seen.repeated;
     run.sweeps = seen.sweeps;
     run.capped_steps = seen.capped_steps;
     bool is_finite = !seen.is_lost;
@@ -205,7 +240,8 @@ class Sweeper {
   /// The observations all runs are compared with, and by how much the references differ.
   void find_reference() {
     reference_ = exact_observations(measures_, study_.plan);
-    std::vector<double> uncertainties(measure_count, 0);
+    const std::size_t outputs = std::size_t(study_.plan.outputs);
+    std::vector<double> uncertainties(measure_count * outputs, 0);
     if constexpr (M::needs_reference) {
       static_assert(R::count >= 2,
                     "delassus: a measure without exact(t) needs References{refined(...), refined(...)} of "
@@ -221,7 +257,9 @@ class Sweeper {
             if (is_first)
               reference_[k] = seen[k];
             else
-              uncertainties[k] = larger(uncertainties[k], m.error(seen[k], reference_[k]));
+              for (std::size_t n = 1; n <= outputs; ++n)
+                uncertainties[k * outputs + n - 1] =
+                    larger(uncertainties[k * outputs + n - 1], m.error(until(seen[k], n), until(reference_[k], n)));
           }
         });
         is_first = false;
@@ -237,15 +275,27 @@ class Sweeper {
   Seen observe_fine(int refinement, double finest, const P&... policies) const {
     auto loop = scene_(policies...);
     const long between = study_.plan.steps_between_outputs(finest) * refinement;
-    const auto seen = trace(loop, measures_, between, study_.plan.outputs, finest / refinement,
+    const auto seen = observed(loop, measures_, between, study_.plan.outputs, finest / refinement,
                             std::numeric_limits<double>::infinity(), clock_);
     DELASSUS_EXPECT(!seen.is_lost,
                     "study '" + study_.plan.name + "': a reference run became non-finite; refine it more");
     return seen.seen;
   }
 
+  /// What was seen up to an output, from 1.
+  static Observation until(Observation seen, std::size_t output) {
+    seen.values.resize(std::min(seen.values.size(), seen.width * (output + 1)));
+    return seen;
+  }
+
+  /// By measure, and within it by output.
   void keep(const std::vector<double>& uncertainties) {
-    for (std::size_t k = 0; k < measure_count; ++k) study_.measures[k].uncertainty = uncertainties[k];
+    const std::size_t outputs = std::size_t(study_.plan.outputs);
+    for (std::size_t k = 0; k < measure_count; ++k) {
+      const auto begin = uncertainties.begin() + std::ptrdiff_t(k * outputs);
+      study_.measures[k].uncertainty_until.assign(begin, begin + std::ptrdiff_t(outputs));
+      study_.measures[k].uncertainty = study_.measures[k].uncertainty_until.back();
+    }
   }
 
   const Scene& scene_;
@@ -281,10 +331,17 @@ Study sweep(const Scene& scene, const Combinations<Axes...>& list, const StudyPl
 template <class... Axes>
 std::string announcement(const Combinations<Axes...>&, const StudyPlan& plan) {
   const std::size_t tolerances = std::max<std::size_t>(plan.tolerances.size(), 1);
-  const std::size_t runs = std::size_t(Combinations<Axes...>::count) * tolerances * plan.steps.size();
-  std::string text = plan.name + ": " + std::to_string(Combinations<Axes...>::count) + " combinations × " +
-                     std::to_string(tolerances) + " tolerances × " + std::to_string(plan.steps.size()) +
-                     " steps = " + std::to_string(runs) + " runs";
+  std::size_t runs = 0;
+  std::string text = plan.name + ":";
+  const auto say = [&](int combinations, std::size_t values, const char* of) {
+    if (combinations == 0) return;
+    text += (runs > 0 ? " + " : " ") + std::to_string(combinations) + " combinations × " + std::to_string(tolerances) +
+            " tolerances × " + std::to_string(values) + of;
+    runs += std::size_t(combinations) * tolerances * values;
+  };
+  say(Combinations<Axes...>::fixed, plan.steps.size(), " steps");
+  say(Combinations<Axes...>::count - Combinations<Axes...>::fixed, std::max<std::size_t>(plan.accuracies.size(), 1), " accuracies");
+  text += " = " + std::to_string(runs) + " runs";
   if (plan.shards > 1)
     text += ", of which shard " + std::to_string(plan.shard) + "/" + std::to_string(plan.shards) +
             " does every " + std::to_string(plan.shards) + "th";

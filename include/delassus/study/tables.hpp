@@ -16,7 +16,7 @@ namespace delassus {
 namespace inner {
 
 inline std::vector<Cell> cells_of(const Study& study, const StudyRun& run, int digits) {
-  std::vector<Cell> row{run.code, Cell(run.h, 6)};
+  std::vector<Cell> row{run.code, run.is_controlled() ? Cell("accuracy " + number_text(run.accuracy, 6)) : Cell(run.h, 6)};
   for (const double e : run.errors) row.push_back(Cell(e, digits));
   row.push_back(Cell(1e3 * run.cost / study.plan.duration, digits));
   row.push_back(Cell(run.steps > 0 ? run.sweeps / double(run.steps) : 0, digits));
@@ -78,7 +78,7 @@ inline Table trouble_table(const Study& study) {
 inline Table runs_table(const Study& study) {
   Table table{.title = study.plan.name,
               .columns = {"run", "combination", "policies", "tolerance", "h (s)", "outcome", "cost (s)",
-                          "least cost (s)", "steps", "sweeps", "steps not converged"}};
+                          "least cost (s)", "steps", "sweeps", "steps not converged", "accuracy", "inner steps", "repeated"}};
   for (const StudyMeasure& m : study.measures) {
     table.columns.push_back(m.name + " (" + m.unit + ")");
     table.columns.push_back(m.name + ", uncertainty (" + m.unit + ")");
@@ -89,7 +89,10 @@ inline Table runs_table(const Study& study) {
                           Cell(run.h, 17),   name(run.outcome),
                           Cell(run.cost, 9), Cell(run.least_cost, 9),
                           run.steps,         Cell(run.sweeps, 17),
-                          run.capped_steps};
+                          run.capped_steps,
+                          run.is_controlled() ? Cell(run.accuracy, 17) : Cell(""),
+                          run.inner_steps,
+                          run.repeated};
     for (std::size_t k = 0; k < run.errors.size(); ++k) {
       row.push_back(Cell(run.errors[k], 17));
       row.push_back(Cell(study.measures[k].uncertainty, 17));

@@ -1,4 +1,4 @@
-/// The free axes of a joint as numbers: how far b has turned about an axis of a, how far it is along it.
+/// The free axes of a joint as numbers: how far b has turned about an axis of a, how far it is along it, how far from it.
 #pragma once
 
 #include <delassus/constraints/joints/joint_rows.hpp>
@@ -46,6 +46,24 @@ struct Slide {
   /// u_k += factor · ṡ.
   static void write(auto& joint, int k, double factor) { joint.along(k, factor * joint.a(2)); }
   static void check(const auto& item, const char* what) { inner::expect_frame(item.a, what, "first"); }
+};
+
+/// How far (m) two points are apart: l = |x_b − x_a|, l̇ = e · (v_b − v_a) with e from a to b. Where the points coincide e is
+/// the world's z axis. `Limit<Length>` with an `upper` is a string, with both a telescope; `Motor<Length>` is a winch.
+struct Length {
+  static constexpr bool winds = false;  ///< a pose tells all of it
+  static constexpr const char* force_unit = "N";  ///< of what acts on it, for refusals
+  static constexpr double limit_margin = 0.05;  ///< m
+
+  /// l of one pose, m.
+  static double value(const JointFrames& f) { return norm(Vec3(f.xb - f.xa)); }
+  /// u_k += factor · l̇. Both ends may act at x_b: the row pulls along their line.
+  static void write(auto& joint, int k, double factor) {
+    const Vec3 span = joint.xb - joint.xa;
+    const double l = norm(span);
+    joint.along(k, l > 0 ? Vec3(factor / l * span) : Vec3(factor * unit_axis(2)));
+  }
+  static void check(const auto&, const char*) {}
 };
 
 /// What `Limit`, `Motor` and `Drive` act on.

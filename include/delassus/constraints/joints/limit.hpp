@@ -14,8 +14,8 @@
 
 namespace delassus {
 
-/// q − lower ≥ 0 ⟂ λ_0 ≥ 0 and q − upper ≤ 0 ⟂ λ_1 ≤ 0 for q = `Turn` or `Slide`: `Limit<Turn>` on a hinge,
-/// `Limit<Slide>` on a slider. At most one acts, so that the two are solved exactly. An open stop lets the axis come to it
+/// q − lower ≥ 0 ⟂ λ_0 ≥ 0 and q − upper ≤ 0 ⟂ λ_1 ≤ 0 for q = `Turn`, `Slide` or `Length`: `Limit<Turn>` on a
+/// hinge, `Limit<Slide>` on a slider, `Limit<Length>` for a string. At most one acts, so that the two are solved exactly. An open stop lets the axis come to it
 /// within the step and no further. With e = 0 the stop takes the speed away, with e > 0 it gives the share e of it back.
 ///
 /// A bound has a row only while it is nearer than `margin` (1 rad, 0.05 m) plus twice the way of the last step. One that is

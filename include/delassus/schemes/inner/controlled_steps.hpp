@@ -16,6 +16,7 @@
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <tuple>
 #include <type_traits>
@@ -112,6 +113,7 @@ class ControlledSteps {
     if (!(E <= 1) && !is_at_floor) {
       control_.reject(t_, now, E, k, change.is_any);
       ++report_.rejections;
+      ++report_.by_effect[std::size_t(effect_of(step, error, change, pushes))].rejections;
       copy_.bring_back(step);
       return false;
     }
@@ -190,13 +192,19 @@ class ControlledSteps {
     report_.at_floor += is_too_large;
     report_.least_step = std::min(report_.least_step, now);
     report_.last_step = now;
+    const ErrorEffect effect = effect_of(step, error, change, pushes);
+    EffectSteps& own = report_.by_effect[std::size_t(effect)];
+    own.least_step = own.steps++ == 0 ? now : std::min(own.least_step, now);
     if (!(estimate >= report_.error)) return;
     report_.error = estimate;
     report_.set = error.set;
     report_.block = error.block;
-    report_.effect = change.is_impact ? ErrorEffect::impact : pushes ? ErrorEffect::contact
-                     : is_held(step, error)                         ? ErrorEffect::joint
-                                                                    : ErrorEffect::motion;
+    report_.effect = effect;
+  }
+  static ErrorEffect effect_of(auto& step, const EndError& error, const PushChange& change, bool pushes) {
+    if (change.is_impact) return ErrorEffect::impact;
+    if (pushes) return ErrorEffect::contact;
+    return is_held(step, error) ? ErrorEffect::joint : ErrorEffect::motion;
   }
   /// Whether a constraint holds the body.
   static bool is_held(auto& step, const EndError& error) {
