@@ -1,4 +1,4 @@
-// The order of every integrator on a smooth force, where it is a row of the table of docs/theory/equations.md;
+// The order of every integrator on a smooth force, where it is a row of the table of docs/evidence/integrators.md;
 // joints and free rotation of those that have no test of their own for it.
 #include <delassus/schemes/substeps.hpp>
 #include <delassus/steppers/bdf2.hpp>

@@ -43,10 +43,10 @@ TEST_CASE("a gas of elastic balls keeps its energy, however close its hits follo
     int hits = 0;
     for (double t = 0; t < 20; t += h) {
       loop.step(h);
-      for (const auto& contact : loop.contacts()) hits += contact.impulse[0] > 0;
+      for (const auto& contact : loop.contacts()) hits += contact.impulse.norm() > 0;
     }
     CAPTURE(h, hits);
-    CHECK(hits > 300);
+    CHECK(hits > 800);
     CHECK(kinetic_energy(set) / first > 0.99);
     CHECK(kinetic_energy(set) / first < 1.0001);
   }

@@ -46,6 +46,13 @@ class Compound {
     for (Pose& pose : poses_) pose.position -= centre_;
   }
 
+  /// Moves the frame of the body to `point` of the frame that the parts were given in, m: for a body whose centre of mass you know
+  /// otherwise. `mass` and `inertia` stay those of the parts about their own centre.
+  void move_frame(const Vec3& point) {
+    for (Pose& pose : poses_) pose.position += centre_ - point;
+    centre_ = point;
+  }
+
   Index part_count() const { return Index(shapes_.size()); }  ///< how many shapes there are
   /// Of part i; a hull in it is good as long as the compound.
   Shape shape(Index i) const {
