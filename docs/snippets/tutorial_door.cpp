@@ -15,8 +15,8 @@ int main() {
                        ImplicitMidpoint{}, PositionProjection{.rate = 1}, AcceleratedGaussSeidel{.tolerance = 1e-9},
                        ErrorControlled{.accuracy = accuracy}, Audit{}};
     auto& rigid = bodies<RigidBodies>(loop.world());
-    const auto door = rigid.add({.position = {0.45, 0, 1}, .velocity = {0, 0.9, 0}, .mass = 20,
-                                 .angular_velocity = {0, 0, 2}, .shape = Box{0.9, 0.04, 2}});
+    const auto door = rigid.add({.position = {0.45, 0, 1}, .velocity = {0, 0.9, 0}, .angular_velocity = {0, 0, 2},
+                                 .mass = 20, .shape = Box{0.9, 0.04, 2}});
     const Anchor post = world_anchor({0, 0, 1}), leaf = anchor_at(rigid, door, {0, 0, 1});
     loop.add(Hinge::Item{post, leaf});
     loop.add(Limit<Turn>::Item{.a = post, .b = leaf, .lower = 0, .upper = 1.2, .restitution = 0.4});

@@ -139,7 +139,7 @@ TEST_CASE("a foot on two hinges moves as on two joints with a light body between
 TEST_CASE("a serial joint of two slides and a hinge moves in its plane and nowhere else") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{SerialJoint<2, 1>{}}, NewtonMidpoint{}};
   auto& set = bodies<RigidBodies>(loop.world());
-  const auto torso = set.add({.position = {0, 0, 1}, .velocity = {1, 0, 2}, .mass = 3.0, .angular_velocity = {0, 4, 0}, .shape = Box{0.2, 0.1, 0.5}});
+  const auto torso = set.add({.position = {0, 0, 1}, .velocity = {1, 0, 2}, .angular_velocity = {0, 4, 0}, .mass = 3.0, .shape = Box{0.2, 0.1, 0.5}});
   const Quat frame = frame_along({0, 1, 0});
   loop.add(SerialJoint<2, 1>::Item{.a = world_anchor({0, 0, 1}, frame), .b = anchor_at(set, torso, {0, 0, 1}, frame), .slide = {0, 0, 1}});
   for (int n = 0; n < 100; ++n) {

@@ -51,7 +51,7 @@ auto top() {
   AnimationLoop loop{World{RigidBodies{}}, ImplicitMidpoint{}, kept, StepSizes{}};
   auto& set = bodies<RigidBodies>(loop.world());
   set.gravity.setZero();
-  set.add({.mass = 1.0, .angular_velocity = {0.01, 10, 0}, .inertia = Mat3(Vec3(1, 2, 3).asDiagonal())});
+  set.add({.angular_velocity = {0.01, 10, 0}, .mass = 1.0, .inertia = Mat3(Vec3(1, 2, 3).asDiagonal())});
   return loop;
 }
 
@@ -69,7 +69,7 @@ auto ragdoll() {
                      ImplicitMidpoint{}, PositionProjection{}, sweeps, kept, StepSizes{}};
   auto& set = bodies<RigidBodies>(loop.world());
   set.add_fixed(HalfSpace{});
-  const auto trunk = set.add({.position = {0, 0, 1.5}, .velocity = {1, 0.3, 0}, .mass = 40.0, .angular_velocity = {0.5, 1, 0}, .shape = Box{0.2, 0.3, 0.6}});
+  const auto trunk = set.add({.position = {0, 0, 1.5}, .velocity = {1, 0.3, 0}, .angular_velocity = {0.5, 1, 0}, .mass = 40.0, .shape = Box{0.2, 0.3, 0.6}});
   const auto limb = [&](const Vec3& joint, double width, double length, double mass) {
     const auto part = set.add({.position = joint + Vec3(0, 0, length / 2), .velocity = {1, 0.3, 0}, .mass = mass, .shape = Box{width, width, std::abs(length)}});
     loop.add(BallJoint::Item{anchor_at(set, trunk, joint), anchor_at(set, part, joint)});
@@ -86,7 +86,7 @@ auto door() {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, Limit<Turn>{}}, ImplicitMidpoint{}, PositionProjection{}, sweeps, kept,
                      StepSizes{}};
   auto& set = bodies<RigidBodies>(loop.world());
-  const auto leaf = set.add({.position = {0.45, 0, 1}, .mass = 20.0, .angular_velocity = {0, 0, 2}, .shape = Box{0.9, 0.04, 2}});
+  const auto leaf = set.add({.position = {0.45, 0, 1}, .angular_velocity = {0, 0, 2}, .mass = 20.0, .shape = Box{0.9, 0.04, 2}});
   set.set_velocity(leaf, Vec3(0, 0.9, 0));
   const Anchor post = world_anchor({0, 0, 1}), edge = anchor_at(set, leaf, {0, 0, 1});
   loop.add(Hinge::Item{post, edge});
