@@ -12,7 +12,7 @@ from pathlib import Path
 LEVELS = {
     "core": 0, "math": 1, "geometry": 2, "linear": 2, "rows": 2, "bodies": 3, "fem": 4, "constraints": 4, "collision": 5,
     "compliance": 5, "solvers": 5, "step": 6, "integrators": 7, "stabilisation": 7, "schemes": 7, "activity": 7,
-    "steppers": 8, "loop": 9, "problems": 10, "listeners": 10, "haptics": 11, "io": 12, "study": 13, "adapters": 13,
+    "steppers": 8, "loop": 9, "problems": 10, "listeners": 10, "haptics": 11, "io": 12, "model": 12, "study": 13, "adapters": 13,
 }
 # Files that name every part, up to the listeners: what a new part may edit.
 GATHERING = {"delassus.hpp": 11, "fwd.hpp": 11, "loop/defaults.hpp": 11}

@@ -21,8 +21,9 @@ TEST_CASE("an OBJ text becomes a mesh: fans, slashes, indices from behind, and l
 
 TEST_CASE("an OBJ text that cannot be a mesh is refused with its line") {
   CHECK_THROWS_WITH(parse_obj("v 1 2\n", "a.obj"),
-                    Contains("a.obj:1: coordinate '' of a vertex is no number"));
+                    Contains("a.obj:1: coordinate '' of a vertex is no finite number"));
   CHECK_THROWS_WITH(parse_obj("v 1 2 x\n", "a.obj"), Contains("coordinate 'x'"));
+  CHECK_THROWS_WITH(parse_obj("v 1 nan 3\n", "a.obj"), Contains("a.obj:1: coordinate 'nan'"));
   CHECK_THROWS_WITH(parse_obj("v 0 0 0\nf 1 2 3\n", "a.obj"),
                     Contains("a.obj:2: vertex 2 is not among the 1 above"));
   CHECK_THROWS_WITH(parse_obj("v 0 0 0\nf 0 1 1\n", "a.obj"), Contains("vertex 0"));
@@ -30,4 +31,11 @@ TEST_CASE("an OBJ text that cannot be a mesh is refused with its line") {
   CHECK_THROWS_WITH(parse_obj("v 0 0 0\nf a b c\n", "a.obj"), Contains("corner 'a' of a face is no index"));
   CHECK_THROWS_WITH(parse_obj("", "a.obj"), Contains("a.obj: there is no face"));
   CHECK_THROWS_WITH(read_obj("/nowhere/a.obj"), Contains("cannot open '/nowhere/a.obj'"));
+}
+
+TEST_CASE("the vertices and faces of an OBJ text are read apart from a surface") {
+  const TriangleList two = parse_obj_list("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\n", "twice.obj");
+  CHECK(two.vertices.size() == 3);
+  CHECK(two.triangles.size() == 2);
+  CHECK(parse_obj_list("v 0 0 0\n", "a.obj").triangles.empty());
 }

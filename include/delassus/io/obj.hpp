@@ -1,7 +1,9 @@
 /// Triangle meshes from Wavefront OBJ files.
 #pragma once
 
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/geometry/triangle_list.hpp>
 #include <delassus/geometry/triangle_mesh.hpp>
 #include <delassus/io/inner/text_reader.hpp>
 
@@ -15,11 +17,8 @@ namespace delassus {
 namespace inner {
 
 /// The lines `v` and `f` of a file; all others are passed over.
-class ObjReader {
+class ObjReader : public TriangleList {
  public:
-  std::vector<Vec3> vertices;
-  std::vector<std::array<Index, 3>> triangles;
-
   ObjReader(std::string_view text, std::string name) : name_(std::move(name)) {
     while (!text.empty()) {
       const std::size_t end = text.find('\n');
@@ -50,8 +49,8 @@ class ObjReader {
       const std::string_view w = word();
       const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), v[k]);
       DELASSUS_EXPECT(
-          error == std::errc{} && end == w.data() + w.size(),
-          where() + ": coordinate '" + std::string(w) + "' of a vertex is no number; write v x y z");
+          error == std::errc{} && end == w.data() + w.size() && std::isfinite(v[k]),
+          where() + ": coordinate '" + std::string(w) + "' of a vertex is no finite number; write v x y z");
     }
     vertices.push_back(v);
   }
@@ -100,7 +99,13 @@ inline TriangleMesh parse_obj(std::string_view text, const std::string& name) {
   return TriangleMesh(reader.vertices, reader.triangles);
 }
 
+/// Vertices and faces alone, whatever surface they make, or none.
+inline TriangleList parse_obj_list(std::string_view text, const std::string& name) { return inner::ObjReader(text, name); }
+
 /// The mesh of a file.
 inline TriangleMesh read_obj(const std::string& path) { return parse_obj(inner::read_text(path), path); }
+
+/// The vertices and faces of a file.
+inline TriangleList read_obj_list(const std::string& path) { return parse_obj_list(inner::read_text(path), path); }
 
 }  // namespace delassus

@@ -74,6 +74,11 @@ class TextReader {
     return value;
   }
 
+  /// Passes over what is left of the line.
+  void pass_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+  }
+
   /// The line that the last word stands on.
   int line() const { return line_; }
   [[noreturn]] void refuse_here(const std::string& reason) const { refuse_at(line_, reason); }
