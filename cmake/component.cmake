@@ -1,7 +1,8 @@
-# delassus_component(<name> PACKAGE <cmake package> VERSION <v> TARGET <its target> DEBIAN <apt package> [FIND <how>...])
+# delassus_component(<name> PACKAGE <cmake package> [VERSION <v>] TARGET <its target> DEBIAN <apt packages> [FIND <how>...])
 #
 # <how> goes to find_package: CONFIG, or MODULE and what else CMake's own module wants.
-# A component is the adapter headers of one third party, include/delassus/adapters/<name>*.hpp, and a link to it.
+# A component is the adapter headers of one third party, include/delassus/adapters/<name>*.hpp
+# and those in the folder <name>, and a link to it.
 # DELASSUS_WITH_<NAME> says what this build does: AUTO takes the package if it is found, ON insists, OFF drops the
 # component. Whether the package is found here decides nothing about installing: headers do not depend on the builder's
 # machine, so the installed package asks for the third party on the consumer's.
@@ -24,7 +25,8 @@ macro(delassus_component name)
   list(APPEND DELASSUS_COMPONENTS ${name})
 
   if(DELASSUS_WITH_${NAME})
-    set(missing "delassus: component '${name}' needs ${component_PACKAGE} ${component_VERSION}; on Debian: apt-get install ${component_DEBIAN}")
+    string(STRIP "${component_PACKAGE} ${component_VERSION}" wanted)
+    set(missing "delassus: component '${name}' needs ${wanted}; on Debian: apt-get install ${component_DEBIAN}")
     find_package(${component_PACKAGE} ${component_VERSION} QUIET ${component_FIND})
     if(NOT ${component_PACKAGE}_FOUND)
       if(DELASSUS_WITH_${NAME} STREQUAL "AUTO")
@@ -37,7 +39,8 @@ macro(delassus_component name)
     add_library(delassus_${name} INTERFACE)
     set_target_properties(delassus_${name} PROPERTIES EXPORT_NAME ${name})
     target_link_libraries(delassus_${name} INTERFACE delassus ${component_TARGET})
-    file(GLOB adapter_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/delassus/adapters/${name}*.hpp)
+    file(GLOB adapter_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/delassus/adapters/${name}*.hpp
+      ${PROJECT_SOURCE_DIR}/include/delassus/adapters/${name}/*.hpp)
     target_sources(delassus_${name} INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${adapter_headers})
     if(${component_PACKAGE}_FOUND)
       add_library(delassus::${name} ALIAS delassus_${name})

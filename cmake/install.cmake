@@ -9,9 +9,10 @@ install(EXPORT delassus-core NAMESPACE delassus:: DESTINATION ${package_dir})
 # What the config must know of each component, as lines of CMake.
 set(component_table "set(delassus_known_components ${DELASSUS_COMPONENTS} compiled)\n")
 foreach(name IN LISTS DELASSUS_COMPONENTS)
-  foreach(fact PACKAGE VERSION DEBIAN FIND)
+  foreach(fact PACKAGE VERSION FIND)
     string(APPEND component_table "set(delassus_${name}_${fact} ${DELASSUS_${name}_${fact}})\n")
   endforeach()
+  string(APPEND component_table "set(delassus_${name}_DEBIAN \"${DELASSUS_${name}_DEBIAN}\")\n")
   if(TARGET delassus_${name})
     install(TARGETS delassus_${name} EXPORT delassus-${name} FILE_SET HEADERS)
     install(EXPORT delassus-${name} NAMESPACE delassus:: DESTINATION ${package_dir})
@@ -25,7 +26,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/delassus-config-version.c
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/delassus-config.cmake ${PROJECT_BINARY_DIR}/delassus-config-version.cmake
   DESTINATION ${package_dir})
-foreach(file FindCHOLMOD.cmake delassus-compiled.cmake delassus-compiled.cpp)
+foreach(file FindCHOLMOD.cmake FindURDFDOM.cmake delassus-compiled.cmake delassus-compiled.cpp)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/${file} DESTINATION ${package_dir})
 endforeach()
 

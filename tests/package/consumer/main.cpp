@@ -11,6 +11,12 @@
 #ifdef CONSUMER_USES_CCD
 #include <delassus/adapters/ccd.hpp>
 #endif
+#ifdef CONSUMER_USES_URDF
+#include <delassus/adapters/urdf.hpp>
+#endif
+#ifdef CONSUMER_USES_MJCF
+#include <delassus/adapters/mjcf.hpp>
+#endif
 
 #include <cmath>
 
