@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace mjcf_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -184,3 +186,5 @@ TEST_CASE("rendering is of no account, even under `strict`") {
       {.strict = true});
   CHECK(m.geometries.size() == 1);
 }
+
+}  // namespace mjcf_tests

@@ -9,6 +9,8 @@
 #include <ctime>
 #include <random>
 
+namespace mjcf_bad_input_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -220,3 +222,5 @@ TEST_CASE("200 copies of a file with something changed give a sentence or a mach
       expect_sentence_or_machine(changed, name);
     }
 }
+
+}  // namespace mjcf_bad_input_tests

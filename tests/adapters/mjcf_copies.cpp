@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace mjcf_copies_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -187,3 +189,5 @@ TEST_CASE("files that include or attach themselves are refused, alone and in cir
   CHECK_THROWS_WITH(read_text("<include file='nowhere.xml'/>"),
                     Contains("text.xml:1: the file 'nowhere.xml' to include is not found"));
 }
+
+}  // namespace mjcf_copies_tests

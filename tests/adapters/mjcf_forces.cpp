@@ -2,6 +2,8 @@
 
 #include "catch.hpp"
 
+namespace mjcf_forces_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -166,3 +168,5 @@ TEST_CASE("names that mean nothing are refused, and things of the wrong kind") {
   refuses("<contact><exclude body1='a' body2='c'/></contact>", "there is no body 'c'");
   refuses("<actuator><motor joint='x' class='c'/></actuator>", "there is no class 'c'");
 }
+
+}  // namespace mjcf_forces_tests

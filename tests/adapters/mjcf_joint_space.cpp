@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+namespace mjcf_joint_space_tests {
+
 using namespace delassus;
 
 TEST_CASE(
@@ -34,3 +36,5 @@ TEST_CASE(
     }
   CHECK(count == 23);
 }
+
+}  // namespace mjcf_joint_space_tests

@@ -9,6 +9,8 @@
 #include <map>
 #include <sstream>
 
+namespace mjcf_later_mujoco_tests {
+
 using namespace delassus;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_CASE("car, dominos and treadmill weigh what they do in MuJoCo 3.3.8") {
   }
   CHECK(count == 3);
 }
+
+}  // namespace mjcf_later_mujoco_tests

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace mjcf_masses_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -193,3 +195,5 @@ TEST_CASE("meshes and height fields from files, also from the folders of the opt
   CHECK(shown.geometries.empty());
   CHECK(shown.skipped.size() == 1);
 }
+
+}  // namespace mjcf_masses_tests

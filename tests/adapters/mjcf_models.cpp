@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <map>
 
+namespace mjcf_models_tests {
+
 using namespace delassus;
 
 namespace {
@@ -104,3 +106,5 @@ TEST_CASE("slider_crank and arm26 say what was left out of them") {
       Catch::Contains("arm26.xml:69: the tendon 'SF' is left out: it wraps around the geom 'shoulder'"));
   CHECK_THAT(arm.skipped[6], Catch::Contains("arm26.xml:111: the actuator 'SF' (muscle) is left out"));
 }
+
+}  // namespace mjcf_models_tests

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace urdf_tests {
+
 using namespace delassus;
 using Catch::Contains;
 
@@ -297,3 +299,5 @@ TEST_CASE("what is not read is named with file and line, and refused if strict")
   CHECK(read(rod).bodies[0].inertia(2, 2) == 3);
   refuses(rod, "violates the triangle inequality", {.strict = true});
 }
+
+}  // namespace urdf_tests

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <random>
 
+namespace urdf_bad_tests {
+
 using namespace delassus;
 using Catch::Contains;
 
@@ -238,3 +240,5 @@ TEST_CASE("nothing is written on the console, and its handler is the user's agai
   CHECK(console_bridge::getOutputHandler() == &listener);
   console_bridge::restorePreviousOutputHandler();
 }
+
+}  // namespace urdf_bad_tests

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+namespace urdf_joint_space_tests {
+
 using namespace delassus;
 
 TEST_CASE(
@@ -39,3 +41,5 @@ TEST_CASE(
   }
   CHECK(count == 17);
 }
+
+}  // namespace urdf_joint_space_tests

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <map>
 
+namespace urdf_models_tests {
+
 using namespace delassus;
 using Catch::Contains;
 
@@ -217,3 +219,5 @@ TEST_CASE("the base of each URDF file of other projects can be asked for") {
     }
   }
 }
+
+}  // namespace urdf_models_tests

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+namespace stl_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -108,3 +110,5 @@ TEST_CASE("each beginning of an STL file is refused or is a surface") {
       }
     }
 }
+
+}  // namespace stl_tests

@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 
+namespace model_check_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -151,3 +153,5 @@ TEST_CASE("each fault of a description is one sentence that names the element") 
     CHECK_THROWS_WITH(check(m), Contains(fault.sentence));
   }
 }
+
+}  // namespace model_check_tests

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+namespace model_joint_space_tests {
+
 using namespace delassus;
 
 namespace {
@@ -170,3 +172,5 @@ TEST_CASE("a machine whose weight is taken off needs no force to stay") {
   space.gravity_compensation(std::vector<double>{0.4, -1.1}, tau, {.gravity_compensation = false});
   CHECK(tau[1] == Approx(1.5 * g * 0.4 * std::sin(0.4 - 1.1)).epsilon(1e-14));
 }
+
+}  // namespace model_joint_space_tests

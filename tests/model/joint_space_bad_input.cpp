@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 
+namespace model_joint_space_bad_input_tests {
+
 using namespace delassus;
 using Catch::Matchers::Contains;
 
@@ -120,3 +122,5 @@ TEST_CASE(
   m.joints.clear();
   CHECK(JointSpace(m, Base::free).v_size() == 600'000);
 }
+
+}  // namespace model_joint_space_bad_input_tests

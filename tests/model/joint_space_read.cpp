@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+namespace model_joint_space_read_tests {
+
 using namespace delassus;
 
 namespace {
@@ -121,3 +123,5 @@ TEST_CASE("a quaternion keeps its sign") {
     CHECK(difference(q, before) <= 1e-15);
   }
 }
+
+}  // namespace model_joint_space_read_tests

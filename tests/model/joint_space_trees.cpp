@@ -2,6 +2,8 @@
 #include "catch.hpp"
 #include "model/random_tree.hpp"
 
+namespace model_joint_space_trees_tests {
+
 using namespace delassus;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("under its gravity compensation a tree at rest stays so") {
     CHECK(largest(a) <= 1e-10);
   }
 }
+
+}  // namespace model_joint_space_trees_tests

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace mujoco_joint_space_tests {
+
 using namespace delassus;
 
 namespace {
@@ -139,3 +141,5 @@ TEST_CASE("balls, free joints and several joints of a body, with springs, are as
       "<joint type='hinge' axis='0 0 1' damping='1'/>" +
       geom + "<body pos='0 0 1'>" + geom + "</body></body></body></worldbody>");
 }
+
+}  // namespace mujoco_joint_space_tests

@@ -3,6 +3,8 @@
 
 #include <delassus/adapters/mjcf.hpp>
 
+namespace mujoco_mjcf_models_tests {
+
 using namespace delassus;
 
 namespace {
@@ -35,3 +37,5 @@ TEST_CASE("masses, joints, shapes, tendons, actuators and equalities of 18 files
         "mujoco/slider_crank"})
     check_file(std::string(folder) + "/mjcf/" + name + ".xml");
 }
+
+}  // namespace mujoco_mjcf_models_tests

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace mujoco_mjcf_rules_tests {
+
 using namespace delassus;
 
 namespace {
@@ -147,3 +149,5 @@ TEST_CASE("equalities, tendons, pairs and keys") {
              "3' qvel='4 5 "
              "6'/><key/></keyframe>");
 }
+
+}  // namespace mujoco_mjcf_rules_tests
