@@ -20,7 +20,7 @@ struct Place {
   int depth;
 };
 
-inline void read_children(Reading& r, const Element& parent, const Place& at);
+void read_children(Reading& r, const Element& parent, const Place& at);
 
 /// Beyond it a chain of bodies could exhaust the stack.
 inline constexpr int deepest_body = 1000;

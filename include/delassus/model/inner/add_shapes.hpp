@@ -6,6 +6,7 @@
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/model/inner/lumps.hpp>
+#include <delassus/rows/anchor.hpp>
 
 #include <deque>
 #include <string>
