@@ -35,7 +35,8 @@ auto make_loop(const Options& options) {
       Constraints{Contact{Coulomb{.friction = options.friction}}, Hinge{}, Slider{}, BallJoint{}, Weld{}, SerialJoint<0, 2>{}, SerialJoint<0, 3>{},
                   SerialJoint<1, 1>{}, SerialJoint<2, 0>{}, SerialJoint<2, 1>{}, SerialJoint<3, 0>{}, Limit<Turn>{}, Limit<Slide>{},
                   Limit<Precession>{}, Limit<Nutation>{}, Limit<Spin>{}, Limit<Length>{}, SpringDamper<Turn>{}, SpringDamper<Slide>{},
-                  SpringDamper<Precession>{}, SpringDamper<Nutation>{}, SpringDamper<Spin>{}, SpringDamper<Length>{}, Motor<Turn>{},
+                  SpringDamper<Precession>{}, SpringDamper<Nutation>{}, SpringDamper<Spin>{}, SpringDamper<Length>{}, RotorInertia<Turn>{}, RotorInertia<Slide>{},
+                  RotorInertia<Precession>{}, RotorInertia<Nutation>{}, RotorInertia<Spin>{}, Motor<Turn>{},
                   Motor<Slide>{}, Motor<Precession>{}, Motor<Nutation>{}, Motor<Spin>{}, Coupling<Turn, Turn>{}, Coupling<Slide, Turn>{},
                   Coupling<Turn, Slide>{}, Coupling<Slide, Slide>{}},
       WithFilter{WithCompounds{NativeCollision{}}}, DirectGaussSeidel{.tolerance = options.tolerance}};

@@ -28,7 +28,7 @@ TEST_CASE("walker, hopper and cheetah fall, come to rest, and the floor carries 
     const Model model = read_mjcf(std::string(folder) + "/mjcf/dm_control/" + name + ".xml");
     AnimationLoop loop{World{RigidBodies{}},
                        Constraints{Contact{Coulomb{.friction = 0.8}}, Hinge{}, SerialJoint<2, 1>{}, Limit<Turn>{}, SpringDamper<Turn>{},
-                                   SpringDamper<Slide>{}},
+                                   SpringDamper<Slide>{}, RotorInertia<Turn>{}},
                        WithFilter{WithCompounds{NativeCollision{}}}, DirectGaussSeidel{.tolerance = 1e-8}};
     const Machine machine = add(loop, model);
     auto& set = bodies<RigidBodies>(loop.world());

@@ -4,6 +4,7 @@
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/constraints/joints/coordinate.hpp>
 #include <delassus/constraints/joints/euler_angles.hpp>
+#include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/model/model.hpp>
 
 #include <string>
@@ -19,6 +20,7 @@ struct LeaveOut {
   bool springs = false;        ///< the same
   bool friction_loss = false;  ///< dry friction of joints
   bool couplings = false;      ///< between joints, points and bodies
+  bool rotors = false;         ///< inertia of what turns with a joint
 };
 
 namespace model {
@@ -78,24 +80,11 @@ double position_of(const World& world, const Machine& machine, Index joint) {
   return axis.reference + axis.sign * (value - axis.zero);
 }
 
-namespace inner {
-
-/// The gradient of a coordinate: q̇ = linear · (v_b − v_a) at x_b + angular · (ω_b − ω_a).
-struct CoordinateGradient : JointFrames {
-  Vec3 linear = zero<Vec3>(), angular = zero<Vec3>();
-
-  using JointFrames::JointFrames;
-  void along(int, const Vec3& direction) { linear += direction; }
-  void about(int, const Vec3& axis) { angular += axis; }
-};
-
-}  // namespace inner
-
 /// Pushes a hinge or a slide with `force` (N·m or N) to larger q in the next step, as a motor between its two bodies.
 template <class Loop>
 void push_joint(Loop& loop, const Machine& machine, Index joint, double force) {
   const model::Axis& axis = machine.axes[std::size_t(joint)];
-  inner::CoordinateGradient gradient(axis.a, axis.b, loop.world());
+  inner::CoordinateGradient gradient(JointFrames(axis.a, axis.b, loop.world()));
   switch (axis.kind) {
     case model::AxisKind::turn: Turn::write(gradient, 0, 1); break;
     case model::AxisKind::slide: Slide::write(gradient, 0, 1); break;

@@ -36,6 +36,10 @@ struct JointByJoint {
   /// One function of all that a joint and a body of a step take: calls between them would weigh in so short a step.
   [[gnu::flatten]] void run(auto& step) const {
     if constexpr (std::remove_reference_t<decltype(step)>::has_constraints) {
+      each_pool(step.laws(), [](auto, const auto& pool) {
+        constexpr bool is_rotor = requires { requires std::remove_cvref_t<decltype(pool.law)>::resists; };
+        static_assert(!is_rotor, "delassus: JointByJoint takes no RotorInertia; take PlainOrder");
+      });
       visit_joints(step);
       stage::advance(step);
     } else {

@@ -26,6 +26,7 @@ struct NewtonMidpoint {
   /// Rigid bodies.
   template <class Set>
   static constexpr bool can_move = requires { typename Set::Midpoint; };
+  static constexpr bool knows_rotors = true;  ///< see `RotorInertia`
   double tolerance = 1e-10;  ///< of what is missing in every equation, in units of the largest velocity
   /// Factorizations; reaching it is a status. With 1, and `acceptable` = ∞, a step is one linear solve and takes half
   /// the time: what it leaves open the next one closes.

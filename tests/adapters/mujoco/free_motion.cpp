@@ -28,12 +28,10 @@ struct Scene {
   Numbers q, v;
 };
 
-/// What is compared: no contacts, limits, equalities, dry friction, actuators and no air, on both sides. Nor rotor inertia, which is
-/// not in ours.
+/// What is compared: no contacts, limits, equalities, dry friction, actuators and no air, on both sides.
 Scene prepare(const std::string& path, mjModel& m) {
   Scene scene{.model = read_mjcf(path), .q = {}, .v = {}};
-  for (model::Joint& joint : scene.model.joints) joint.armature = 0;
-  for (int i = 0; i < m.nv; ++i) m.dof_armature[i] = m.dof_frictionloss[i] = 0;
+  for (int i = 0; i < m.nv; ++i) m.dof_frictionloss[i] = 0;
   m.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_ACTUATION;
   m.opt.density = m.opt.viscosity = 0;
   m.opt.integrator = mjINT_RK4;
@@ -65,7 +63,8 @@ double difference(const Scene& scene, const Numbers& truth, double h) {
   AnimationLoop loop{World{RigidBodies{}},
                      Constraints{Hinge{}, Slider{}, BallJoint{}, SerialJoint<0, 2>{}, SerialJoint<0, 3>{}, SerialJoint<2, 0>{}, SerialJoint<2, 1>{},
                                  SpringDamper<Turn>{}, SpringDamper<Slide>{}, SpringDamper<Precession>{}, SpringDamper<Nutation>{},
-                                 SpringDamper<Spin>{}, SpringDamper<Length>{}},
+                                 SpringDamper<Spin>{}, SpringDamper<Length>{}, RotorInertia<Turn>{}, RotorInertia<Slide>{},
+                                 RotorInertia<Precession>{}, RotorInertia<Nutation>{}, RotorInertia<Spin>{}},
                      Integrator{}};
   const Model& model = scene.model;
   const Machine machine = add(loop, model, {}, Base::as_file, {.contacts = true, .limits = true, .friction_loss = true, .couplings = true});

@@ -7,6 +7,7 @@
 #include <delassus/constraints/joints/hinge.hpp>
 #include <delassus/constraints/joints/limit.hpp>
 #include <delassus/constraints/joints/motor.hpp>
+#include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/constraints/joints/serial_joint.hpp>
 #include <delassus/constraints/joints/slider.hpp>
 #include <delassus/constraints/joints/spring_damper.hpp>
@@ -203,7 +204,6 @@ class MachineBuilder {
       case model::AxisKind::nutation: add_laws<Nutation>("Nutation", joint, axis); break;
       case model::AxisKind::spin: add_laws<Spin>("Spin", joint, axis); break;
     }
-    if (joint.armature > 0) leave("the rotor of joint '" + joint.name + "' has no inertia");
   }
 
   /// What acts on one axis.
@@ -219,6 +219,8 @@ class MachineBuilder {
       emit<SpringDamper<C>>(("SpringDamper<" + name + ">{}").c_str(), [&] {
         return typename SpringDamper<C>::Item{.a = axis.a, .b = axis.b, .rest = axis.coordinate(joint.spring_reference), .stiffness = stiffness, .damping = damping, .position = axis.zero};
       });
+    if (joint.armature > 0 && !leave_out_.rotors)
+      emit<RotorInertia<C>>(("RotorInertia<" + name + ">{}").c_str(), [&] { return typename RotorInertia<C>::Item{.a = axis.a, .b = axis.b, .inertia = joint.armature}; });
     if (joint.friction_loss > 0 && !leave_out_.friction_loss)
       emit<Motor<C>>(("Motor<" + name + ">{}").c_str(), [&] {
         return typename Motor<C>::Item{.a = axis.a, .b = axis.b, .max_force = joint.friction_loss, .position = axis.zero};

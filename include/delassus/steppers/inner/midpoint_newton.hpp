@@ -47,6 +47,7 @@ class MidpointNewton {
   template <class I>
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
     keep_start(rows);
+    keep_rates(world, laws, rows);
     SolveReport report{.status = Status::max_iterations, .ended_by = "Newton"};
     for (const bool is_damped : {false, true}) {
       begin(world, integrator, h);
@@ -83,7 +84,51 @@ class MidpointNewton {
     });
   }
 
- protected:  // `YieldingMidpoint` begins, iterates and assembles the same equations
+ protected:
+  /// Whether the items of a law resist changes of their rate.
+  template <int p>
+  static constexpr bool resists = requires {
+    requires std::remove_cvref_t<decltype(std::declval<const Laws&>().template pool<p>().law)>::resists;
+  };
+
+  /// Of rows that resist changes: their inertia, and their rate where the step begins.
+  void keep_rates(World& world, const Laws& laws, const Rows& rows) {
+    for_each_index<Rows::pool_count>([&](auto p) {
+      if constexpr (resists<p>) {
+        auto& inertia = inner::part<p>(inertia_.pools);
+        inertia.resize(rows.template pool<p>().items());
+        for (Index i = 0; i < rows.template pool<p>().items(); ++i) inertia[i][0] = T(laws.template pool<p>().item(i).inertia);
+        rates<p>(world, rows, inner::part<p>(start_rate_.pools), [](auto& set, auto, Index b) -> const auto& { return set.velocity()[b]; });
+      }
+    });
+  }
+  /// The rates of `rows` where they were linearised, with the velocities that `of` says.
+  template <int p, class Of>
+  void rates(World& world, const Rows& rows, auto& to, const Of& of) {
+    const auto& pool = rows.template pool<p>();
+    to.resize(pool.items());
+    for (auto& rate : to) rate.setZero();
+    world.each([&](auto& set, auto s) {
+      const auto& blocks = inner::part<s>(pool.sets);
+      for (Index i = 0; i < pool.items(); ++i)
+        for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) to[i] += blocks.H[e] * of(set, s, blocks.block[e]);
+    });
+  }
+  /// The velocity of a body at q₊, where it is now; the unknowns have it, and `go` alone says it.
+  auto end_velocity(auto& set, auto s, Index b, double h) {
+    if (!set.moves(b)) return set.velocity()[b];
+    auto& state = set.state();
+    const auto x = state.x[b];
+    const auto q = state.q[b];
+    const auto R = state.R[b];
+    const auto v = std::get<s>(bodies_).go(state, b, T(h));
+    state.q[b] = q;
+    state.turn(b);
+    state.x[b] = x, state.R[b] = R;
+    return v;
+  }
+
+  // `YieldingMidpoint` begins, iterates and assembles the same equations
   static constexpr int most_undamped = 10;
 
   /// φ where the step begins; no row yields.
@@ -152,6 +197,10 @@ class MidpointNewton {
     };
     place([&](auto& bodies, auto& state, Index b) { bodies.to_end(state, b, T(h)); });
     linearize(world, laws, rows);
+    for_each_index<Rows::pool_count>([&](auto p) {
+      if constexpr (resists<p>)
+        rates<p>(world, rows, inner::part<p>(end_rate_.pools), [&](auto& set, auto s, Index b) { return end_velocity(set, s, b, h); });
+    });
     place([&](auto& bodies, auto& state, Index b) { bodies.to_middle(state, b, T(h)); });
     linearize(world, laws, middle_);
     place([&](auto& bodies, auto& state, Index b) { bodies.back(state, b); });
@@ -174,8 +223,14 @@ class MidpointNewton {
         });
         for (int k = 0; k < pool.rows; ++k) {
           pool.compliance[i][k] = inner::part<p>(yield_.pools)[i][k];
-          soften(pool, i, k, double(inner::part<p>(start_.pools)[i][k]), h);
-          pool.bias[i][k] += pool.phi[i][k] + pool.compliance[i][k] * lambda[k];
+          if constexpr (resists<p>) {  // λ + I (u₊ − u) = 0, in the unit of φ
+            pool.compliance[i][k] = T(h / 2) / inner::part<p>(inertia_.pools)[i][k];
+            pool.bias[i][k] = pool.compliance[i][k] * lambda[k] +
+                              T(h / 2) * (inner::part<p>(end_rate_.pools)[i][k] - inner::part<p>(start_rate_.pools)[i][k]);
+          } else {
+            soften(pool, i, k, double(inner::part<p>(start_.pools)[i][k]), h);
+            pool.bias[i][k] += pool.phi[i][k] + pool.compliance[i][k] * lambda[k];
+          }
           most = std::max(most, std::abs(double(pool.bias[i][k])) / h);
         }
       }
@@ -287,6 +342,7 @@ class MidpointNewton {
   typename World::template PerSet<VelocitiesOf> force_, impulse_;
   Rows middle_;
   Impulses<Rows> start_, yield_;
+  Impulses<Rows> inertia_, start_rate_, end_rate_;  ///< of rows that resist changes of their rate
   inner::DirectRows<Rows> system_;
   double apart_ = 0, speed_ = 0, load_ = 0;  ///< load: of the impulses over the masses, in units of the speed
 };

@@ -25,6 +25,11 @@ inline void check_newton(const std::string& name, double tolerance, int max_iter
 /// and returns a SolveReport.
 void solve_at_once(auto& step) {
   auto& own = step.template state<role::Integrator>();
+  each_pool(step.laws(), [&](auto, const auto& pool) {
+    constexpr bool knows_rotors = requires { requires std::remove_cvref_t<decltype(step.integrator())>::knows_rotors; };
+    constexpr bool is_rotor = requires { requires std::remove_cvref_t<decltype(pool.law)>::resists; };
+    static_assert(knows_rotors || !is_rotor, "delassus: of the integrators that make a step at once NewtonMidpoint alone takes a RotorInertia; take it, or ImplicitMidpoint");
+  });
   stage::linearize(step);
   if constexpr (std::remove_reference_t<decltype(step)>::has_constraints) {
     step.reports.assign(1, own.solve(step.world(), step.laws(), step.rows, step.integrator(), step.h));
