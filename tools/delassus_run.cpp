@@ -78,7 +78,7 @@ bool run(const std::string& path, const Options& options) {
     set_joint_state(loop, machine, space, key.q, v);
   }
 
-  Show show(model, machine, options.has_ground);
+  Show show(model, machine, pose, options.has_ground);
   const long steps = std::max(1l, std::lround(options.seconds / options.step)), every = std::max(1l, steps / 10);
   long unconverged = 0, held = 0;
   const auto begin = std::chrono::steady_clock::now();

@@ -117,6 +117,45 @@ TEST_CASE("limits, springs, friction and couplings of a machine act on its joint
   CHECK(position_of(loop.world(), machine, 1) == Approx(0.1 + 2 * 0.7).margin(1e-3));
 }
 
+// A rod of 2 kg whose root is a block around its hinge: they overlap, and would jam.
+TEST_CASE("a link does not meet the fixed link that a joint holds it to, nor what it is excluded from") {
+  for (const bool by_exclude : {false, true}) {
+    Model model{.name = "arm"};
+    model.bodies.push_back({.name = "base", .mass = 1, .inertia = Mat3(Mat3::Identity())});
+    model.bodies.push_back({.name = "rod", .parent = by_exclude ? -1 : 0, .mass = 2, .centre = {0, 0, -0.5}, .inertia = Mat3(Vec3(0.2, 0.2, 0.01).asDiagonal()), .joints = {0}});
+    model.joints.push_back({.name = "hinge", .axis = {0, 1, 0}});
+    model.geometries.push_back({.name = "block", .body = 0, .shape = Box{0.3, 0.3, 0.3}});
+    model.geometries.push_back({.name = "stick", .body = 1, .pose = {Vec3(0, 0, -0.5), Mat3::Identity()}, .shape = Box{0.1, 0.1, 1}});
+    if (by_exclude) model.excludes.push_back({.body = 1, .other = 0});
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, Hinge{}}, WithFilter{WithCompounds{NativeCollision{}}}};
+    const Machine machine = add(loop, model, {}, Base::fixed);
+    bodies<RigidBodies>(loop.world()).gravity.setZero();
+    for (int n = 0; n < 100; ++n) push_joint(loop, machine, 0, 0.5), loop.step(1e-2);
+    CAPTURE(by_exclude);
+    CHECK(loop.contacts().empty());
+    CHECK(position_of(loop.world(), machine, 0) == Approx(0.5 * 0.5 / 0.7).epsilon(0.02));  // ½ τ t²/(I + m l²), and a step of it
+  }
+}
+
+TEST_CASE("what a machine cannot be is refused before anything is added, and what holds nothing is named") {
+  Model model{.name = "table"};
+  model.joints = {{.name = "x", .kind = model::JointKind::slide, .axis = {1, 0, 0}},
+                  {.name = "xy", .kind = model::JointKind::slide, .axis = Vec3(1, 1, 0).normalized()}};
+  model.bodies.push_back({.name = "top", .mass = 1, .inertia = Mat3(Mat3::Identity()), .joints = {0, 1}});
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{SerialJoint<2, 0>{}, BallJoint{}}};
+  auto& set = bodies<RigidBodies>(loop.world());
+  CHECK_THROWS_WITH(add(loop, model), Catch::Contains("top") && Catch::Contains("right angles"));
+  CHECK(set.active().size() == 0);
+  model.joints[1].axis = {0, 1, 0};
+  model.bodies.push_back({.name = "vase", .parent = 0, .mass = 1, .inertia = Mat3(Mat3::Identity())});
+  model.connects.push_back({.name = "glue", .body = 0, .other = 1});
+  const Machine machine = add(loop, model);
+  REQUIRE(machine.left_out.size() == 1);
+  CHECK(machine.left_out[0].find("glue") != std::string::npos);
+  CHECK_THROWS_WITH(position_of(loop.world(), machine, 7), Catch::Contains("joint 7"));
+  CHECK_THROWS_WITH(push_joint(loop, machine, -1, 1), Catch::Contains("joint -1"));
+}
+
 TEST_CASE("a machine whose shapes are not in the middle of its bodies stands on them") {
   Model model{.name = "table"};
   model.joints.push_back({.name = "root", .kind = model::JointKind::free});

@@ -39,7 +39,7 @@ class Show {
   Recording recording;
   Table joints;  ///< q of hinges and slides, a row a step
 
-  Show(const Model& model, const Machine& machine, bool has_ground) : model_(model), machine_(machine) {
+  Show(const Model& model, const Machine& machine, const Pose& pose, bool has_ground) : model_(model), machine_(machine), pose_(pose) {
     recording.name = model.name;
     recording.caption = "Shapes as collisions see them.";
     inner::ModelShapes shapes(model);
@@ -50,7 +50,7 @@ class Show {
       recording.bodies.push_back(recorded_body(placed.shape, is_still));
       drawn_.push_back({geometry.body, placed.pose});
     }
-    if (has_ground) recording.bodies.push_back(recorded_body(HalfSpace{}, true)), drawn_.push_back({-1, {}});
+    if (has_ground) recording.bodies.push_back(recorded_body(HalfSpace{}, true)), drawn_.push_back({-1, {pose.to_local(Pose{})}});
     joints = {.title = model.name, .columns = {"time (s)", "kinetic energy (J)", "contacts", "residual", "joint gap (m)", "penetration (m)"}};
     for (std::size_t j = 0; j < model.joints.size(); ++j)
       if (has_number(j)) joints.columns.push_back(model.joints[j].name + (model.joints[j].kind == model::JointKind::hinge ? " (rad)" : " (m)"));
@@ -83,7 +83,7 @@ class Show {
     frame.time = loop.time();
     const auto& set = bodies<RigidBodies>(loop.world());
     for (const Drawn& drawn : drawn_) {
-      const Pose link = drawn.body < 0 ? Pose{} : pose_of(set, machine_, drawn.body);
+      const Pose link = drawn.body < 0 ? pose_ : pose_of(set, machine_, drawn.body);
       frame.poses.push_back({link.to_world(drawn.pose.position), Quat(Mat3(link.rotation * drawn.pose.rotation))});
     }
     for (const auto& c : loop.contacts())
@@ -95,6 +95,7 @@ class Show {
 
   const Model& model_;
   const Machine& machine_;
+  const Pose pose_;  ///< of the model's frame in the world
   std::vector<Drawn> drawn_;
 };
 

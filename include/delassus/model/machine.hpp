@@ -64,10 +64,22 @@ inline Pose pose_of(const RigidBodies& set, const Machine& machine, Index body) 
   return {own.to_world(part.pose.position), own.rotation * part.pose.rotation};
 }
 
+namespace inner {
+
+/// Refuses what is no hinge and no slide of the machine, or one that the world holds.
+inline const model::Axis& axis_of(const Machine& machine, Index joint, const char* what) {
+  DELASSUS_EXPECT(joint >= 0 && std::size_t(joint) < machine.axes.size() &&
+                      !(machine.axes[std::size_t(joint)].a.is_world() && machine.axes[std::size_t(joint)].b.is_world()),
+                  std::string(what) + ": joint " + std::to_string(joint) + " is no hinge or slide that moves in this machine");
+  return machine.axes[std::size_t(joint)];
+}
+
+}  // namespace inner
+
 /// q of a hinge or a slide now, rad or m. A hinge is known up to whole turns: it is within half a turn of its reference.
 template <class World>
 double position_of(const World& world, const Machine& machine, Index joint) {
-  const model::Axis& axis = machine.axes[std::size_t(joint)];
+  const model::Axis& axis = inner::axis_of(machine, joint, "position_of");
   const JointFrames frames(axis.a, axis.b, world);
   double value = 0;
   switch (axis.kind) {
@@ -83,7 +95,7 @@ double position_of(const World& world, const Machine& machine, Index joint) {
 /// Pushes a hinge or a slide with `force` (N·m or N) to larger q in the next step, as a motor between its two bodies.
 template <class Loop>
 void push_joint(Loop& loop, const Machine& machine, Index joint, double force) {
-  const model::Axis& axis = machine.axes[std::size_t(joint)];
+  const model::Axis& axis = inner::axis_of(machine, joint, "push_joint");
   inner::CoordinateGradient gradient(JointFrames(axis.a, axis.b, loop.world()));
   switch (axis.kind) {
     case model::AxisKind::turn: Turn::write(gradient, 0, 1); break;

@@ -49,6 +49,10 @@ inline Chain chain_of(const Model& model, Index body, const Pose& pose) {
   }
   DELASSUS_EXPECT(chain.slides.size() <= 3 && chain.hinges.size() <= 3, who + " has more than three slides or hinges; a joint takes three of each");
   if (points.empty()) return chain;
+  for (std::size_t i = 0; i < chain.slides.size(); ++i)
+    for (std::size_t k = i + 1; k < chain.slides.size(); ++k)
+      DELASSUS_EXPECT(std::abs(dot(chain.slide(i), chain.slide(k))) < 1e-6,
+                      who + " has slides that are not at right angles; a body of small mass between them parts them");
   const std::size_t first = chain.slides.size();
   chain.at = chain.at_last = first < points.size() ? points[first] : points[0];
   const auto skew = [&](std::size_t i, std::size_t k) { return norm(cross(chain.hinge(i), chain.hinge(k))); };
@@ -58,6 +62,8 @@ inline Chain chain_of(const Model& model, Index body, const Pose& pose) {
     const double c = dot(p, q), left = 1 - c * c;
     chain.cosine = c;
     chain.offset = dot(r, n) / left;
+    DELASSUS_EXPECT(chain.slides.empty() || std::abs(chain.offset) < 1e-9 * (norm(points[first]) + norm(points[first + 1]) + 1e-3),
+                    who + " has slides and two hinges that pass each other; a body of small mass between slides and hinges parts them");
     chain.at += (dot(r, p) - c * dot(r, q)) / left * p;
     chain.at_last = points[first + 1] + (c * dot(r, p) - dot(r, q)) / left * q;
   }

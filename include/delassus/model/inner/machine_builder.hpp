@@ -68,7 +68,27 @@ class MachineBuilder {
     if (!leave_out_.couplings) add_couplings();
     add_tendons();
     add_exclusions();
+    leave_rest();
     if (!model_.actuators.empty()) leave("its " + std::to_string(model_.actuators.size()) + " actuators push nothing: drive the joints yourself");
+  }
+
+  /// What has no law here.
+  void leave_rest() {
+    for (const model::Body& body : model_.bodies)
+      if (body.gravity_compensation != 0) leave("the whole weight of body '" + body.name + "' acts");
+    for (const model::Joint& joint : model_.joints)
+      if ((joint.kind == model::JointKind::ball || joint.kind == model::JointKind::free) &&
+          (joint.damping > 0 || joint.stiffness > 0 || joint.friction_loss > 0 || joint.armature > 0))
+        leave("spring, damping, dry friction and rotor of joint '" + joint.name + "' do not act: it is a ball or free");
+    for (const model::Tendon& tendon : model_.tendons)
+      if (tendon.friction_loss > 0) leave("the dry friction of tendon '" + tendon.name + "' does not act");
+    if (leave_out_.contacts || !model_.contacts) return;
+    const auto& all = model_.geometries;
+    if (std::any_of(all.begin(), all.end(), [](const auto& g) { return g.friction != 1 || g.contact_freedoms != 3 || g.restitution != 0 || norm(g.surface_velocity) + norm(g.surface_spin) > 0; }))
+      leave("all contacts have the law of the loop: friction, restitution and motion of single surfaces are not used");
+    if (std::any_of(all.begin(), all.end(), [](const auto& g) { return (g.type != 1 || g.affinity != 1) && g.type + g.affinity != 0; }))
+      leave("shapes meet whatever their types and affinities are");
+    if (!model_.pairs.empty()) leave("its " + std::to_string(model_.pairs.size()) + " contact pairs have no numbers of their own");
   }
 
   // --- bodies --------------------------------------------------------------------------------------------------
@@ -76,6 +96,7 @@ class MachineBuilder {
   void add_body(std::size_t l) {
     const Lump& lump = lumps_.all[l];
     std::vector<ModelShapes::Placed> shapes;
+    std::vector<Index> owners;  // of the shapes
     const Pose root = l == 0 ? Pose{} : world_pose_[std::size_t(lump.root)];
     if (!leave_out_.contacts && model_.contacts)
       for (const Index g : lump.shapes) {
@@ -87,16 +108,18 @@ class MachineBuilder {
         }
         const Pose frame = geometry.body < 0 ? pose_ : lumps_.in_root[std::size_t(geometry.body)];
         shapes.push_back(shapes_.placed(geometry, frame));
+        owners.push_back(geometry.body);
         if (shapes.back().shape.kind == ShapeKind::none || (l > 0 && shapes.back().shape.kind == ShapeKind::half_space)) {
           leave("geometry '" + geometry.name + "' has no shape here and meets nothing");
-          shapes.pop_back();
+          shapes.pop_back(), owners.pop_back();
         }
       }
     if (l == 0) {
       for (std::size_t b = 0; b < model_.bodies.size(); ++b)
         if (lumps_.of[b] == 0) machine_.parts[b] = {.body = {}, .is_world = true, .pose = lumps_.in_root[b]};
       if (!is_looking_)
-        for (const auto& [shape, pose] : shapes) set_.add_fixed(shape, pose.position, Quat(pose.rotation));
+        for (std::size_t k = 0; k < shapes.size(); ++k)
+          still_.push_back({owners[k], set_.add_fixed(shapes[k].shape, shapes[k].pose.position, Quat(shapes[k].pose.rotation))});
       return;
     }
     const bool is_kinematic = model_.bodies[std::size_t(lump.root)].is_kinematic;
@@ -232,15 +255,27 @@ class MachineBuilder {
   void add_couplings() {
     for (const model::Coupling& coupling : model_.couplings) add_coupling(coupling);
     for (const model::Connect& connect : model_.connects) {
+      if (moves_as_one(connect.body, connect.other)) {
+        leave("connect '" + connect.name + "' has nothing to hold: its two bodies move as one");
+        continue;
+      }
       const Vec3 point = world(connect.body).to_world(connect.point), other = world(connect.other).to_world(connect.other_point);
       emit<BallJoint>("BallJoint{}", [&] { return BallJoint::Item{end(connect.body, point, Quat::Identity()), end(connect.other, other, Quat::Identity())}; });
     }
     for (const model::Weld& weld : model_.welds) {
+      if (moves_as_one(weld.body, weld.other)) {
+        leave("weld '" + weld.name + "' has nothing to hold: its two bodies move as one");
+        continue;
+      }
       const Pose one = world(weld.body), there = Lumps::in(one, weld.pose), other = world(weld.other);
       emit<delassus::Weld>("Weld{}", [&] {
         return delassus::Weld::Item{end(weld.body, there.position, Quat(there.rotation)), end(weld.other, other.position, Quat(other.rotation))};
       });
     }
+  }
+  bool moves_as_one(Index a, Index b) const {
+    const auto lump = [&](Index body) { return body < 0 ? 0 : lumps_.of[std::size_t(body)]; };
+    return lump(a) == lump(b);
   }
   Pose world(Index body) const { return body < 0 ? pose_ : world_pose_[std::size_t(body)]; }
 
@@ -250,11 +285,18 @@ class MachineBuilder {
     const auto is_simple = [&](Index j) { return j >= 0 && (kind(j) == model::AxisKind::turn || kind(j) == model::AxisKind::slide) && model_.joints[std::size_t(j)].kind != model::JointKind::ball; };
     if (coupling.of_tendons || !is_simple(coupling.joint) || !is_simple(coupling.other) || c[2] != 0 || c[3] != 0 || c[4] != 0)
       return leave("coupling '" + coupling.name + "' does not act: it is not linear, or is not of two single hinges or slides");
+    if (owner(coupling.joint) == owner(coupling.other))
+      return leave("coupling '" + coupling.name + "' does not act: its two joints are of one body; a body of small mass between them parts them");
     const bool first_turns = kind(coupling.joint) == model::AxisKind::turn, second_turns = kind(coupling.other) == model::AxisKind::turn;
     if (first_turns && second_turns) emit_coupling<Turn, Turn>("Coupling<Turn, Turn>{}", coupling);
     else if (first_turns) emit_coupling<Turn, Slide>("Coupling<Turn, Slide>{}", coupling);
     else if (second_turns) emit_coupling<Slide, Turn>("Coupling<Slide, Turn>{}", coupling);
     else emit_coupling<Slide, Slide>("Coupling<Slide, Slide>{}", coupling);
+  }
+  Index owner(Index joint) const {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+      if (std::ranges::count(model_.bodies[b].joints, joint) > 0) return Index(b);
+    return -1;
   }
   template <class A, class B>
   void emit_coupling(const char* name, const model::Coupling& coupling) {
@@ -274,6 +316,10 @@ class MachineBuilder {
         leave("tendon '" + tendon.name + "' does not act: only those between two sites do");
         continue;
       }
+      if (moves_as_one(model_.sites[std::size_t(tendon.sites[0])].body, model_.sites[std::size_t(tendon.sites[1])].body)) {
+        leave("tendon '" + tendon.name + "' does not act: its two sites move as one");
+        continue;
+      }
       const auto anchor_of = [&](Index s) {
         const model::Site& site = model_.sites[std::size_t(s)];
         return end(site.body, world(site.body).to_world(site.pose.position), Quat::Identity());
@@ -288,21 +334,43 @@ class MachineBuilder {
     }
   }
 
+  /// The excludes, and what hangs on a link that the world holds: a joint to the world names no body that a filter could ask for.
   void add_exclusions() {
-    if (model_.excludes.empty() || leave_out_.contacts) return;
+    if (leave_out_.contacts || !model_.contacts) return;
     if constexpr (collides) exclude();
   }
   void exclude() {
     auto* filter = filter_layer(loop_.data().template policy<role::Collision>(), loop_.world());
     if constexpr (std::is_same_v<decltype(filter), int*>) {
-      miss("WithFilter{...}");
+      if (!model_.excludes.empty()) miss("WithFilter{...}");
     } else if (!is_looking_) {
-      for (const model::Exclude& pair : model_.excludes) {
-        if (pair.body < 0 || pair.other < 0) continue;
-        const model::Part &a = machine_.parts[std::size_t(pair.body)], &b = machine_.parts[std::size_t(pair.other)];
-        if (!a.is_world && !b.is_world) filter->ignore(loop_.world(), anchor(set_, a.body), anchor(set_, b.body));
+      for (const model::Exclude& pair : model_.excludes) ignore(*filter, pair.body, pair.other);
+      if (model_.parents_collide) return;
+      for (const Chain& chain : chains_) {
+        const Index parent = model_.bodies[std::size_t(chain.body)].parent;
+        if (parent < 0 || !machine_.parts[std::size_t(parent)].is_world) continue;
+        for (const Still& still : still_)
+          if (still.link >= 0 && root_of(still.link) == root_of(parent)) ignore(*filter, chain.body, still.link);
       }
     }
+  }
+  void ignore(auto& filter, Index one, Index other) const {
+    const bool is_one_still = is_in_world(one), is_other_still = is_in_world(other);
+    if (is_one_still && is_other_still) return;
+    if (is_one_still) return ignore(filter, other, one);
+    const RigidBodies::Handle body = machine_.parts[std::size_t(one)].body;
+    if (!is_other_still) {
+      const RigidBodies::Handle against = machine_.parts[std::size_t(other)].body;
+      if (body.index != against.index) filter.ignore(loop_.world(), anchor(set_, body), anchor(set_, against));
+      return;
+    }
+    for (const Still& still : still_)
+      if (still.link == other) filter.ignore(loop_.world(), anchor(set_, body), anchor(set_, still.body));
+  }
+  bool is_in_world(Index body) const { return body < 0 || lumps_.of[std::size_t(body)] == 0; }
+  Index root_of(Index body) const {
+    while (model_.bodies[std::size_t(body)].parent >= 0) body = model_.bodies[std::size_t(body)].parent;
+    return body;
   }
 
   // --- one constraint ------------------------------------------------------------------------------------------
@@ -331,6 +399,11 @@ class MachineBuilder {
   const LeaveOut& leave_out_;
   ModelShapes shapes_;
   std::vector<Pose> world_pose_;  ///< by body, in the pose that the tree describes
+  struct Still {
+    Index link;  ///< −1: the world's own
+    RigidBodies::Handle body;
+  };
+  std::vector<Still> still_;      ///< the shapes that stand in the world
   std::vector<Chain> chains_;     ///< of the lumps that move, in their order
   std::vector<std::string> missing_;
   Machine machine_;
