@@ -3,6 +3,7 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 
 #include "catch.hpp"
+#include "scratch_path.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -19,7 +20,7 @@ const std::string two =
 
 struct File {
   std::string path;
-  explicit File(const char* name) : path((std::filesystem::temp_directory_path() / name).string()) {
+  explicit File(const char* name) : path(scratch_path(name).string()) {
     std::filesystem::remove(path);
   }
   ~File() { std::filesystem::remove(path); }

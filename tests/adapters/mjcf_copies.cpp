@@ -1,6 +1,7 @@
 #include <delassus/adapters/mjcf.hpp>
 
 #include "catch.hpp"
+#include "scratch_path.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -28,7 +29,7 @@ using Words = std::vector<std::string>;
 
 /// Files of a folder that goes with its scope.
 struct Folder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / "delassus_mjcf_copies";
+  std::filesystem::path path = scratch_path("mjcf_copies");
   Folder() { std::filesystem::create_directories(path / "parts"); }
   ~Folder() { std::filesystem::remove_all(path); }
   void write(const char* name, const std::string& text) const { std::ofstream(path / name) << text; }

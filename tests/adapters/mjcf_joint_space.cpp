@@ -11,8 +11,7 @@ namespace mjcf_joint_space_tests {
 
 using namespace delassus;
 
-TEST_CASE(
-    "forward of inverse dynamics gives the acceleration back, poses and velocities q and v: 23 MJCF files") {
+TEST_CASE("forward of inverse dynamics gives the accelerations of 23 MJCF files back") {
   const char* folder = std::getenv("DELASSUS_MODELS");
   if (!folder) {
     WARN("DELASSUS_MODELS is not set: no models of other projects are read");

@@ -1,6 +1,7 @@
 #include <delassus/adapters/mjcf.hpp>
 
 #include "catch.hpp"
+#include "scratch_path.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -157,7 +158,7 @@ TEST_CASE("built-in meshes: spheres, cones, superspheres, supertori") {
 }
 
 TEST_CASE("meshes and height fields from files, also from the folders of the options") {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "delassus_mjcf_files";
+  const std::filesystem::path folder = scratch_path("mjcf_files");
   std::filesystem::create_directories(folder / "meshes");
   std::ofstream(folder / "meshes" / "t.obj")
       << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";

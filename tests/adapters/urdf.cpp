@@ -2,6 +2,7 @@
 #include <delassus/adapters/urdf.hpp>
 
 #include "catch.hpp"
+#include "scratch_path.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -244,7 +245,7 @@ TEST_CASE("the inertia about the centre stands in the axes of the link") {
 
 TEST_CASE("meshes become hulls, found beside the file, in a package or in a folder that is named") {
   namespace fs = std::filesystem;
-  const fs::path top = fs::temp_directory_path() / "delassus_urdf_meshes", package = top / "arm";
+  const fs::path top = scratch_path("urdf_meshes"), package = top / "arm";
   fs::create_directories(package / "urdf");
   std::ofstream(package / "wedge.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\n";
   const auto collision = [](const std::string& file, const std::string& scale) {

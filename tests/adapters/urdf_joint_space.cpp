@@ -11,8 +11,7 @@ namespace urdf_joint_space_tests {
 
 using namespace delassus;
 
-TEST_CASE(
-    "forward of inverse dynamics gives the acceleration back, poses and velocities q and v: 17 URDF files") {
+TEST_CASE("forward of inverse dynamics gives the accelerations of 17 URDF files back") {
   const char* folder = std::getenv("DELASSUS_MODELS");
   if (!folder) {
     WARN("DELASSUS_MODELS is not set: the files of other projects are left out");

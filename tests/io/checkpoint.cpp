@@ -9,6 +9,7 @@
 #include "catch.hpp"
 #include "rope.hpp"
 #include "same_bits.hpp"
+#include "scratch_path.hpp"
 
 using namespace scenes;
 
@@ -141,7 +142,7 @@ TEST_CASE("a checkpoint of another loop, cut short, or damaged is refused and ch
 }
 
 TEST_CASE("a checkpoint file is written whole, and a path that cannot be is named") {
-  const auto path = (std::filesystem::temp_directory_path() / "delassus_checkpoint_test").string();
+  const auto path = scratch_path("checkpoint").string();
   auto loop = stack_loop();
   add_stack(rigid_bodies(loop), 3, Box{1, 1, 1});
   for (int n = 0; n < 20; ++n) loop.step(5e-3);

@@ -1,5 +1,6 @@
 #include "catch.hpp"
 #include "study/scripted.hpp"
+#include "scratch_path.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -24,7 +25,7 @@ StudyPlan plan_of(std::vector<double> steps, std::vector<double> tolerances = {}
 const auto compared = [] { return Measures{Compared{"value", "m", value, exact}}; };
 
 std::string fresh_file(const char* name) {
-  const auto path = std::filesystem::temp_directory_path() / name;
+  const auto path = scratch_path(name);
   std::filesystem::remove(path);
   return path.string();
 }

@@ -2,6 +2,7 @@
 // in ten random states each.
 #include "model/random_tree.hpp"
 #include "same_model.hpp"
+#include "scratch_path.hpp"
 
 #include <delassus/adapters/mjcf.hpp>
 #include <delassus/model/joint_space.hpp>
@@ -98,7 +99,7 @@ void check_file(const std::string& path) {
 
 /// `inside` is what stands within <mujoco>.
 void check_text(const std::string& inside) {
-  const std::string path = (std::filesystem::temp_directory_path() / "delassus_joint_space.xml").string();
+  const std::string path = scratch_path("joint_space.xml").string();
   std::ofstream(path) << "<mujoco><compiler autolimits='true'/>" + inside + "</mujoco>";
   check_file(path);
   std::filesystem::remove(path);

@@ -1,5 +1,6 @@
 // Small texts of the rules that the models of others do not use, as MuJoCo 2.2.2 reads them.
 #include "same_model.hpp"
+#include "scratch_path.hpp"
 
 #include <delassus/adapters/mjcf.hpp>
 
@@ -16,7 +17,7 @@ namespace {
 void check_text(const std::string& inside) {
   const std::string text = "<mujoco><compiler autolimits='true'/>" + inside + "</mujoco>";
   CAPTURE(text);
-  const std::string path = (std::filesystem::temp_directory_path() / "delassus_mjcf_rule.xml").string();
+  const std::string path = scratch_path("mjcf_rule.xml").string();
   std::ofstream(path) << text;
   const MujocoModel m = load_in_mujoco(path);
   const Model model = parse_mjcf(text, path);
