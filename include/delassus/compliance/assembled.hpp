@@ -57,6 +57,19 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     for_each_index<pools>([&](auto a) __attribute__((always_inline)) { Built::template build_pool<R_of<a>>(own_, a, nullptr); });
   }
 
+  /// The same by several workers; `parts` is room for what each makes.
+  template <class Parts, class E>
+  void build(const auto& world, Rows& rows, Parts& parts, const E& execution) {
+    world.each([&](const auto& set, auto s) __attribute__((always_inline)) { invert(set, rows, s); });
+    prepare(world, rows);
+    for_each_index<pools>([&](auto a) {
+      if (own_.is_coupled(a)) Built::template build_pool<R_of<a>>(own_, a, nullptr);
+      else parts.template build<R_of<a>>(own_, a, execution);
+    });
+  }
+  /// Each island has rows and blocks of its own: several may be solved at once.
+  static constexpr bool islands_are_apart = true;
+
   /// The rows of those items alone that are not crowded, by pool; the others have no blocks, and of W_ii only
   /// their own compliance. Pre: G stands, and no set couples its blocks.
   void build_where(const auto& world, Rows& rows, const CrowdedRow* const* crowded) {

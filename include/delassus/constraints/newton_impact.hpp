@@ -5,6 +5,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
+#include <delassus/core/owning_array.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/theta.hpp>
 #include <delassus/rows/world_view.hpp>
@@ -165,8 +166,12 @@ struct NewtonImpact {
   template <class P>
   struct State {
     using T = typename P::Rows::Scalar;
+    /// Of one island that is being solved.
+    struct Solved {
+      Array<T> newton, newton_velocity;
+    };
     Bounces<T> bounces;
-    Array<T> newton, newton_velocity;
+    OwningArray<Solved> solved;  ///< by worker
     void memory(auto& archive) { archive(bounces); }
   };
 
@@ -176,7 +181,9 @@ struct NewtonImpact {
       Base::make_bias(step);
       using T = typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T;
       auto& own = step.template state<NewtonImpact>();
-      for (auto* numbers : {&own.newton, &own.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
+      own.solved.resize(std::size_t(Base::workers(step)));
+      for (auto& one : own.solved)
+        for (auto* numbers : {&one.newton, &one.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
       using World = std::remove_cvref_t<decltype(step.world())>;
       std::size_t counts[World::set_count + 1];
@@ -188,8 +195,8 @@ struct NewtonImpact {
       Base::solve_island(step, island);
       auto& own = step.template state<NewtonImpact>();
       const auto report = step.reports[island.island()];
-      EnergyGuard<typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T> guard(island, own.bounces, own.newton,
-                                                                                                     own.newton_velocity);
+      EnergyGuard<typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T> guard(
+          island, own.bounces, own.solved[std::size_t(island.worker)].newton, own.solved[std::size_t(island.worker)].newton_velocity);
       if (guard.asks_again()) {
         Base::solve_island(step, island);
         guard.finish();

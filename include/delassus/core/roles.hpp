@@ -16,6 +16,7 @@ struct Solver;
 struct Stabilisation;
 struct Scheme;
 struct Activity;
+struct Execution;
 struct Listener;
 }  // namespace role
 

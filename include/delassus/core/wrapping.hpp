@@ -23,7 +23,7 @@ concept IsHollow = std::derived_from<P, Hollow> || requires { requires P::is_hol
 namespace layer {
 inline constexpr unsigned seamless = 1, meshes = 2, compounds = 8, surfaces = 16,
                           filter = 32;                     // of collision
-inline constexpr unsigned deadline = 1, minimum_norm = 2;  // of a solver
+inline constexpr unsigned deadline = 1, minimum_norm = 2, coloured = 4;  // of a solver
 inline constexpr unsigned compliance = 1;                  // of a stabilisation
 }  // namespace layer
 

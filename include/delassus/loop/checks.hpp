@@ -82,7 +82,11 @@ consteval bool plays_its_role() {
   static_assert(listens,
                 "delassus: this type plays role::Listener but does not say what it hears; add `using listens = "
                 "Listens<stage::Solve>;`");
-  return is_filled && integrates && stabilises && listens;
+  constexpr bool executes = !Plays<P, role::Execution> || Execution<P>;
+  static_assert(executes,
+                "delassus: this type plays role::Execution but lacks workers() or run(tasks, f), both const; see "
+                "core/execution.hpp");
+  return is_filled && integrates && stabilises && listens && executes;
 }
 
 template <class Role, class... Args>
@@ -105,7 +109,7 @@ consteval bool one_of_each() {
   return one_observes_sweeps<Args...>() && at_most_one<role::Integrator, Args...>() && at_most_one<role::Constraints, Args...>() &&
          at_most_one<role::Collision, Args...>() && at_most_one<role::Compliance, Args...>() &&
          at_most_one<role::Solver, Args...>() && at_most_one<role::Stabilisation, Args...>() &&
-         at_most_one<role::Scheme, Args...>() && at_most_one<role::Activity, Args...>();
+         at_most_one<role::Scheme, Args...>() && at_most_one<role::Activity, Args...>() && at_most_one<role::Execution, Args...>();
 }
 
 template <class... Args>

@@ -8,6 +8,7 @@
 #include <delassus/collision/no_collision.hpp>
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/execution.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
 #include <delassus/loop/held_policies.hpp>
 #include <delassus/loop/pick.hpp>
@@ -44,6 +45,7 @@ struct Policies {
   using Stabilisation = the<role::Stabilisation, Baumgarte>;
   using Scheme = the<role::Scheme, PlainOrder>;
   using Activity = the<role::Activity, AllActive>;
+  using Execution = the<role::Execution, Serial>;
 
   template <class Stage>
   static constexpr bool hears_stage = (inner::hears_stage<Args, Stage> || ...);
@@ -59,7 +61,7 @@ namespace inner {
 template <class P, class Role>
 using policy_type = typename pick<Role, void, typename P::World, typename P::Laws, typename P::Integrator, typename P::Collision,
                                   typename P::Compliance, typename P::Solver, typename P::Stabilisation, typename P::Scheme,
-                                  typename P::Activity>::type;
+                                  typename P::Activity, typename P::Execution>::type;
 
 /// The tuple of the defaults a loop really uses: nothing for a role that is named or not needed.
 template <class... Args>

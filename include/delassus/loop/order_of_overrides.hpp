@@ -51,14 +51,14 @@ struct overrides_of_laws<Found, L, Rest...> {
   using type = typename overrides_of_laws<decltype(add(std::declval<typename overrides_of<L>::type>())), Rest...>::type;
 };
 
-/// By role: what laws override, each once, then compliance, stabilisation, integrator and scheme, and outermost the activity.
+/// By role: innermost who runs the parts of stages, then what laws override, each once, compliance, stabilisation, integrator and scheme, and outermost the activity.
 template <class P, class Laws = typename P::Laws>
 struct order_of_overrides;
 template <class P, class... L>
 struct order_of_overrides<P, Constraints<L...>> {
   template <class... O>
-  static Overrides<O..., typename P::Compliance, typename P::Stabilisation, typename P::Integrator, typename P::Scheme,
-                   typename P::Activity>
+  static Overrides<typename P::Execution, O..., typename P::Compliance, typename P::Stabilisation, typename P::Integrator,
+                   typename P::Scheme, typename P::Activity>
       gather(Overrides<O...>);
   using type = decltype(gather(std::declval<typename overrides_of_laws<Overrides<>, L...>::type>()));
 };

@@ -5,6 +5,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/solvers/inner/length_of_island.hpp>
+#include <delassus/solvers/inner/pieces.hpp>
 #include <delassus/solvers/inner/solve_timer.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
@@ -63,6 +64,7 @@ class Island {
     out.take(spans, count);
     out.is_part_ = true;
     out.observer_ = {};
+    out.pieces_ = nullptr;
     return out;
   }
 
@@ -75,11 +77,14 @@ class Island {
   /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
   double sweep(const SweepRule& rule, const T* x, double* curvature) {
     Sweep<T> sums{.relaxation = T(rule.relaxation), .tells_change = rule.tells_change, .length = length_};
-    for (Pass pass(*this); pass.next();) {
-      if (x) sums.x = x + pass.row();
-      const LawTable<T>& law = *pass.span->pool->table;
-      (rule.projects ? law.project_once : law.sweep)(*pass.span, sums);
-    }
+    const auto visit = [&](const Span<T>& span, Index row, Sweep<T>& to) __attribute__((always_inline)) {
+      if (x) to.x = x + row;
+      const LawTable<T>& law = *span.pool->table;
+      (rule.projects ? law.project_once : law.sweep)(span, to);
+    };
+    if (pieces_) sums = pieces_->pass(begin(), end(), sums, pieces_->sweeps, visit);
+    else
+      for (Pass pass(*this); pass.next();) visit(*pass.span, pass.row(), sums);
     if (rule.tells_change) {
       last_change_ = h_ * double(sums.displacement);
       worst_change_ = h_ * double(sums.most);
@@ -90,7 +95,10 @@ class Island {
 
   Measure measure() {
     MeasureSums sums{.length = length_};
-    for (Pass pass(*this); pass.next();) pass.span->pool->table->measure(*pass.span, sums);
+    const auto visit = [](const Span<T>& span, Index, MeasureSums& to) __attribute__((always_inline)) { span.pool->table->measure(span, to); };
+    if (pieces_) sums = pieces_->pass(begin(), end(), sums, pieces_->measures, visit);
+    else
+      for (Pass pass(*this); pass.next();) visit(*pass.span, 0, sums);
     Measure m = sums.has_vanished() && moves() ? Measure::of_nothing() : sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
     m.worst_change = worst_change_;
@@ -100,8 +108,24 @@ class Island {
 
   /// λ ← λ + β (λ − before), each brought back into its law's cone; `before` takes the λ that was.
   void extrapolate(Array<T>& before, double beta) {
-    for (Pass pass(*this); pass.next();) pass.span->pool->table->extrapolate(*pass.span, before.data() + pass.row(), T(beta));
+    const auto visit = [&](const Span<T>& span, Index row) __attribute__((always_inline)) {
+      span.pool->table->extrapolate(span, before.data() + row, T(beta));
+    };
+    if (pieces_) pieces_->pass(begin(), end(), Sweep<T>{}, pieces_->sweeps, [&](const Span<T>& span, Index row, Sweep<T>&) { visit(span, row); });
+    else
+      for (Pass pass(*this); pass.next();) visit(*pass.span, pass.row());
   }
+
+  /// From here on passes visit these spans instead, items that do not meet in each, in pieces that the crew of `pieces` shares.
+  /// Both stay where they are as long as the island is used. Pre: no timer.
+  void sweep_in_pieces(const Span<T>* spans, int count, inner::Pieces<T>& pieces) {
+    take(spans, count);
+    pieces_ = &pieces;
+    pieces.crew = crew_;
+  }
+  bool is_in_pieces() const { return pieces_; }
+  /// Threads that share its passes; null: none.
+  void set_crew(inner::Crew* crew) { crew_ = crew; }
 
   double last_change() const { return last_change_; }
   double worst_change() const { return worst_change_; }
@@ -320,6 +344,8 @@ class Island {
   Index island_;
   double h_;
   inner::SolveTimer<T>* timer_ = nullptr;
+  inner::Pieces<T>* pieces_ = nullptr;
+  inner::Crew* crew_ = nullptr;
   bool is_part_ = false;
   SolveObserver<T> observer_{};
   double last_change_ = std::numeric_limits<double>::infinity(), worst_change_ = last_change_;

@@ -58,6 +58,9 @@ class IslandProblem : public Island<typename Rows::Scalar> {
     this->length_ = inner::length_of_island(this->begin(), this->end());
     if constexpr (!std::is_same_v<Observer, NoObserver>) this->set_observer(inner::show_observer<T>(observer));
   }
+  /// Who solves it, among those that work at once.
+  Index worker = 0;
+
   IslandProblem(const IslandProblem&) = delete;
   IslandProblem& operator=(const IslandProblem&) = delete;
 

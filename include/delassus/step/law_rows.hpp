@@ -28,8 +28,10 @@ struct LawSteps {
   void (*drop_stale)(void* pool, const WorldView<T>&);
   /// Items that remember something of their pose (how often a wheel has turned) see the start of the step; null: none does.
   void (*follow)(void* pool, const WorldView<T>&);
-  /// H and φ of all items at the present configuration of the world.
-  void (*linearize)(const void* pool, const WorldView<T>&, const RowArrays<T>&);
+  Index (*count)(const void* pool);  ///< of items
+  /// H and φ of the items first … last − 1 at the present configuration of the world. There is room for their rows; their
+  /// entries are appended.
+  void (*linearize)(const void* pool, const WorldView<T>&, const RowArrays<T>&, Index first, Index last);
   /// The speed that the rows of item i shall have, m/s or rad/s; null: zero.
   double (*speed)(const void* pool, Index i);
   /// Where item i acts; null: it has no slip.
@@ -93,11 +95,10 @@ struct LawRows {
     if constexpr (refines<Law>(refine::follow))
       for (const Index place : of(pool).slots.active()) of(pool).law.follow(of(pool).items[place], world);
   }
-  static void linearize(const void* at, const WorldView<T>& world, const RowArrays<T>& rows) {
+  static Index count(const void* pool) { return of(pool).count(); }
+  static void linearize(const void* at, const WorldView<T>& world, const RowArrays<T>& rows, Index first, Index last) {
     const Pool<Law>& pool = of(at);
-    const Index count = pool.count();
-    rows.reset(count);
-    for (Index i = 0; i < count; ++i) {
+    for (Index i = first; i < last; ++i) {
       rows.template begin<R>(i);
       pool.law.linearize(pool.item(i), world, RowWriter<T>(world, rows, i));
       rows.close();
@@ -181,6 +182,7 @@ struct LawRows {
             inner::has_mean_springs<Law>,
             ContactLaw<Law> ? nullptr : drop_stale,
             refines<Law>(refine::follow) ? follow : nullptr,
+            count,
             linearize,
             refines<Law>(refine::speed) ? speed : nullptr,
             has_slip ? place : nullptr,

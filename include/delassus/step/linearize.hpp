@@ -26,7 +26,11 @@ void follow(const World& world, Laws& laws) {
 /// H and φ at the present configuration of the world.
 template <class T>
 void linearize(const WorldView<T>& world, AllLaws<T> laws, AllRows<T> rows) {
-  for (std::size_t p = 0; p < laws.size(); ++p) laws[p].law->linearize(laws[p].pool, world, rows[p]);
+  for (std::size_t p = 0; p < laws.size(); ++p) {
+    const Index items = laws[p].law->count(laws[p].pool);
+    rows[p].reset(items);
+    laws[p].law->linearize(laws[p].pool, world, rows[p], 0, items);
+  }
 }
 template <class World, class Laws, class Rows>
 void linearize(const World& world, const Laws& laws, Rows& rows) {

@@ -51,6 +51,9 @@ struct PlainStages : StagesWithoutConstraints {
   /// A policy that cannot solve a step again says false.
   static constexpr bool looks_ahead = true;
 
+  /// How many islands are solved at once, at most.
+  static constexpr Index workers(auto&) { return 1; }
+
   static void begin(auto& step, double h) {
     if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts)
       check_materials(std::as_const(step).world(), step.material_pairs);
@@ -115,11 +118,14 @@ struct PlainStages : StagesWithoutConstraints {
 
   static void linearize(auto& step) {
     follow(step.view, step.pools.all());
-    delassus::linearize(step.view, step.pools.all(), step.arrays.all());
+    std::remove_reference_t<decltype(step)>::Stages::write_rows(step);
     warm_start(step.pools.all(), step.arrays.all(), step.contact_cache, step.h, step.last_h);
     step.summary.rows = row_count(step.arrays.all());
     step.summary.max_joint_violation = std::max(step.summary.max_joint_violation, worst_equality(step.pools.all(), step.arrays.all()));
   }
+
+  /// H and φ of all laws.
+  static void write_rows(auto& step) { delassus::linearize(step.view, step.pools.all(), step.arrays.all()); }
 
   static void free_motion(auto& step) {
     step.world().each([&](auto& set, auto s) {
@@ -143,9 +149,11 @@ struct PlainStages : StagesWithoutConstraints {
   }
 
   static void build(auto& step) {
-    step.W.build(std::as_const(step).world(), step.rows);
+    std::remove_reference_t<decltype(step)>::Stages::build_W(step);
     step.law_set.prepare(step.W, step.rows, step.h);
   }
+
+  static void build_W(auto& step) { step.W.build(std::as_const(step).world(), step.rows); }
 
   static void solve(auto& step) {
     using Step = std::remove_reference_t<decltype(step)>;
@@ -174,9 +182,10 @@ struct PlainStages : StagesWithoutConstraints {
   /// One of them, an `Island`.
   static void solve_island(auto& step, auto& island) {
     SolveReport& report = step.reports[island.island()];
-    report = step.solver().solve(island, step.solver_workspace.itself());
+    report = step.solver().solve(island, std::remove_reference_t<decltype(step)>::Stages::solver_workspace(step, island));
     report.undecided_loads = inner::undecided_loads<typename std::remove_reference_t<decltype(step)>::Scalar>(island, report);
   }
+  static auto& solver_workspace(auto& step, auto&) { return step.solver_workspace.itself(); }
   /// Impulses go to the items and to the contacts, and are kept for the next step.
   static void keep_impulses(auto& step) {
     delassus::keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache);

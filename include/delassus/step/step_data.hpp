@@ -118,6 +118,8 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   [[gnu::always_inline]] auto& stabilisation() { return policy<role::Stabilisation>(); }
   [[gnu::always_inline]] auto& scheme() { return policy<role::Scheme>(); }
   [[gnu::always_inline]] auto& activity() { return policy<role::Activity>(); }
+  /// Where one is named.
+  [[gnu::always_inline]] auto& execution() { return policy<role::Execution>(); }
   /// The state of the policy of a role, or of a law's override: state<role::Activity>(), state<NewtonImpact>().
   template <class Key>
     requires has_state<Key>

@@ -48,6 +48,15 @@ class AssembledRows {
   /// The rows of pool a, `height` an item, whose items in `crowded` have no blocks, and of W_ii only their own compliance.
   template <int height>
   static void build_pool(AssembledRows& W, int a, const CrowdedRow* crowded);
+  /// The same of items first … last − 1, in order, into `to`, whose rows of the pool are begun.
+  template <int height>
+  static void build_rows(AssembledRows& W, BlockMatrix<T>& to, int a, Index first, Index last, const CrowdedRow* crowded);
+  /// Whether a set that pool a acts on has an A that couples its blocks.
+  bool is_coupled(int a) const {
+    bool any = false;
+    for (int s = 0; s < views[std::size_t(a)].sets; ++s) any = any || coupled[std::size_t(s)] != HowCoupled::not_at_all;
+    return any;
+  }
 
   BlockMatrix<T> matrix;
   Array<RowView<T>> views;  ///< of the rows that are being built
@@ -56,7 +65,7 @@ class AssembledRows {
  private:
   /// Every entry e of item i meets all entries f on its block, and W_ij += H_e G_f.
   template <int height>
-  void add_row(int a, int s, Index i) {
+  void add_row(BlockMatrix<T>& to, int a, int s, Index i) {
     const RowView<T>* const all = views.data();
     const SetBlocksView<T>& mine = all[a].set[s];
     const int pools = pools_;
@@ -69,39 +78,39 @@ class AssembledRows {
         const T* H = mine.H + std::ptrdiff_t(height * mine.width) * e;
         const int columns = other.rows;
         if (columns == height && mine.width == 6) {
-          for (const auto& [j, f] : meeting) add_product<height, 6>(a, b, i, j, H, theirs.G + std::ptrdiff_t(6 * height) * f);
+          for (const auto& [j, f] : meeting) add_product<height, 6>(to, a, b, i, j, H, theirs.G + std::ptrdiff_t(6 * height) * f);
         } else if (columns == height && mine.width == 3) {
-          for (const auto& [j, f] : meeting) add_product<height, 3>(a, b, i, j, H, theirs.G + std::ptrdiff_t(3 * height) * f);
+          for (const auto& [j, f] : meeting) add_product<height, 3>(to, a, b, i, j, H, theirs.G + std::ptrdiff_t(3 * height) * f);
         } else {
           for (const auto& [j, f] : meeting)
-            add_wide_product<height>(a, b, i, j, H, theirs.G + std::ptrdiff_t(mine.width * columns) * f, mine.width, columns);
+            add_wide_product<height>(to, a, b, i, j, H, theirs.G + std::ptrdiff_t(mine.width * columns) * f, mine.width, columns);
         }
       }
   }
   template <int height, int width>
-  [[gnu::always_inline]] void add_product(int a, int b, Index i, Index j, const T* H, const T* G) {
+  [[gnu::always_inline]] static void add_product(BlockMatrix<T>& to, int a, int b, Index i, Index j, const T* H, const T* G) {
     T block[height * height];
     set_product<height, width, height>(H, G, block);
-    matrix.template add<height>(a, b, i, j, height, block);
+    to.template add<height>(a, b, i, j, height, block);
   }
   template <int height>
-  void add_wide_product(int a, int b, Index i, Index j, const T* H, const T* G, int width, int columns) {
+  static void add_wide_product(BlockMatrix<T>& to, int a, int b, Index i, Index j, const T* H, const T* G, int width, int columns) {
     T block[height * most_rows];
     set_block<height>(H, G, width, columns, block);
-    matrix.template add<height>(a, b, i, j, columns, block);
+    to.template add<height>(a, b, i, j, columns, block);
   }
 
   /// The sets whose blocks A couples.
   template <int height>
-  void add_coupled(int a, Index i) {
+  void add_coupled(BlockMatrix<T>& to, int a, Index i) {
     for (int s = 0; s < int(coupled.size()); ++s) {
       if (coupled[std::size_t(s)] == HowCoupled::nodes)
         nodal_.each(views.data(), s, a, i, [&](int b, Index j, const T* block) {
-          matrix.template add<height>(a, b, i, j, views[std::size_t(b)].rows, block);
+          to.template add<height>(a, b, i, j, views[std::size_t(b)].rows, block);
         });
       else if (coupled[std::size_t(s)] == HowCoupled::columns)
         columns_.each(views.data(), s, a, i, [&](int b, Index j, const T* H, const T* response, int width) {
-          add_wide_product<height>(a, b, i, j, H, response, width, views[std::size_t(b)].rows);
+          add_wide_product<height>(to, a, b, i, j, H, response, width, views[std::size_t(b)].rows);
         });
     }
   }
@@ -116,19 +125,23 @@ class AssembledRows {
 template <class T>
 template <int height>
 void AssembledRows<T>::build_pool(AssembledRows& W, int a, const CrowdedRow* crowded) {
+  if (W.matrix.begin_rows(W.views.data(), a)) build_rows<height>(W, W.matrix, a, 0, W.views[std::size_t(a)].items, crowded);
+}
+
+template <class T>
+template <int height>
+void AssembledRows<T>::build_rows(AssembledRows& W, BlockMatrix<T>& to, int a, Index first, Index last, const CrowdedRow* crowded) {
   const RowView<T>& mine = W.views[std::size_t(a)];
-  if (!W.matrix.begin_rows(W.views.data(), a)) return;
   const HowCoupled* const coupled = W.coupled.data();
-  bool any_coupled = false;
-  for (int s = 0; s < mine.sets; ++s) any_coupled = any_coupled || coupled[s] != HowCoupled::not_at_all;
-  for (Index i = 0; i < mine.items; ++i) {
-    W.matrix.template begin_row<height>(a, i);
+  const bool any_coupled = W.is_coupled(a);
+  for (Index i = first; i < last; ++i) {
+    to.template begin_row<height>(a, i);
     if (!crowded || !crowded[i].is_crowded) {
-      if (any_coupled) W.template add_coupled<height>(a, i);
+      if (any_coupled) W.template add_coupled<height>(to, a, i);
       for (int s = 0; s < mine.sets; ++s)
-        if (coupled[s] == HowCoupled::not_at_all) W.template add_row<height>(a, s, i);
+        if (coupled[s] == HowCoupled::not_at_all) W.template add_row<height>(to, a, s, i);
     }
-    W.matrix.end_row(mine, a, i);
+    to.end_row(mine, a, i);
   }
 }
 
