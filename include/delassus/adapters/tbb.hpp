@@ -5,10 +5,11 @@
 #include <delassus/core/index.hpp>
 #include <delassus/step/in_parallel.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
-#include <thread>
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
@@ -19,8 +20,8 @@ namespace delassus {
 /// Which parts says `InParallel`. The bits do not depend on the number. Copies share their threads; loops
 /// with the same `Threads` may step at once.
 ///
-/// oneTBB decides how many threads there are in a program: no more than the machine has processors, where
-/// `tbb::global_control` does not say otherwise.
+/// There are no more than oneTBB allows a program: one a processor, where a `tbb::global_control` of the host
+/// does not say otherwise.
 class Threads : public InParallel {
  public:
   /// 0: one a processor. Throws InvalidArgument outside of 0 … 1024.
@@ -42,7 +43,9 @@ class Threads : public InParallel {
   static int checked(int count) {
     DELASSUS_EXPECT(count >= 0 && count <= 1024, "Threads: " + std::to_string(count) +
                                                      " threads; take 1 to 1024, or 0 for one a processor");
-    return count > 0 ? count : int(std::max(1u, std::thread::hardware_concurrency()));
+    using oneapi::tbb::global_control;
+    const int most = int(global_control::active_value(global_control::max_allowed_parallelism));
+    return count > 0 ? std::min(count, most) : most;
   }
 
   std::shared_ptr<oneapi::tbb::task_arena> arena_;
