@@ -43,14 +43,15 @@ struct WorkersKeep<P, true> {
   Crew crew;
 };
 
-/// Whether islands may be solved at once: W has blocks of its own for each, and the solver keeps nothing for
-/// all.
+/// Whether islands may be solved at once: W has blocks of its own for each, the solver keeps nothing for all, and nobody hears
+/// of sweeps.
 template <class Step>
 inline constexpr bool solves_islands_apart =
+    !Step::observes_sweeps &&
     requires(typename Step::Policies::Solver::template Workspace<typename Step::Policies::Rows>& w) {
-  requires Step::Policies::Operator::islands_are_apart;
-  requires !requires { w.begin_step(); };
-};
+      requires Step::Policies::Operator::islands_are_apart;
+      requires !requires { w.begin_step(); };
+    };
 
 }  // namespace inner
 
@@ -91,8 +92,7 @@ struct InParallel {
     }
     static void solve_islands(auto& step, auto& observer) {
       using Step = std::remove_reference_t<decltype(step)>;
-      constexpr bool hears_nobody = std::is_same_v<std::remove_cvref_t<decltype(observer)>, NoObserver>;
-      if constexpr (hears_nobody && inner::solves_islands_apart<Step>) {
+      if constexpr (inner::solves_islands_apart<Step>) {
         begin_islands(step);
         const auto& islands = kept(step).islands;
         const auto solve = [&](std::size_t k, Index worker, inner::Crew* crew) {
