@@ -17,6 +17,7 @@ if(NOT first_line MATCHES "^// expect: (.+)$")
 endif()
 string(REPLACE "\\;" ";" sentence "${CMAKE_MATCH_1}")  # file(STRINGS) makes a list, and escapes for it
 
+list(FILTER SYSTEM EXCLUDE REGEX "^$")
 list(TRANSFORM SYSTEM PREPEND "-isystem")
 set(head_start "")
 file(STRINGS ${SOURCE} includes REGEX "^#include ")

@@ -2,6 +2,7 @@
 #   cmake -DCOMPILER=g++ -DIS_CLANG=<bool> -DINCLUDE=<dir> -DSYSTEM=<dirs> -DPRECOMPILED=<dir> -P precompile.cmake
 cmake_minimum_required(VERSION 3.25)
 
+list(FILTER SYSTEM EXCLUDE REGEX "^$")
 list(TRANSFORM SYSTEM PREPEND "-isystem")
 set(source ${PRECOMPILED}/umbrella.hpp)
 file(WRITE ${source} "#include <delassus/delassus.hpp>\n")

@@ -49,9 +49,9 @@ struct Coloured {
   template <class T, class Space>
   SolveReport solve(Island<T>& problem, Space& work) const {
     // An island may be solved again, after bounces were taken away.
-    if (problem.row_count() >= least_rows && !problem.timer() && !problem.is_in_pieces() &&
+    if (problem.row_count() >= least_rows && !problem.timer() && !problem.has_own_passes() &&
         work.colours.make(problem.begin(), problem.end()))
-      problem.sweep_in_pieces(work.colours.spans().data(), int(work.colours.spans().size()), work.pieces);
+      problem.pass_by(work.colours.spans().data(), int(work.colours.spans().size()), work.pieces);
     return solver.solve(problem, work.solver);
   }
 };

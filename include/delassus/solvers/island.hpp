@@ -5,7 +5,6 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/solvers/inner/length_of_island.hpp>
-#include <delassus/solvers/inner/pieces.hpp>
 #include <delassus/solvers/inner/solve_timer.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
@@ -34,6 +33,23 @@ struct SweepRule {
   bool tells_change = false;  ///< sets the last change: its roots are an eighth of a sweep
   bool projects = false;      ///< one projection a visit in the place of the exact answer
 };
+
+template <class T>
+class Island;
+
+namespace inner {
+
+class Crew;
+
+/// Passes over an island otherwise than span by span; the first argument is the struct itself.
+template <class T>
+struct Passes {
+  void (*sweep)(Passes*, const Island<T>&, const SweepRule&, const T* x, Sweep<T>&);
+  void (*measure)(Passes*, const Island<T>&, MeasureSums&);
+  void (*extrapolate)(Passes*, const Island<T>&, T* before, T beta);
+};
+
+}  // namespace inner
 
 /// Spans of the pools that have items in an island, in the order of a sweep. A solver sees nothing else of a problem.
 /// Impulses that are set aside are an `Array` with the numbers of all items in that order.
@@ -64,7 +80,7 @@ class Island {
     out.take(spans, count);
     out.is_part_ = true;
     out.observer_ = {};
-    out.pieces_ = nullptr;
+    out.passes_ = nullptr;
     return out;
   }
 
@@ -77,14 +93,13 @@ class Island {
   /// The same from y = λ to z. `curvature` becomes Σ w_i (y_i − z_i)·(z_i − x_i).
   double sweep(const SweepRule& rule, const T* x, double* curvature) {
     Sweep<T> sums{.relaxation = T(rule.relaxation), .tells_change = rule.tells_change, .length = length_};
-    const auto visit = [&](const Span<T>& span, Index row, Sweep<T>& to) __attribute__((always_inline)) {
-      if (x) to.x = x + row;
-      const LawTable<T>& law = *span.pool->table;
-      (rule.projects ? law.project_once : law.sweep)(span, to);
-    };
-    if (pieces_) sums = pieces_->pass(begin(), end(), sums, pieces_->sweeps, visit);
+    if (passes_) passes_->sweep(passes_, *this, rule, x, sums);
     else
-      for (Pass pass(*this); pass.next();) visit(*pass.span, pass.row(), sums);
+      for (Pass pass(*this); pass.next();) {
+        if (x) sums.x = x + pass.row();
+        const LawTable<T>& law = *pass.span->pool->table;
+        (rule.projects ? law.project_once : law.sweep)(*pass.span, sums);
+      }
     if (rule.tells_change) {
       last_change_ = h_ * double(sums.displacement);
       worst_change_ = h_ * double(sums.most);
@@ -95,10 +110,9 @@ class Island {
 
   Measure measure() {
     MeasureSums sums{.length = length_};
-    const auto visit = [](const Span<T>& span, Index, MeasureSums& to) __attribute__((always_inline)) { span.pool->table->measure(span, to); };
-    if (pieces_) sums = pieces_->pass(begin(), end(), sums, pieces_->measures, visit);
+    if (passes_) passes_->measure(passes_, *this, sums);
     else
-      for (Pass pass(*this); pass.next();) visit(*pass.span, 0, sums);
+      for (Pass pass(*this); pass.next();) pass.span->pool->table->measure(*pass.span, sums);
     Measure m = sums.has_vanished() && moves() ? Measure::of_nothing() : sums.finish(double(std::numeric_limits<T>::epsilon()));
     m.last_change = last_change_;
     m.worst_change = worst_change_;
@@ -108,24 +122,21 @@ class Island {
 
   /// λ ← λ + β (λ − before), each brought back into its law's cone; `before` takes the λ that was.
   void extrapolate(Array<T>& before, double beta) {
-    const auto visit = [&](const Span<T>& span, Index row) __attribute__((always_inline)) {
-      span.pool->table->extrapolate(span, before.data() + row, T(beta));
-    };
-    if (pieces_) pieces_->pass(begin(), end(), Sweep<T>{}, pieces_->sweeps, [&](const Span<T>& span, Index row, Sweep<T>&) { visit(span, row); });
+    if (passes_) passes_->extrapolate(passes_, *this, before.data(), T(beta));
     else
-      for (Pass pass(*this); pass.next();) visit(*pass.span, pass.row());
+      for (Pass pass(*this); pass.next();) pass.span->pool->table->extrapolate(*pass.span, before.data() + pass.row(), T(beta));
   }
 
-  /// From here on passes visit these spans instead, items that do not meet in each, in pieces that the crew of `pieces` shares.
-  /// Both stay where they are as long as the island is used. Pre: no timer.
-  void sweep_in_pieces(const Span<T>* spans, int count, inner::Pieces<T>& pieces) {
+  /// From here on passes visit these spans instead, by functions of their own. Both stay where they are as long as the island is
+  /// used. Pre: no timer.
+  void pass_by(const Span<T>* spans, int count, inner::Passes<T>& passes) {
     take(spans, count);
-    pieces_ = &pieces;
-    pieces.crew = crew_;
+    passes_ = &passes;
   }
-  bool is_in_pieces() const { return pieces_; }
-  /// Threads that share its passes; null: none.
+  bool has_own_passes() const { return passes_; }
+  /// Threads that share such passes; null: none.
   void set_crew(inner::Crew* crew) { crew_ = crew; }
+  inner::Crew* crew() const { return crew_; }
 
   double last_change() const { return last_change_; }
   double worst_change() const { return worst_change_; }
@@ -344,7 +355,7 @@ class Island {
   Index island_;
   double h_;
   inner::SolveTimer<T>* timer_ = nullptr;
-  inner::Pieces<T>* pieces_ = nullptr;
+  inner::Passes<T>* passes_ = nullptr;
   inner::Crew* crew_ = nullptr;
   bool is_part_ = false;
   SolveObserver<T> observer_{};

@@ -1,9 +1,10 @@
-/// A pass over an island in pieces of a fixed number of items, which several threads may share.
+/// Passes over an island in pieces of a fixed number of items, which several threads may share.
 #pragma once
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/crew.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
 
@@ -28,39 +29,60 @@ void add_sums(Sweep<T>& to, const Sweep<T>& x) {
 /// Sums are made by piece and added in order, so that they do not depend on who made which. Items of a span
 /// must not meet each other in W where they are changed.
 template <class T>
-class Pieces {
+class Pieces : public Passes<T> {
  public:
-  /// Null: one thread.
-  Crew* crew = nullptr;
+  Pieces() : Passes<T>{sweep, measure, extrapolate} {}
 
-  /// f(piece, its first row, sums) for all pieces of the spans; `start` are sums of nothing.
+ private:
+  static constexpr Index items = 32;  ///< of a piece: some microseconds
+
+  static void sweep(Passes<T>* self, const Island<T>& island, const SweepRule& rule, const T* x,
+                    Sweep<T>& all) {
+    Pieces& own = *static_cast<Pieces*>(self);
+    own.pass(island, all, own.sweeps_, [&](const Span<T>& piece, Index row, Sweep<T>& to) {
+      if (x) to.x = x + row;
+      const LawTable<T>& law = *piece.pool->table;
+      (rule.projects ? law.project_once : law.sweep)(piece, to);
+    });
+  }
+  static void measure(Passes<T>* self, const Island<T>& island, MeasureSums& all) {
+    Pieces& own = *static_cast<Pieces*>(self);
+    own.pass(island, all, own.measures_,
+             [](const Span<T>& piece, Index, MeasureSums& to) { piece.pool->table->measure(piece, to); });
+  }
+  static void extrapolate(Passes<T>* self, const Island<T>& island, T* before, T beta) {
+    Pieces& own = *static_cast<Pieces*>(self);
+    Sweep<T> nothing;
+    own.pass(island, nothing, own.sweeps_, [&](const Span<T>& piece, Index row, Sweep<T>&) {
+      piece.pool->table->extrapolate(piece, before + row, beta);
+    });
+  }
+
+  /// f(piece, its first row, sums) for all pieces of the spans; `all` are sums of nothing, and become those
+  /// of all.
   template <class Sums, class F>
-  Sums pass(const Span<T>* first, const Span<T>* last, const Sums& start, Array<Sums>& sums, const F& f) {
-    Sums all = start;
+  void pass(const Island<T>& island, Sums& all, Array<Sums>& sums, const F& f) {
+    const Sums start = all;
     Index row = 0;
-    for (const Span<T>* span = first; span != last; ++span) {
-      const Index count = (span->count + items - 1) / items, R = span->pool->rows;
+    for (const Span<T>& span : island) {
+      const Index count = (span.count + items - 1) / items, R = span.pool->rows;
       sums.assign(std::size_t(count), start);
       const auto visit = [&](Index k) {
         const Index at = k * items;
-        const Span<T> piece{span->pool, span->items + at, std::min(span->count - at, items)};
+        const Span<T> piece{span.pool, span.items + at, std::min(span.count - at, items)};
         f(piece, row + at * R, sums[std::size_t(k)]);
       };
-      if (crew)
+      if (Crew* const crew = island.crew())
         crew->run(count, visit);
       else
         for (Index k = 0; k < count; ++k) visit(k);
       for (const Sums& one : sums) add_sums(all, one);
-      row += span->count * R;
+      row += span.count * R;
     }
-    return all;
   }
 
-  Array<Sweep<T>> sweeps;
-  Array<MeasureSums> measures;
-
- private:
-  static constexpr Index items = 32;  ///< of a piece: some microseconds
+  Array<Sweep<T>> sweeps_;
+  Array<MeasureSums> measures_;
 };
 
 }  // namespace delassus::inner
