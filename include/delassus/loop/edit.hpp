@@ -79,7 +79,11 @@ bool none_moves(const World& world, Item& item) {
 template <class World, class Item>
 std::string names_of_ends(const World& world, const Item& item) {
   const auto name = [&](const Anchor& end) { return end.is_world() ? std::string("the world") : name_of_body(world, end); };
-  return name(item.a) + " and " + name(item.b);
+  std::string names;
+  each_pair(item, [&](const Anchor& a, const Anchor& b) {
+    if (names.empty()) names = name(a) + " and " + name(b);
+  });
+  return names;
 }
 
 /// Items that were read speak of the sets of this world.

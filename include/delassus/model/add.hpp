@@ -12,8 +12,8 @@ namespace delassus {
 /// names the laws that the model needs, and a compound layer where shapes are not in the middle of their bodies; what is missing is
 /// refused in one sentence that lists it, and nothing is added then. The gravity of the set is not touched.
 ///
-/// `base` holds or frees the roots, whatever the file says. What is told by `left_out` of the result does not act:
-/// actuators, tendons of more than two sites, couplings that are not linear, height fields.
+/// `base` holds or frees the roots, whatever the file says. Actuators act by `actuate`, see `model/actuators.hpp`. What is told by
+/// `left_out` of the result does not act: actuators of ball joints, couplings that are not linear, height fields.
 template <class Loop>
 Machine add(Loop& loop, const Model& model, const Pose& pose = {}, Base base = Base::as_file, const LeaveOut& leave_out = {}) {
   check(model);

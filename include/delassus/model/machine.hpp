@@ -2,11 +2,11 @@
 #pragma once
 
 #include <delassus/bodies/rigid_bodies.hpp>
-#include <delassus/constraints/joints/coordinate.hpp>
-#include <delassus/constraints/joints/euler_angles.hpp>
-#include <delassus/constraints/joints/rotor_inertia.hpp>
+#include <delassus/constraints/joints/tendon.hpp>
+#include <delassus/model/inner/axis_force.hpp>
 #include <delassus/model/model.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,12 +21,12 @@ struct LeaveOut {
   bool friction_loss = false;  ///< dry friction of joints
   bool couplings = false;      ///< between joints, points and bodies
   bool rotors = false;         ///< inertia of what turns with a joint
+  bool actuators = false;      ///< they push nothing, whatever the controls are
 };
 
 namespace model {
 
-/// The coordinate that a joint's axis is, by its law's name.
-enum class AxisKind { turn, slide, precession, nutation, spin };
+using delassus::AxisKind;
 
 /// One axis of a joint in a loop: q = reference + sign · (coordinate − zero).
 struct Axis {
@@ -46,12 +46,39 @@ struct Part {
   Pose pose;  ///< of the link's frame in that of the body, or in the world
 };
 
+/// Names a constraint of some law: the numbers of its `ConstraintHandle`.
+struct ConstraintNumber {
+  Index index = -1;
+  std::uint32_t generation = 0, owner = 0;
+};
+
+/// How an actuator acts in a loop.
+struct Actuation {
+  enum class Law {
+    none,    ///< it does not
+    force,   ///< pushes, with the force of the start of a step
+    spring,  ///< `SpringDamper` or `Tendon`: stiffness and damping are implicit
+    motor,   ///< `Drive` or `TendonMotor`: likewise, with a cap
+  };
+  Law law = Law::none;
+  Actuator actuator;              ///< of the model
+  std::vector<TendonPart> parts;  ///< length before the gear = offset + Σ coefficient · coordinate
+  double offset = 0;
+  bool is_tendon = false;      ///< its law is that of tendons, of `size` parts
+  int size = 0;
+  ConstraintNumber constraint;
+  Part site;                   ///< of an actuator on a site: its body, and its frame in it
+};
+
 }  // namespace model
 
 /// What `add` put into a loop.
 struct Machine {
   std::vector<model::Part> parts;  ///< of each body of the model
   std::vector<model::Axis> axes;   ///< of each joint of the model; of no account for `ball` and `free`
+  std::vector<model::Actuation> actuators;  ///< of each actuator of the model
+  std::vector<double> controls;             ///< of each actuator: set them as you like, `actuate` reads them; at first 0
+  std::vector<double> activations;          ///< what their filters have made of the controls; of no account without a filter
   /// What the model asks for and the loop does not do, a sentence each.
   std::vector<std::string> left_out;
 };
@@ -80,39 +107,22 @@ inline const model::Axis& axis_of(const Machine& machine, Index joint, const cha
 template <class World>
 double position_of(const World& world, const Machine& machine, Index joint) {
   const model::Axis& axis = inner::axis_of(machine, joint, "position_of");
-  const JointFrames frames(axis.a, axis.b, world);
-  double value = 0;
-  switch (axis.kind) {
-    case model::AxisKind::turn: value = inner::unwound<Turn>(Turn::value(frames), axis.zero); break;
-    case model::AxisKind::slide: value = Slide::value(frames); break;
-    case model::AxisKind::precession: value = inner::unwound<Precession>(Precession::value(frames), axis.zero); break;
-    case model::AxisKind::nutation: value = Nutation::value(frames); break;
-    case model::AxisKind::spin: value = inner::unwound<Spin>(Spin::value(frames), axis.zero); break;
-  }
+  const double value = inner::axis_value(axis.kind, {axis.a, axis.b, world}, axis.zero);
   return axis.reference + axis.sign * (value - axis.zero);
+}
+
+/// q̇ of a hinge or a slide now, rad/s or m/s.
+template <class World>
+double rate_of(const World& world, const Machine& machine, Index joint) {
+  const model::Axis& axis = inner::axis_of(machine, joint, "rate_of");
+  return axis.sign * inner::rate_between(world, axis.kind, axis.a, axis.b);
 }
 
 /// Pushes a hinge or a slide with `force` (N·m or N) to larger q in the next step, as a motor between its two bodies.
 template <class Loop>
 void push_joint(Loop& loop, const Machine& machine, Index joint, double force) {
   const model::Axis& axis = inner::axis_of(machine, joint, "push_joint");
-  inner::CoordinateGradient gradient(JointFrames(axis.a, axis.b, loop.world()));
-  switch (axis.kind) {
-    case model::AxisKind::turn: Turn::write(gradient, 0, 1); break;
-    case model::AxisKind::slide: Slide::write(gradient, 0, 1); break;
-    case model::AxisKind::precession: Precession::write(gradient, 0, 1); break;
-    case model::AxisKind::nutation: Nutation::write(gradient, 0, 1); break;
-    case model::AxisKind::spin: Spin::write(gradient, 0, 1); break;
-  }
-  auto& set = bodies<RigidBodies>(loop.world());
-  const auto push = [&](const Anchor& end, double by) {
-    if (end.is_world() || !set.moves(end.block)) return;
-    const RigidBodies::Handle body = set.handle(end.block);
-    set.apply_force(body, by * gradient.linear, gradient.xb);
-    set.apply_torque(body, by * gradient.angular);
-  };
-  push(axis.b, axis.sign * force);
-  push(axis.a, -axis.sign * force);
+  inner::push_between(loop.world(), axis.kind, axis.a, axis.b, axis.sign * force);
 }
 
 }  // namespace delassus

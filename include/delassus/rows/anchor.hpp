@@ -26,14 +26,28 @@ struct Anchor {
   bool is_world() const { return set < 0; }
 };
 
-/// An item that holds two material points, a and b. One that couples two joints says c and d as well.
+/// An item that holds an array `parts` of pairs of material points, each with a and b.
 template <class Item>
-concept HasEnds = requires(const Item& item) { item.a.owner, item.b.owner; };
+concept HasParts = requires(const Item& item) { item.parts[0].a.owner, item.parts[0].b.owner; };
 
+/// An item that holds two material points, a and b, or pairs of them. One that couples two joints says c and d as well.
+template <class Item>
+concept HasEnds = HasParts<Item> || requires(const Item& item) { item.a.owner, item.b.owner; };
+
+/// f(a, b) for every pair of ends that an item holds apart or together; nothing for one without ends.
+template <class Item, class F>
+void each_pair(Item& item, F&& f) {
+  if constexpr (HasParts<Item>) {
+    for (auto& part : item.parts)
+      if (part.is_used()) f(part.a, part.b);
+  } else if constexpr (HasEnds<Item>) {
+    f(item.a, item.b);
+  }
+}
 /// f(anchor) for every end of an item; nothing for one without ends.
 template <class Item, class F>
 void each_end(Item& item, F&& f) {
-  if constexpr (HasEnds<Item>) f(item.a), f(item.b);
+  each_pair(item, [&](auto& a, auto& b) __attribute__((always_inline)) { f(a), f(b); });
   if constexpr (requires { item.c.owner, item.d.owner; }) f(item.c), f(item.d);
 }
 

@@ -181,7 +181,7 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
     each_pool(laws(), [&](auto, const auto& pool) {
       for (Index i = 0; i < pool.count(); ++i) {
         const auto& item = pool.item(i);
-        if constexpr (HasEnds<std::remove_cvref_t<decltype(item)>>) f(item.a, item.b);
+        each_pair(item, f);
       }
     });
   }

@@ -12,7 +12,7 @@ namespace delassus {
 
 /// q₊ = q ⊕ h (v + v₊)/2 with φ(q₊) = 0 and constraint forces along H at the mean of q and q₊. Second order. Where φ
 /// is quadratic in q (all joints but couplings, screws and lengths; a rigid length too) it keeps energy to rounding,
-/// and nothing drifts. The matrix of Newton's method has the geometric stiffness of forces at points, so that light
+/// with that of springs and rotors on any coordinate, and nothing drifts. The matrix of Newton's method has the geometric stiffness of forces at points, so that light
 /// links under a heavy load hold at large steps: see docs/decisions/0010.
 ///
 /// For rigid bodies and laws whose rows are equalities, so no contacts. Forces are those of the start of the step. All

@@ -67,7 +67,7 @@ double difference(const Scene& scene, const Numbers& truth, double h) {
                                  RotorInertia<Precession>{}, RotorInertia<Nutation>{}, RotorInertia<Spin>{}},
                      Integrator{}};
   const Model& model = scene.model;
-  const Machine machine = add(loop, model, {}, Base::as_file, {.contacts = true, .limits = true, .friction_loss = true, .couplings = true});
+  const Machine machine = add(loop, model, {}, Base::as_file, {.contacts = true, .limits = true, .friction_loss = true, .couplings = true, .actuators = true});
   auto& set = bodies<RigidBodies>(loop.world());
   set.gravity = model.gravity;
   JointSpace space(model);

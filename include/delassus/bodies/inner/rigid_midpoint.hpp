@@ -90,6 +90,8 @@ class RigidMidpoint {
     return std::sqrt((squared_norm(body.missing) * s.inverse_mass[b] + dot(body.missing_moment, rate)) *
                      s.inverse_mass[b]);
   }
+  /// (v̄, R Ω̄): an impulse and a moment of the step do the work of their products with it.
+  Twist mean(Index b) const { return twist<T>(bodies_[b].mean, Vector(bodies_[b].R * bodies_[b].mean_rate)); }
   /// A force (N·s over the step, world axes) at the body's own point r, after `balance`.
   void stiffen(Index b, const Vector& force, const Vector& r, T h) {
     Body& body = bodies_[b];

@@ -73,6 +73,6 @@ template <class Law>
 concept JointOfTwoEnds = requires(const typename Law::Item& item) {
   requires Law::bilateral;
   requires HasEnds<typename Law::Item>;
-} && !requires(const typename Law::Item& item) { item.c.owner; };
+} && !HasParts<typename Law::Item> && !requires(const typename Law::Item& item) { item.c.owner; };
 
 }  // namespace delassus

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <delassus/constraints/joints/coordinate.hpp>
+#include <delassus/constraints/joints/stops.hpp>
 #include <delassus/constraints/law.hpp>
 #include <delassus/constraints/newton_impact.hpp>
 #include <delassus/core/cmath.hpp>
-#include <delassus/rows/local.hpp>
-#include <delassus/rows/row_kind.hpp>
 
-#include <algorithm>
-#include <array>
 #include <limits>
 
 namespace delassus {
@@ -22,10 +19,8 @@ namespace delassus {
 /// far costs nothing and does not weigh in the residual. Something that is hit and goes further than that in its first step
 /// passes the stop by that step's way, and is pushed back as from an overlap.
 template <class Coordinate = inner::Absent>
-struct Limit : OnAxis<Coordinate> {
-  static constexpr int rows = 2;
-  static constexpr std::array<RowKind, 2> kinds{RowKind::lower, RowKind::upper};
-  static constexpr auto refines = refine::check | refine::follow | refine::clamp | refine::natural_map | refine::tangent | refine::restitution;
+struct Limit : inner::Stops, OnAxis<Coordinate> {
+  static constexpr auto refines = inner::Stops::refines | refine::check | refine::follow | refine::restitution;
   using overrides = Overrides<NewtonImpact>;
 
   /// One axis and its stops.
@@ -65,37 +60,6 @@ struct Limit : OnAxis<Coordinate> {
     if (high > -reach) Coordinate::write(joint, 1, 1), row.phi(1, high + moved);
   }
 
-  template <class T>
-  Vec<2, T> solve_local(const Item&, const Mat<2, 2, T>& W, const Vec<2, T>& b) const {
-    auto lambda = zero<Vec<2, T>>();
-    if (b[0] < T(0) && W(0, 0) > T(0))
-      lambda[0] = -b[0] / W(0, 0);
-    else if (b[1] > T(0) && W(1, 1) > T(0))
-      lambda[1] = -b[1] / W(1, 1);
-    return lambda;
-  }
-  /// The rows of a diagonal W are apart: each stops where it would let its bound be passed.
-  template <class T>
-  Mat<2, 2, T> tangent(const Item& item, Local<2, T>& c) const {
-    const Vec<2, T> free = c.lambda - c.d.cwiseQuotient(c.W.diagonal());
-    c.lambda = free;
-    clamp(item, c.lambda);
-    Mat<2, 2, T> slope = Mat<2, 2, T>::Zero();
-    for (int k = 0; k < 2; ++k)
-      if (c.lambda[k] == free[k]) slope(k, k) = 1 / c.W(k, k);
-    return slope;
-  }
-  template <class T>
-  Vec<2, T> natural_map(const Item& item, const Vec<2, T>& lambda, const Vec<2, T>& u, T scale) const {
-    Vec<2, T> projected = scale * lambda - u;
-    clamp(item, projected);
-    return scale * lambda - projected;
-  }
-  template <class T>
-  void clamp(const Item&, Vec<2, T>& lambda) const {
-    lambda[0] = std::max(T(0), lambda[0]);
-    lambda[1] = std::min(T(0), lambda[1]);
-  }
   double restitution(const Item& item) const { return item.restitution; }
 };
 

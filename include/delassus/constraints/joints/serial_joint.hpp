@@ -60,23 +60,24 @@ struct SerialJoint : Bilateral<6 - slides - hinges, inner::moments_after(3 - sli
   void linearize(const Item& item, const auto& world, auto row) const {
     JointRows joint(item.a, item.b, world, row);
     int k = 0;
-    const auto stay = [&](const Vec3& d) {
+    const auto stay = [&](const Vec3& local) {
+      const Vec3 d = joint.A * local;
       joint.along(k, -d);
       double phi = inner::dot_from_end(d, Vec3(joint.xa - joint.xb));
       if constexpr (hinges == 2) {
-        const Vec3 side = cross(d, joint.a(2));
+        const Vec3 side = joint.A * cross(local, unit_axis(2));  // linear in A, also where that is a mean of two
         joint.about(k, -item.offset * cross(side, joint.b(2)));
         phi += item.offset * inner::dot_from_end(side, joint.b(2));
       }
       row.phi(k++, phi);
     };
     if constexpr (slides == 0) {
-      for (int i = 0; i < 3; ++i) stay(joint.a(i));
+      for (int i = 0; i < 3; ++i) stay(unit_axis(i));
     } else if constexpr (slides == 1) {
       const Vec3 e = item.slide / norm(item.slide), first = across(e);
-      stay(joint.A * first), stay(joint.A * cross(e, first));
+      stay(first), stay(cross(e, first));
     } else if constexpr (slides == 2) {
-      stay(joint.A * Vec3(item.slide / norm(item.slide)));
+      stay(Vec3(item.slide / norm(item.slide)));
     }
     if constexpr (hinges == 0) {
       joint.alike(k);

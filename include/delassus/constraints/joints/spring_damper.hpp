@@ -12,7 +12,7 @@ namespace delassus {
 
 /// f = −k (q − rest) − c q̇ on one coordinate: `SpringDamper<Turn>` beside a hinge, `SpringDamper<Length>` between two points. One
 /// soft row. Integrators with one solve a step take it at the end of the step, stable for every k, c and h. `NewtonMidpoint` takes
-/// the mean of φ and of its change, and keeps the energy of springs without dampers to second order for ever. A `Drive` has a cap and a
+/// the mean of φ and of its change, and keeps the energy of springs without dampers to rounding. A `Drive` has a cap and a
 /// speed besides, and is no equality: steppers do not take it.
 template <class Coordinate = inner::Absent>
 struct SpringDamper : Bilateral<1, Coordinate::winds ? 1u : 0u>, OnAxis<Coordinate> {

@@ -70,11 +70,14 @@ auto AnimationLoop<Args...>::add(Item item) {
       constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
                                     "constraint, second end's carrier"};
       int k = 0;
-      each_end(item, [&](Anchor& end) { world().resolve(end, names[k++]); });
-      if (item.a.is_world() && item.b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
+      each_end(item, [&](Anchor& end) { world().resolve(end, names[HasParts<Item> ? k++ & 1 : k++]); });
+      each_pair(item, [&](const Anchor& a, const Anchor& b) {
+        if (a.is_world() && b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
+      });
       if (inner::none_moves(world(), item)) inner::refuse_still_ends(inner::type_text<Law>(), inner::names_of_ends(world(), item));
-      if (!item.a.is_world() && inner::are_on_one_body(item.a, item.b))
-        inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), item.a));
+      each_pair(item, [&](const Anchor& a, const Anchor& b) {
+        if (!a.is_world() && inner::are_on_one_body(a, b)) inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), a));
+      });
     }
     return laws().template of<Law>().add(item);
   }

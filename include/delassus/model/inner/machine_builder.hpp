@@ -7,12 +7,15 @@
 #include <delassus/constraints/joints/hinge.hpp>
 #include <delassus/constraints/joints/limit.hpp>
 #include <delassus/constraints/joints/motor.hpp>
+#include <delassus/constraints/joints/rotation_angle.hpp>
 #include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/constraints/joints/serial_joint.hpp>
 #include <delassus/constraints/joints/slider.hpp>
 #include <delassus/constraints/joints/spring_damper.hpp>
 #include <delassus/constraints/joints/weld.hpp>
+#include <delassus/model/inner/add_actuators.hpp>
 #include <delassus/model/inner/add_shapes.hpp>
+#include <delassus/model/inner/add_tendons.hpp>
 #include <delassus/model/inner/chains.hpp>
 #include <delassus/model/machine.hpp>
 
@@ -27,9 +30,6 @@ namespace delassus::inner {
 template <class Loop>
 class MachineBuilder {
   static constexpr bool collides = Loop::Laws::has_contacts;
-  template <class Law>
-  static constexpr bool names = !std::is_void_v<typename Loop::Laws::template law_of<typename Law::Item>::type>;
-
  public:
   MachineBuilder(Loop& loop, const Model& model, const Lumps& lumps, const Pose& pose, const LeaveOut& leave_out)
       : loop_(loop), set_(bodies<RigidBodies>(loop.world())), model_(model), lumps_(lumps), pose_(pose), leave_out_(leave_out), shapes_(model) {
@@ -59,6 +59,68 @@ class MachineBuilder {
     return std::move(machine_);
   }
 
+  // --- what `add_tendons` and `add_actuators` use ----------------------------------------------------------------
+
+  template <class Law>
+  static constexpr bool names = !std::is_void_v<typename Loop::Laws::template law_of<typename Law::Item>::type>;
+
+  /// Adds the item of a law that the loop names, or notes the law.
+  template <class Law, class MakeItem>
+  model::ConstraintNumber emit(const char* name, const MakeItem& item) {
+    if constexpr (names<Law>) {
+      if (is_looking_) return {};
+      const auto handle = loop_.add(item());
+      return {handle.index, handle.generation, handle.owner};
+    } else {
+      miss(name);
+      return {};
+    }
+  }
+  void miss(const std::string& name) {
+    if (std::find(missing_.begin(), missing_.end(), name) == missing_.end()) missing_.push_back(name);
+  }
+  void leave(const std::string& sentence) {
+    machine_.left_out.push_back("model '" + model_.name + "': " + sentence);
+  }
+  const Model& model() const { return model_; }
+  const LeaveOut& leave_out() const { return leave_out_; }
+  Machine& machine() { return machine_; }
+
+  bool moves_as_one(Index a, Index b) const {
+    const auto lump = [&](Index body) { return body < 0 ? 0 : lumps_.of[std::size_t(body)]; };
+    return lump(a) == lump(b);
+  }
+  /// Of a body, in the pose that the tree describes.
+  Pose world(Index body) const { return body < 0 ? pose_ : world_pose_[std::size_t(body)]; }
+  Index owner(Index joint) const {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+      if (std::ranges::count(model_.bodies[b].joints, joint) > 0) return Index(b);
+    return -1;
+  }
+  /// Whether the machine has the joint, and nothing holds it.
+  bool moves(Index joint) const {
+    const Index body = owner(joint);
+    if (body < 0 || model_.bodies[std::size_t(body)].is_kinematic) return false;
+    const Index lump = lumps_.of[std::size_t(body)];
+    return lump > 0 && lumps_.all[std::size_t(lump)].root == body;
+  }
+  Vec3 site(Index s) const {
+    const model::Site& site = model_.sites[std::size_t(s)];
+    return world(site.body).to_world(site.pose.position);
+  }
+  /// The end of a joint on a body of the model, at a place of the world in the pose of the tree.
+  Anchor end(Index body, const Vec3& point, const Quat& frame = Quat::Identity()) const {
+    if (is_looking_ || body < 0 || machine_.parts[std::size_t(body)].is_world) return world_anchor(point, frame);
+    return anchor_at(set_, machine_.parts[std::size_t(body)].body, point, frame);
+  }
+  /// Between two ends, in the pose of the tree.
+  double distance(const Anchor& a, const Anchor& b) const { return norm(Vec3(loop_.world().point(a) - loop_.world().point(b))); }
+  /// As the loop knows it.
+  Anchor resolved(Anchor end) const {
+    if (!is_looking_) loop_.world().resolve(end, "add");
+    return end;
+  }
+
  private:
   void add_all() {
     machine_.parts.resize(model_.bodies.size());
@@ -66,10 +128,10 @@ class MachineBuilder {
     for (std::size_t l = 0; l < lumps_.all.size(); ++l) add_body(l);
     for (std::size_t k = 0; k < chains_.size(); ++k) add_chain(chains_[k]);
     if (!leave_out_.couplings) add_couplings();
-    add_tendons();
+    add_tendons(*this);
+    add_actuators(*this);
     add_exclusions();
     leave_rest();
-    if (!model_.actuators.empty()) leave("its " + std::to_string(model_.actuators.size()) + " actuators push nothing: drive the joints yourself");
   }
 
   /// What has no law here.
@@ -80,8 +142,6 @@ class MachineBuilder {
       if ((joint.kind == model::JointKind::ball || joint.kind == model::JointKind::free) &&
           (joint.damping > 0 || joint.stiffness > 0 || joint.friction_loss > 0 || joint.armature > 0))
         leave("spring, damping, dry friction and rotor of joint '" + joint.name + "' do not act: it is a ball or free");
-    for (const model::Tendon& tendon : model_.tendons)
-      if (tendon.friction_loss > 0) leave("the dry friction of tendon '" + tendon.name + "' does not act");
     if (leave_out_.contacts || !model_.contacts) return;
     const auto& all = model_.geometries;
     if (std::any_of(all.begin(), all.end(), [](const auto& g) { return g.friction != 1 || g.contact_freedoms != 3 || g.restitution != 0 || norm(g.surface_velocity) + norm(g.surface_spin) > 0; }))
@@ -163,18 +223,16 @@ class MachineBuilder {
 
   // --- joints --------------------------------------------------------------------------------------------------
 
-  /// The end of a joint on a body of the model, at a place of the world in the pose of the tree.
-  Anchor end(Index body, const Vec3& point, const Quat& frame) const {
-    if (is_looking_ || body < 0 || machine_.parts[std::size_t(body)].is_world) return world_anchor(point, frame);
-    return anchor_at(set_, machine_.parts[std::size_t(body)].body, point, frame);
-  }
-
   void add_chain(const Chain& chain) {
     const Index parent = model_.bodies[std::size_t(chain.body)].parent, body = chain.body;
     if (chain.is_ball) {
       const Index j = model_.bodies[std::size_t(body)].joints[0];
       emit<BallJoint>("BallJoint{}", [&] { return BallJoint::Item{end(parent, chain.at, Quat::Identity()), end(body, chain.at, Quat::Identity())}; });
-      if (model_.joints[std::size_t(j)].is_limited) leave("the limit of ball joint '" + model_.joints[std::size_t(j)].name + "' does not act");
+      const model::Joint& joint = model_.joints[std::size_t(j)];
+      if (joint.is_limited && !leave_out_.limits)  // turned as the tree describes, its angle is 0
+        emit<Limit<RotationAngle>>("Limit<RotationAngle>{}", [&] {
+          return Limit<RotationAngle>::Item{.a = end(parent, chain.at), .b = end(body, chain.at), .upper = joint.upper};
+        });
       return;
     }
     if (chain.is_free || chain.axes.empty()) return;
@@ -226,6 +284,7 @@ class MachineBuilder {
       case model::AxisKind::precession: add_laws<Precession>("Precession", joint, axis); break;
       case model::AxisKind::nutation: add_laws<Nutation>("Nutation", joint, axis); break;
       case model::AxisKind::spin: add_laws<Spin>("Spin", joint, axis); break;
+      case model::AxisKind::length: break;  // of tendons alone
     }
   }
 
@@ -273,30 +332,18 @@ class MachineBuilder {
       });
     }
   }
-  bool moves_as_one(Index a, Index b) const {
-    const auto lump = [&](Index body) { return body < 0 ? 0 : lumps_.of[std::size_t(body)]; };
-    return lump(a) == lump(b);
-  }
-  Pose world(Index body) const { return body < 0 ? pose_ : world_pose_[std::size_t(body)]; }
-
   void add_coupling(const model::Coupling& coupling) {
     const auto& c = coupling.coefficients;
     const auto kind = [&](Index j) { return machine_.axes[std::size_t(j)].kind; };
     const auto is_simple = [&](Index j) { return j >= 0 && (kind(j) == model::AxisKind::turn || kind(j) == model::AxisKind::slide) && model_.joints[std::size_t(j)].kind != model::JointKind::ball; };
-    if (coupling.of_tendons || !is_simple(coupling.joint) || !is_simple(coupling.other) || c[2] != 0 || c[3] != 0 || c[4] != 0)
-      return leave("coupling '" + coupling.name + "' does not act: it is not linear, or is not of two single hinges or slides");
-    if (owner(coupling.joint) == owner(coupling.other))
-      return leave("coupling '" + coupling.name + "' does not act: its two joints are of one body; a body of small mass between them parts them");
+    if (c[2] != 0 || c[3] != 0 || c[4] != 0) return leave("coupling '" + coupling.name + "' does not act: it is not linear");
+    if (coupling.of_tendons || !is_simple(coupling.joint) || !is_simple(coupling.other) || owner(coupling.joint) == owner(coupling.other))
+      return couple_lengths(*this, coupling);
     const bool first_turns = kind(coupling.joint) == model::AxisKind::turn, second_turns = kind(coupling.other) == model::AxisKind::turn;
     if (first_turns && second_turns) emit_coupling<Turn, Turn>("Coupling<Turn, Turn>{}", coupling);
     else if (first_turns) emit_coupling<Turn, Slide>("Coupling<Turn, Slide>{}", coupling);
     else if (second_turns) emit_coupling<Slide, Turn>("Coupling<Slide, Turn>{}", coupling);
     else emit_coupling<Slide, Slide>("Coupling<Slide, Slide>{}", coupling);
-  }
-  Index owner(Index joint) const {
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b)
-      if (std::ranges::count(model_.bodies[b].joints, joint) > 0) return Index(b);
-    return -1;
   }
   template <class A, class B>
   void emit_coupling(const char* name, const model::Coupling& coupling) {
@@ -307,31 +354,6 @@ class MachineBuilder {
                                            .phase = one.zero + one.sign * coupling.coefficients[0] - ratio * other.zero,
                                            .position_a = one.zero, .position_b = other.zero};
     });
-  }
-
-  /// A tendon of two sites is a string.
-  void add_tendons() {
-    for (const model::Tendon& tendon : model_.tendons) {
-      if (tendon.sites.size() != 2 || !tendon.joints.empty()) {
-        leave("tendon '" + tendon.name + "' does not act: only those between two sites do");
-        continue;
-      }
-      if (moves_as_one(model_.sites[std::size_t(tendon.sites[0])].body, model_.sites[std::size_t(tendon.sites[1])].body)) {
-        leave("tendon '" + tendon.name + "' does not act: its two sites move as one");
-        continue;
-      }
-      const auto anchor_of = [&](Index s) {
-        const model::Site& site = model_.sites[std::size_t(s)];
-        return end(site.body, world(site.body).to_world(site.pose.position), Quat::Identity());
-      };
-      const Anchor a = anchor_of(tendon.sites[0]), b = anchor_of(tendon.sites[1]);
-      if (tendon.is_limited && !leave_out_.limits)
-        emit<Limit<Length>>("Limit<Length>{}", [&] { return Limit<Length>::Item{.a = a, .b = b, .lower = tendon.lower, .upper = tendon.upper}; });
-      const double stiffness = leave_out_.springs ? 0 : tendon.stiffness, damping = leave_out_.damping ? 0 : tendon.damping;
-      if (stiffness > 0 && tendon.rest_lower != tendon.rest_upper) leave("the spring of tendon '" + tendon.name + "' is at rest at its lower length, not between two");
-      if (stiffness > 0 || damping > 0)
-        emit<SpringDamper<Length>>("SpringDamper<Length>{}", [&] { return SpringDamper<Length>::Item{.a = a, .b = b, .rest = tendon.rest_lower, .stiffness = stiffness, .damping = damping}; });
-    }
   }
 
   /// The excludes, and what hangs on a link that the world holds: a joint to the world names no body that a filter could ask for.
@@ -371,24 +393,6 @@ class MachineBuilder {
   Index root_of(Index body) const {
     while (model_.bodies[std::size_t(body)].parent >= 0) body = model_.bodies[std::size_t(body)].parent;
     return body;
-  }
-
-  // --- one constraint ------------------------------------------------------------------------------------------
-
-  /// Adds the item of a law that the loop names, or notes the law.
-  template <class Law, class MakeItem>
-  void emit(const char* name, const MakeItem& item) {
-    if constexpr (names<Law>) {
-      if (!is_looking_) loop_.add(item());
-    } else {
-      miss(name);
-    }
-  }
-  void miss(const std::string& name) {
-    if (std::find(missing_.begin(), missing_.end(), name) == missing_.end()) missing_.push_back(name);
-  }
-  void leave(const std::string& sentence) {
-    machine_.left_out.push_back("model '" + model_.name + "': " + sentence);
   }
 
   Loop& loop_;

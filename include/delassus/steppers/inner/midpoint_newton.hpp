@@ -204,6 +204,41 @@ class MidpointNewton {
     place([&](auto& bodies, auto& state, Index b) { bodies.to_middle(state, b, T(h)); });
     linearize(world, laws, middle_);
     place([&](auto& bodies, auto& state, Index b) { bodies.back(state, b); });
+    match_work(world, rows, h);
+  }
+  /// What springs and rotors take from the bodies is what they store: their rows at the mean are stretched so that h H z is φ₊ − φ, or H z
+  /// the mean rate. That is a discrete gradient, of second order. Newton's matrix does not see how the stretch changes. Source:
+  /// docs/references.md, [Gonzalez1996].
+  void match_work(World& world, const Rows& rows, double h) {
+    each_pool(rows, [&](auto p, const auto& pool) {
+      for (Index i = 0; i < pool.items(); ++i)
+        for (int k = 0; k < pool.rows; ++k) {
+          if (!resists<p> && !inner::is_spring(pool.stiffness[i][k], pool.damping[i][k])) continue;
+          const double phi = double(pool.phi[i][k]);
+          // The least is where rounding of `wanted` would begin to tell.
+          if constexpr (resists<p>)
+            stretch<p>(world, i, k, 0.5 * double(inner::part<p>(start_rate_.pools)[i][k] + inner::part<p>(end_rate_.pools)[i][k]), 1e-6);
+          else
+            stretch<p>(world, i, k, (phi - double(inner::part<p>(start_.pools)[i][k])) / h, 1e-6 * (1 + std::abs(phi)) / h);
+        }
+    });
+  }
+  /// Row k of item i at the mean, so that it sees the rate `wanted`; one that sees less than `least` is left as it is.
+  template <int p>
+  void stretch(World& world, Index i, int k, double wanted, double least) {
+    auto& pool = middle_.template pool<p>();
+    double seen = 0;
+    world.each([&](auto&, auto s) {
+      const auto& blocks = inner::part<s>(pool.sets);
+      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
+        seen += double((blocks.H[e].row(k) * std::get<s>(bodies_).mean(blocks.block[e]))[0]);
+    });
+    const double factor = wanted / seen;
+    if (!(std::abs(seen) > least) || !(factor > 0.5 && factor < 2)) return;
+    world.each([&](auto&, auto s) {
+      auto& blocks = inner::part<s>(pool.sets);
+      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e) blocks.H[e].row(k) *= T(factor);
+    });
   }
 
   /// P − h f − Hᵀλ, and φ + R λ + c; returns the largest of both, in units of
