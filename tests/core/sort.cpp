@@ -118,4 +118,17 @@ TEST_CASE("few comparisons, whatever the list") {
   }
 }
 
+TEST_CASE("two parts of a list are sorted and merged") {
+  for (const std::vector<int>& list : lists())
+    for (const std::size_t share : {0u, 1u, 2u, 3u, 4u}) {
+      Array<int> mine(list.begin(), list.end()), scratch;
+      std::vector<int> sorted = list;
+      std::sort(sorted.begin(), sorted.end());
+      inner::sort_and_merge(mine, list.size() * share / 4, scratch);
+      CHECK(mine == sorted);
+      inner::sort_and_merge(mine, list.size() * share / 4, scratch);
+      CHECK(mine == sorted);
+    }
+}
+
 }  // namespace sort_tests

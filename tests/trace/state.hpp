@@ -221,7 +221,12 @@ class Memory {
 
   // --- collision
   // ---------------------------------------------------------------------------------------------------
-  void part(Array<inner::RestingPair>& pairs) { each_pair(pairs); }
+  void part(inner::PairSlots& slots) {
+    Array<inner::RestingPair> pairs;
+    slots.copy_to(pairs);
+    each_pair(pairs);
+    if (pairs_.reads()) slots.take_from(pairs);
+  }
   void part(Array<PairMemory>& pairs) { each_pair(pairs); }
   void part(Array<PairImpact>& impacts) {
     if (pairs_.reads() ? !pairs_.is_next("impacts") : impacts.empty()) return;

@@ -49,7 +49,6 @@ class BasicBoxTree {
     std::uint32_t key = 0;
     bool is_movable = true, has_moved = false;
     Index node = -1;             ///< in its tree; −1 while its box is empty
-    Index place = -1;            ///< in this call's array; −1 when it is not there
     Aabb box;                    ///< the fattened one
     Vec3 middle = zero<Vec3>();  ///< of the box itself, last step
   };
@@ -59,7 +58,7 @@ class BasicBoxTree {
     bool is_same = tags.size() == leaf_of_.size();
     for (std::size_t i = 0; is_same && i < tags.size(); ++i) is_same = leaf_[leaf_of_[i]].key == tags[i].key;
     if (is_same) return;
-    for (Leaf& leaf : leaf_) leaf.place = -1;
+    place_of_.assign(leaf_.size(), -1);
     leaf_of_.resize(tags.size());
     const auto by_key = [&](Index l, std::uint32_t key) { return leaf_[l].key < key; };
     const Index known = Index(sorted_.size());
@@ -72,12 +71,12 @@ class BasicBoxTree {
         leaf_of_[i] = take_leaf(tags[i].key);
         sorted_.push_back(leaf_of_[i]);
       }
-      leaf_[leaf_of_[i]].place = i;
+      place_of_[leaf_of_[i]] = i;
     }
     moved_.clear();
     std::size_t kept = 0;
     for (const Index l : sorted_) {
-      if (leaf_[l].place >= 0) {
+      if (place_of_[l] >= 0) {
         sorted_[kept++] = l;
         continue;
       }
@@ -92,6 +91,7 @@ class BasicBoxTree {
   Index take_leaf(std::uint32_t key) {
     if (free_.empty()) {
       leaf_.emplace_back();
+      place_of_.push_back(-1);
       free_.push_back(Index(leaf_.size()) - 1);
     }
     const Index l = free_.back();
@@ -182,11 +182,14 @@ class BasicBoxTree {
   void report(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) const {
     const std::size_t first = pairs.size();
     bool is_sorted = true;
+    std::uint64_t last = 0;
     for (const std::uint64_t pair : kept_) {
-      const Index i = leaf_[Index(pair >> 32)].place, j = leaf_[Index(pair & 0xffffffffu)].place;
+      const Index i = place_of_[Index(pair >> 32)], j = place_of_[Index(pair & 0xffffffffu)];
       if (!boxes[i].intersects(boxes[j])) continue;
       const CandidatePair found{std::min(i, j), std::max(i, j)};
-      is_sorted = is_sorted && (pairs.size() == first || pairs.back() < found);
+      const std::uint64_t name = std::uint64_t(found.i) << 32 | std::uint64_t(found.j);
+      is_sorted = is_sorted && last < name;  // no pair is 0 and 0
+      last = name;
       pairs.push_back(found);
     }
     if (!is_sorted) inner::sort(pairs.data() + first, pairs.data() + pairs.size());
@@ -194,6 +197,7 @@ class BasicBoxTree {
 
   Array<Leaf> leaf_;
   Array<Index> leaf_of_, sorted_, free_, moved_;
+  Array<Index> place_of_;  ///< of each leaf in this call's array; −1 when it is not there
   Array<std::uint64_t> kept_, fresh_, merged_;
   Array<BoxTag> places_;
   Tree trees_[2];  ///< of what does not move, of what does

@@ -4,11 +4,14 @@
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/ahead.hpp>
 #include <delassus/collision/inner/fallback_normal.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/name_points.hpp>
+#include <delassus/collision/inner/one_point.hpp>
+#include <delassus/collision/inner/pair_slots.hpp>
 #include <delassus/collision/inner/resting_pair.hpp>
 #include <delassus/collision/inner/share_area.hpp>
 #include <delassus/collision/inner/snap_normal.hpp>
@@ -23,6 +26,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace delassus {
@@ -44,8 +48,8 @@ class CollisionEngine {
     out.clear();
     report_ = {};
     find_pairs(colliders, h, settings, filter);
-    recall_pairs();
-    for (std::size_t k = 0; k < jobs_.size(); ++k) collide(colliders, jobs_[k], h, settings, memory_[k], filter, out);
+    slots_.assign(jobs_);
+    for (const Job& job : jobs_) collide(colliders, job, h, settings, slots_[job.slot], filter, out);
     report_.points = Index(out.size());
     return report_;
   }
@@ -57,7 +61,7 @@ class CollisionEngine {
 
   Kernel& kernel() { return kernel_; }
   /// What outlives a step: with it restored, the next step is the same to the bit.
-  void memory(auto& archive) { archive(memory_); }
+  void memory(auto& archive) { archive(slots_); }
 
  private:
   using RestingPair = inner::RestingPair;
@@ -65,7 +69,7 @@ class CollisionEngine {
     std::uint64_t pair;
     bool is_a;  ///< whose middle is held
   };
-  using Job = inner::PairJob;
+  using Job = inner::ListedPair;
 
   template <class Filter>
   void find_pairs(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
@@ -73,9 +77,9 @@ class CollisionEngine {
     boxes_.resize(colliders.size());
     summary_.resize(colliders.size());
     half_spaces_.clear();
-    pairs_.clear();
     jobs_.clear();
-    if constexpr (inner::KnowsWhoPushed<Filter>) apart_.clear(), cores_.clear();
+    knows_who_is_apart_ = inner::KnowsWhoPushed<Filter>;
+    if constexpr (inner::KnowsWhoPushed<Filter>) apart_.clear(), cores_.clear(), waiting_.clear(), flies_by_.resize(colliders.size());
     for (Index i = 0; i < Index(colliders.size()); ++i) {
       DELASSUS_EXPECT(
           !colliders[i].shape.is_kept(),
@@ -84,16 +88,26 @@ class CollisionEngine {
       summary_[i] = inner::summary_of(colliders[i]);
       if (is_half_space(colliders[i])) half_spaces_.push_back(i);
       boxes_[i] = box_of<Filter>(colliders[i], summary_[i], h, settings);
+      if constexpr (inner::KnowsWhoPushed<Filter>) {
+        summary_[i].way = inner::longest_way(summary_[i], h, settings);
+        flies_by_[i] = inner::flies_by(colliders[i], summary_[i].speed, h);
+      }
     }
-    find_candidates(colliders);
+    if constexpr (TaggedBroadPhase<Broad>) {
+      tags_.clear();
+      for (const Collider& c : colliders) tags_.push_back({.key = c.key, .is_movable = c.is_movable});
+    }
+    find_candidates();
     for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
-    for (const Index plane : half_spaces_)
+    const std::size_t of_bodies = jobs_.size();
+    for (const Index plane : half_spaces_) {
+      const inner::PlaneReach reach(colliders[plane], h, settings);
       for (Index i = 0; i < Index(colliders.size()); ++i)
-        if (!boxes_[i].is_empty() && inner::may_touch(colliders[plane], boxes_[i], h, settings))
-          add_job(colliders, plane, i, filter);
-    inner::sort(jobs_);
+        if (!boxes_[i].is_empty() && reach.may_touch(boxes_[i])) add_job(colliders, plane, i, filter);
+    }
+    inner::sort_and_merge(jobs_, of_bodies, merged_);
     add_jobs_of_impacts(colliders, filter);
-    if constexpr (inner::KnowsWhoPushed<Filter>) apart_.reserve(jobs_.capacity()), asked_.reserve(jobs_.capacity());
+    if constexpr (inner::KnowsWhoPushed<Filter>) apart_.reserve(jobs_.capacity()), waiting_.reserve(jobs_.capacity());
     report_.pairs = Index(jobs_.size());
   }
 
@@ -103,10 +117,9 @@ class CollisionEngine {
     else return inner::alarm_box(c, of, h, settings);
   }
 
-  void find_candidates(inner::Slice<const Collider> colliders) {
+  void find_candidates() {
+    pairs_.clear();
     if constexpr (TaggedBroadPhase<Broad>) {
-      tags_.clear();
-      for (const Collider& c : colliders) tags_.push_back({.key = c.key, .is_movable = c.is_movable});
       broad_.find(boxes_, tags_, pairs_);
     } else {
       broad_.find(boxes_, pairs_);
@@ -119,7 +132,7 @@ class CollisionEngine {
     const std::uint64_t pair = pair_key(x.key, y.key);
     if (!may_meet(x, y) || !filter.lets(pair)) return;
     if (x.key > y.key) std::swap(a, b);
-    jobs_.push_back({pair, a, b});
+    jobs_.push_back(Job{{pair, a, b}});
   }
 
   /// Fast bodies that met in the last step may be far from each other now: what is left of their impact is due.
@@ -129,29 +142,34 @@ class CollisionEngine {
     const auto place_of = [&](std::uint32_t key) {
       return Index(std::find_if(colliders.begin(), colliders.end(), [&](const Collider& c) { return c.key == key; }) - colliders.begin());
     };
-    for (const RestingPair& m : memory_) {
-      if (!m.impact.is_there) continue;
+    slots_.each([&](const RestingPair& m) {
+      if (m.is_plain || !m.impact.is_there) return;
       if constexpr (inner::KnowsWhoPushed<Filter>)
-        if (!filter.pushed(m.pair)) continue;
-      const Job *const end = jobs_.data() + known, *const at = inner::lower_bound(jobs_.data(), jobs_.data() + known, Job{m.pair, 0, 0});
-      if (at != end && at->pair == m.pair) continue;
+        if (!filter.pushed(m.pair)) return;
+      if (job_of(m.pair, known)) return;
       const Index a = place_of(std::uint32_t(m.pair >> 32)), b = place_of(std::uint32_t(m.pair));
       const bool are_there = a < Index(colliders.size()) && b < Index(colliders.size());
       if (are_there && !(boxes_[a].is_empty() && !is_half_space(colliders[a])) && !(boxes_[b].is_empty() && !is_half_space(colliders[b])))
         add_job(colliders, a, b, filter);
-    }
-    if (jobs_.size() > known) inner::sort(jobs_);
+    });
+    if (jobs_.size() > known) inner::sort_and_merge(jobs_, known, merged_);
   }
-
-  /// Gives every pair of this step its place in the memory. Mostly the pairs are those of the last one, and
-  /// stay.
-  void recall_pairs();
+  /// Among the first `count` jobs; null where there is none.
+  Job* job_of(std::uint64_t pair, std::size_t count) {
+    Job *const end = jobs_.data() + count, *const at = inner::lower_bound(jobs_.data(), end, pair, [](const Job& job, std::uint64_t key) { return job.pair < key; });
+    return at != end && at->pair == pair ? at : nullptr;
+  }
 
   /// One pair, in the frame of A until its points are written: those of the last step where it rests, else in
   /// full.
   template <class Filter>
   void collide(inner::Slice<const Collider> colliders, const Job& job, double h,
                const CollisionSettings& settings, RestingPair& pair, const Filter& filter, std::vector<ContactPoint>& out);
+
+  /// The same of a pair that touches in one point and has nothing to remember but that; false where it is to be asked in full.
+  template <class Filter>
+  bool collide_in_one_point(const Collider& a, const Collider& b, const Job& job, const Pose& b_in_a, double scale, double reach, double h,
+                            const CollisionSettings& settings, RestingPair& now, const Filter& filter, std::vector<ContactPoint>& out);
 
   /// Distance, patch, choice of points, names.
   template <class Filter>
@@ -160,17 +178,15 @@ class CollisionEngine {
                        RestingPair& now, const Filter& filter, std::vector<ContactPoint>& out) {
     constexpr bool looks_ahead = inner::KnowsWhoPushed<Filter>;
     bool will_meet = false;
-    const RestingPair last = now;
-    now = {};
-    now.pair = job.pair;
+    PairMemory last;
+    last.copy(now);
+    now.reset(job.pair);
     now.owner = last.owner;
-    if constexpr (!looks_ahead) now.impact = last.impact;
+    if constexpr (!looks_ahead)
+      if (last.impact.is_there) now.impact = last.impact;
     ++report_.queries;
 
-    double farthest = reach;
-    if constexpr (looks_ahead)
-      farthest = std::max(reach, settings.contact_distance + inner::longest_way(summary_[job.a], h, settings) +
-                                     inner::longest_way(summary_[job.b], h, settings));
+    const double farthest = looks_ahead ? farthest_meeting(job, reach, settings) : reach;
     SignedPair r = measure(a, b, b_in_a, farthest, scale, last, now);
     now.normal = a.pose.rotation * r.normal;
     if (r.status == PairStatus::far) return;
@@ -204,31 +220,21 @@ class CollisionEngine {
     now.keep(shapes, b_in_a, r.normal, margin);
   }
 
+  /// How far apart two bodies can be that meet within the step, m.
+  double farthest_meeting(const Job& job, double reach, const CollisionSettings& settings) const {
+    return std::max(reach, settings.contact_distance + summary_[job.a].way + summary_[job.b].way);
+  }
   /// A pair that is apart: contacts of the place where it meets, or none. False where it meets with the normal that it has
   /// now: then its contacts are those of now.
   bool look_ahead(const Collider& a, const Collider& b, const inner::Apart& apart, double scale, bool is_near, double h,
-                  const CollisionSettings& settings, const RestingPair& last, RestingPair& now, std::vector<ContactPoint>& out) {
-    if (inner::may_close(a, b, apart.normal, apart.distance, h)) {
-      const double target = settings.contact_distance + inner::meeting_share * scale;
-      const inner::Impact hit = inner::time_of_impact(a, b, h, scale, target);
-      if (hit.is_now) return false;
-      if (hit.is_found) {
-        const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal;
-        if (is_near && is_same && !inner::may_outgrow_margin(a, b, scale, h)) return false;
-        if (meet(a, b, apart.job, hit, scale, h, settings, last, now, out)) return true;
-      }
-    }
-    apart_.push_back(apart);
-    return true;
-  }
-
+                  const CollisionSettings& settings, const PairMemory& last, RestingPair& now, std::vector<ContactPoint>& out);
   /// Contacts of the patch that the two will have when they meet; false when they have none.
   bool meet(const Collider& a, const Collider& b, const Job& job, const inner::Impact& hit, double scale, double h,
-            const CollisionSettings& settings, const RestingPair& last, RestingPair& now, std::vector<ContactPoint>& out);
+            const CollisionSettings& settings, const PairMemory& last, RestingPair& now, std::vector<ContactPoint>& out);
   /// Rows through the middles of bodies that fly by, where the pair has none.
   void hold_cores(const Collider& a, const Collider& b, const Job& job, double h, std::vector<ContactPoint>& out) {
     for (const bool is_a : {true, false}) {
-      if (!inner::flies_by(is_a ? a : b, h)) continue;
+      if (!flies_by_[is_a ? job.a : job.b]) continue;
       const Core core{job.pair, is_a};
       if (std::any_of(cores_.begin(), cores_.end(), [&](const Core& c) { return c.pair == core.pair && c.is_a == is_a; })) continue;
       if (inner::hold_core(job, a, b, is_a, h, out)) cores_.push_back(core);
@@ -253,21 +259,15 @@ class CollisionEngine {
   /// Looks for pairs of the colliders that go farther than `detect` took into account.
   template <class Filter>
   void find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings, const Filter& filter);
+  bool find_who_outgrew(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings);
+  /// A pair without contacts is to be asked: at once where it may come near, else when its velocities are others.
+  void ask(inner::Slice<const Collider> colliders, const Job& job, Job* listed, double h, const CollisionSettings& settings);
   /// A detection without such a filter, as in the middle of a step, may have had other pairs.
-  void keep_jobs_of_apart() {
-    const std::size_t known = jobs_.size();
-    for (const inner::Apart& p : apart_) {
-      const Job *const end = jobs_.data() + known, *const at = inner::lower_bound(jobs_.data(), jobs_.data() + known, p.job);
-      if (at == end || at->pair != p.job.pair) jobs_.push_back(p.job);
-    }
-    if (jobs_.size() == known) return;
-    inner::sort(jobs_);
-    recall_pairs();
-  }
-  RestingPair& memory_of(std::uint64_t pair) {
-    return *inner::lower_bound(memory_.begin(), memory_.end(), pair, [](const RestingPair& m, std::uint64_t key) { return m.pair < key; });
-  }
+  void keep_jobs_of_apart();
+  RestingPair& memory_of(std::uint64_t pair) { return slots_[job_of(pair, jobs_.size())->slot]; }
 
+  /// Two bodies meet when they come nearer than that, m.
+  static double meeting_distance(double scale, const CollisionSettings& settings) { return settings.contact_distance + inner::meeting_share * scale; }
   static bool is_half_space(const Collider& c) { return c.shape.kind == ShapeKind::half_space; }
 
   /// The certified signed distance. Of a half-space the patch comes with it.
@@ -309,31 +309,16 @@ class CollisionEngine {
   Array<BoxTag> tags_;
   Array<Index> half_spaces_;
   std::vector<CandidatePair> pairs_;
-  Array<Job> jobs_;
-  Array<RestingPair> memory_, next_memory_;
+  Array<Job> jobs_, merged_;  ///< of this step, by pair
+  inner::PairSlots slots_;
   Array<inner::Apart> apart_;
-  Array<std::uint64_t> asked_;  ///< their pairs, by key
+  bool knows_who_is_apart_ = false;  ///< the last detection had a filter that knows who pushed
+  Array<Job> waiting_;  ///< asked, and not to come near by the velocities that they had then
+  Array<char> flies_by_;        ///< colliders, see inner::flies_by
   Array<Core> cores_;           ///< held in this step
   Array<char> is_grown_;        ///< colliders that go farther than detection took into account
   FixedArray<PatchPoint, PairMemory::capacity> repeated_;
 };
-
-template <class Kernel, class Broad>
-void CollisionEngine<Kernel, Broad>::recall_pairs() {
-  const auto is_of = [](const RestingPair& m, const Job& job) { return m.pair == job.pair; };
-  if (std::equal(memory_.begin(), memory_.end(), jobs_.begin(), jobs_.end(), is_of)) return;
-  next_memory_.clear();
-  std::size_t last = 0;
-  for (const Job& job : jobs_) {
-    while (last < memory_.size() && memory_[last].pair < job.pair) ++last;
-    if (last < memory_.size() && is_of(memory_[last], job))
-      next_memory_.push_back(memory_[last]);
-    else
-      next_memory_.emplace_back().pair = job.pair;
-  }
-  memory_.swap(next_memory_);
-  next_memory_.reserve(memory_.capacity());  // now, and not when the pairs change next in a warm step
-}
 
 template <class Kernel, class Broad>
 template <class Filter>
@@ -342,17 +327,27 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
                                              std::vector<ContactPoint>& out) {
   const Collider &a = colliders[job.a], &b = colliders[job.b];
   const inner::Summary &of_a = summary_[job.a], &of_b = summary_[job.b];
-  const Pose b_in_a = a.pose.to_local(b.pose);
   const double scale = std::min(of_a.scale, of_b.scale);
   const double reach =
       settings.contact_distance + inner::widest_margin(of_a.speed + of_b.speed, scale, h, settings);
+  constexpr bool is_native = std::is_same_v<Kernel, GjkEpa>;
+  const bool is_round = is_native && pair.is_plain && inner::is_round_pair(a.shape, b.shape);
+  if (is_round && inner::are_balls_far(a, b, inner::KnowsWhoPushed<Filter> ? farthest_meeting(job, reach, settings) : reach, pair)) {
+    ++report_.queries;
+    return;
+  }
+  const Pose b_in_a = a.pose.to_local(b.pose);
+  if constexpr (is_native)
+    if (is_round && collide_in_one_point(a, b, job, b_in_a, scale, reach, h, settings, pair, filter, out)) return;
   const std::uint64_t shapes = (of_a.shape * 3 + of_b.shape) * 11 + std::uint64_t(settings.max_points);
-  const RememberedImpact impact = pair.impact;
+  RememberedImpact impact;
+  if (pair.impact.is_there) impact = pair.impact;
   const std::size_t first = out.size();
   if constexpr (inner::KnowsWhoPushed<Filter>) pair.impact.is_there = false;
   Vec3 n;
   if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n)) {
     collide_in_full(a, b, job, b_in_a, scale, reach, h, settings, shapes, pair, filter, out);
+    pair.see_if_plain();
   } else {
     pair.normal = a.pose.rotation * n;
     for (int k = 0; k < pair.count; ++k)
@@ -366,102 +361,43 @@ void CollisionEngine<Kernel, Broad>::collide(inner::Slice<const Collider> collid
 }
 
 template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::meet(const Collider& a, const Collider& b, const Job& job, const inner::Impact& hit, double scale,
-                                          double h, const CollisionSettings& settings, const RestingPair& last, RestingPair& now,
-                                          std::vector<ContactPoint>& out) {
-  const Pose b_in_a = hit.a.to_local(hit.b);
-  const double speed = dot(hit.a.rotation * hit.normal_in_a, a.velocity - b.velocity),
-               margin = settings.contact_distance + inner::limited_margin(std::abs(speed) * (h - hit.time), scale);
-  const SignedPair r = inner::distance_of(a.shape, b.shape, b_in_a, margin, scale, hit.normal_in_a, patch_);
-  if (r.status != PairStatus::near) return false;
-  if (!is_half_space(a) && !is_half_space(b)) contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
-  now.owner = inner::NormalOwner::kernel;
-  now.normal = hit.a.rotation * r.normal;
-  const std::size_t first = out.size();
-  inner::name_points(patch_, last, b_in_a, r.normal, scale, settings.max_points, first, out, now, [&](int i, std::uint32_t id) {
-    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, id));
-  });
-  if (now.count == 0) return false;
-  now.impact = impact_of(a, b, now, out);
-  hold_cores(a, b, job, h, out);
-  sort_last(int(out.size() - first), out);
+template <class Filter>
+bool CollisionEngine<Kernel, Broad>::collide_in_one_point(const Collider& a, const Collider& b, const Job& job, const Pose& b_in_a, double scale,
+                                                          double reach, double h, const CollisionSettings& settings, RestingPair& now,
+                                                          const Filter& filter, std::vector<ContactPoint>& out) {
+  constexpr bool looks_ahead = inner::KnowsWhoPushed<Filter>;
+  const double farthest = looks_ahead ? farthest_meeting(job, reach, settings) : reach;
+  SignedPair r;
+  if (!inner::one_point(a.shape, b.shape, b_in_a, farthest, scale, r)) return false;
+  const Vec3 n = a.pose.rotation * r.normal;
+  bool touches = false;
+  if (r.status != PairStatus::far) {
+    const double margin = settings.contact_distance + inner::margin_along(a, b, n, a.pose.to_world(r.point_a), scale, h, settings);
+    touches = !(r.distance > margin);
+    if constexpr (looks_ahead) {
+      const bool is_new = a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
+      if (r.distance - settings.contact_distance > inner::touch_share * scale && (!touches || is_new)) {
+        const inner::Apart apart{job, r.distance - settings.contact_distance - inner::meeting_share * scale, n};
+        if (inner::may_close(a, b, n, apart.distance, h) && inner::may_come_near(a, b, h, meeting_distance(scale, settings))) return false;
+        apart_.push_back(apart);
+        touches = false;
+      } else if (touches && ((is_new && r.distance > settings.contact_distance) || flies_by_[job.a] || flies_by_[job.b])) {
+        return false;
+      }
+    }
+  }
+  ++report_.queries;
+  now.normal = n;
+  if (is_half_space(a) || is_half_space(b)) now.owner = is_half_space(a) ? inner::NormalOwner::a : inner::NormalOwner::b;
+  else if (r.status != PairStatus::far) now.owner = inner::NormalOwner::kernel;
+  now.count = touches;
+  if (!touches) return true;
+  const PatchPoint p{r.point_a, r.point_b, r.distance, Patch::witness};
+  now.point[0] = {Patch::witness, Patch::witness, p.a, b_in_a.to_local(p.b)};
+  out.push_back(inner::contact_of(job, a.pose, p, n, settings.contact_distance, Patch::witness));
   return true;
 }
 
-template <class Kernel, class Broad>
-template <class Filter>
-void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
-                                                   const Filter& filter) {
-  is_grown_.assign(colliders.size(), 0);
-  bool is_any = false;
-  for (Index i = 0; i < Index(colliders.size()); ++i) {
-    const double speed = inner::top_speed(colliders[i]);
-    if (boxes_[i].is_empty() || !std::isfinite(speed) || speed * h <= 0.5 * inner::margin_share * summary_[i].scale) continue;
-    inner::Summary now = summary_[i];
-    now.speed = std::max(speed, now.speed);
-    const Aabb box = inner::box_of_way(colliders[i], now, h, settings);
-    if (speed * h <= inner::longest_way(summary_[i], h, settings) && boxes_[i].contains(box)) continue;
-    summary_[i] = now;
-    boxes_[i].extend(box);
-    is_grown_[i] = is_any = true;
-  }
-  if (!is_any) return;
-  asked_.clear();
-  for (const inner::Apart& p : apart_) asked_.push_back(p.job.pair);
-  inner::sort(asked_);
-  const std::size_t known = jobs_.size();
-  const auto ask = [&](Index i, Index j) {
-    const Collider &x = colliders[i], &y = colliders[j];
-    const std::uint64_t pair = pair_key(x.key, y.key);
-    if (!may_meet(x, y) || inner::is_listed(asked_, pair) || !filter.lets(pair)) return;
-    const Job job = x.key < y.key ? Job{pair, i, j} : Job{pair, j, i};
-    const Job *const end = jobs_.data() + known, *const at = inner::lower_bound(jobs_.data(), jobs_.data() + known, job);
-    const bool is_known = at != end && at->pair == pair;
-    if (is_known && memory_of(pair).count > 0) return;
-    if (!is_known) jobs_.push_back(job);
-    apart_.push_back({job, 0, zero<Vec3>()});
-  };
-  for (Index i = 0; i < Index(colliders.size()); ++i) {
-    if (!is_grown_[i]) continue;
-    for (Index j = 0; j < Index(colliders.size()); ++j)
-      if (j != i && !(is_grown_[j] && j < i) && !boxes_[j].is_empty() && boxes_[j].intersects(boxes_[i])) ask(i, j);
-    for (const Index plane : half_spaces_)
-      if (inner::may_touch(colliders[plane], boxes_[i], h, settings)) ask(i, plane);
-  }
-  if (jobs_.size() == known) return;
-  inner::sort(jobs_);
-  recall_pairs();
-}
-
-template <class Kernel, class Broad>
-template <class Filter>
-void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
-                                                   std::vector<ContactPoint>& out, const Filter& filter) {
-  out.clear();
-  keep_jobs_of_apart();
-  find_outgrown(colliders, h, settings, filter);
-  erase_if(apart_, [&](const inner::Apart& p) {
-    const Collider &a = colliders[p.job.a], &b = colliders[p.job.b];
-    if (!inner::may_close(a, b, p.normal, p.distance, h)) return false;
-    const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale);
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, settings.contact_distance + inner::meeting_share * scale);
-    if (!hit.is_found) return false;
-    RestingPair& now = memory_of(p.job.pair);
-    if (a.is_movable && b.is_movable) {
-      // Nearest points, where they are those that meet, have one place for both.
-      const std::size_t known = out.size();
-      collide(colliders, p.job, h, settings, now, NoFilter{}, out);
-      if (out.size() > known && dot(hit.a.rotation * hit.normal_in_a, now.normal) > inner::same_normal) return true;
-      out.resize(known);
-    }
-    const RestingPair last = now;
-    now.count = 0;
-    return meet(a, b, p.job, hit, scale, h, settings, last, now, out);
-  });
-  bool any_flies_by = false;
-  for (std::size_t i = 0; i < colliders.size() && !any_flies_by; ++i) any_flies_by = inner::flies_by(colliders[i], h);
-  for (std::size_t k = 0; any_flies_by && k < jobs_.size(); ++k)
-    if (memory_[k].count > 0) hold_cores(colliders[jobs_[k].a], colliders[jobs_[k].b], jobs_[k], h, out);
-}
-
 }  // namespace delassus
+
+#include <delassus/collision/inner/engine_ahead.hpp>

@@ -31,13 +31,24 @@ struct PairImpact {
 
 struct PairMemory {
   static constexpr int capacity = 8;
+  // What all pairs are asked for comes first, in one or two lines of the cache.
   std::uint64_t pair = 0;
   Vec3 normal = zero<Vec3>();  ///< world frame
-  FixedArray<RememberedPoint, capacity> point;
   std::uint8_t count = 0;
   inner::NormalOwner owner = inner::NormalOwner::kernel;
+  bool is_plain = true;  ///< a witness or nothing, and no impact: a pair that touches in one point needs no more
+  FixedArray<RememberedPoint, capacity> point;
   ContactArea area;  ///< of the whole patch, in the frame of A
   RememberedImpact impact;  ///< of the last step
+
+  /// What another one remembers, without the places of points that it does not have.
+  void copy(const PairMemory& other) {
+    pair = other.pair, normal = other.normal, count = other.count, owner = other.owner, is_plain = other.is_plain;
+    for (int k = 0; k < count; ++k) point[k] = other.point[k];
+    area = other.area;
+    impact.is_there = other.impact.is_there;
+    if (impact.is_there) impact = other.impact;
+  }
 };
 
 namespace inner {

@@ -161,6 +161,24 @@ template <class T, class Less = Smaller>
   return is_so;
 }
 
+/// Sorts a list whose first `count` elements and the others mostly are in order, each part for itself. `scratch` is of the same
+/// type.
+template <class List, class Less = Smaller>
+void sort_and_merge(List& list, std::size_t count, List& scratch, const Less& less = {}) {
+  auto *const first = list.data(), *const middle = first + count, *const last = first + list.size();
+  if (!inner::is_sorted(first, middle, less)) inner::sort(first, middle, less);
+  if (!inner::is_sorted(middle, last, less)) inner::sort(middle, last, less);
+  if (first == middle || middle == last || !less(*middle, middle[-1])) return;
+  scratch.clear();
+  scratch.reserve(list.capacity());
+  auto *a = first, *b = middle;
+  while (a != middle || b != last) {
+    const bool is_b = a == middle || (b != last && less(*b, *a));
+    scratch.push_back(is_b ? *b++ : *a++);
+  }
+  list.swap(scratch);
+}
+
 /// Of equal neighbours the first stays; returns the new end.
 template <class T>
 [[gnu::always_inline]] inline T* drop_repeats(T* first, T* last) {

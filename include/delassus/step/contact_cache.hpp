@@ -169,19 +169,26 @@ class BasicContactCache {
   /// Whom each collider pushed in the last step: what moves, if it did, else what does not.
   void find_who_pushed() {
     pushed_.assign(colliders.size(), pushed_nothing);
+    keys_.clear();
+    for (const Collider& c : colliders) keys_.push_back(c.key);
+    Index a = -1;
     for (const auto& e : memory_.entries()) {
       if (is_zero(e.impulse)) continue;
-      const Index a = place_of(std::uint32_t(e.pair >> 32)), b = place_of(std::uint32_t(e.pair));
+      a = place_of(std::uint32_t(e.pair >> 32), a);  // pair by pair the first one is the same, mostly
+      const Index b = place_of(std::uint32_t(e.pair), a);
       if (a < 0 || b < 0) continue;
       pushed_[a] = std::max(pushed_[a], colliders[b].is_movable ? pushed_movable : pushed_still);
       pushed_[b] = std::max(pushed_[b], colliders[a].is_movable ? pushed_movable : pushed_still);
     }
   }
-  /// Of a collider by its key, by which they are sorted; -1 where there is none.
-  Index place_of(std::uint32_t key) const {
-    const Collider *const end = colliders.data() + colliders.size(),
-                   *const at = inner::lower_bound(colliders.data(), end, key, [](const Collider& c, std::uint32_t k) { return c.key < k; });
-    return at != end && at->key == key ? Index(at - colliders.data()) : Index(-1);
+  /// Of a collider by its key, by which they are sorted; -1 where there is none. Where every body has a collider, it is as far from
+  /// the one at `near` as their keys are.
+  Index place_of(std::uint32_t key, Index near) const {
+    const std::uint32_t* const first = keys_.data();
+    const std::size_t guess = near < 0 ? key : std::size_t(near) + (key - first[near]);
+    if (guess < keys_.size() && first[guess] == key) return Index(guess);
+    const std::uint32_t *const end = first + keys_.size(), *const at = inner::lower_bound(first, end, key);
+    return at != end && *at == key ? Index(at - first) : Index(-1);
   }
 
   static bool is_separable(const auto& set) {
@@ -198,6 +205,7 @@ class BasicContactCache {
   Array<Anchor> anchors_;
   Array<Index> materials_;
   Array<char> pushed_;
+  Array<std::uint32_t> keys_;  ///< of the colliders
   BasicContactMemory<Scalar> memory_;
   BasicFrictionPlaces<Scalar> friction_places_;
 };

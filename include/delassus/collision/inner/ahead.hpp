@@ -33,6 +33,24 @@ inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, 
   return h * (dot(normal, a.velocity - b.velocity) + turning_speed(a) + turning_speed(b)) >= distance;
 }
 
+/// False where the balls about the two, each going its way, prove that they do not come within `target` (m) in the step. By a
+/// margin so large that `time_of_impact` does not end for its number of looks either.
+inline bool may_come_near(const Collider& a, const Collider& b, double h, double target) {
+  const Vec3 apart = b.pose.position - a.pose.position, going = b.velocity - a.velocity;
+  const bool a_is_plane = a.shape.kind == ShapeKind::half_space;
+  const double speed = norm(going) + turning_speed(a) + turning_speed(b), radii = outer_radius(a.shape) + outer_radius(b.shape),
+               slack = speed * h / 150 + 1e-9 * radii + 1e-12 * (norm(a.pose.position) + norm(b.pose.position));
+  if (a_is_plane || b.shape.kind == ShapeKind::half_space) {
+    const Collider &c = a_is_plane ? a : b, &body = a_is_plane ? b : a;
+    if (!is_zero(c.angular_velocity)) return true;
+    const Plane plane = plane_of(c.shape, c.pose);
+    const double above = dot(plane.normal, body.pose.position) - plane.offset, way = h * dot(plane.normal, Vec3(body.velocity - c.velocity));
+    return !(above + std::min(way, 0.0) - radii > target + slack + 1e-12 * std::abs(plane.offset));
+  }
+  const double square = squared_norm(going), time = square > 0 ? std::clamp(-dot(apart, going) / square, 0.0, h) : 0.0;
+  return !(norm(Vec3(apart + time * going)) - radii > target + slack);
+}
+
 /// Whether the two may close in by more than the widest margin: then some points of a face may be within it and others not.
 inline bool may_outgrow_margin(const Collider& a, const Collider& b, double scale, double h) {
   if (a.shape.kind == ShapeKind::sphere || b.shape.kind == ShapeKind::sphere) return false;  // one point
@@ -86,10 +104,11 @@ inline bool is_there(const RememberedImpact& impact, const Collider& a, const Co
 }
 
 /// Whether a body may go farther in a step than the ball of half its thickness: an impulse beside its middle would turn it and
-/// let it fly on.
-inline bool flies_by(const Collider& c, double h) {
-  return c.is_movable && c.shape.has_volume() && h * top_speed(c) > core_of_motion(c.shape);
+/// let it fly on. `speed` is its `top_speed`, m/s.
+inline bool flies_by(const Collider& c, double speed, double h) {
+  return c.is_movable && c.shape.has_volume() && h * speed > core_of_motion(c.shape);
 }
+inline bool flies_by(const Collider& c, double h) { return flies_by(c, top_speed(c), h); }
 
 /// The row of a middle, of A or else of B, whose core has this radius; names are above all others. It does not turn the body that it holds.
 inline ContactPoint core_row(const PairJob& job, const Collider& a, const Collider& b, bool is_a, const Impact& hit, double radius, const Vec3& n,

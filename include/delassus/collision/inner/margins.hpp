@@ -49,17 +49,24 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
   return box;
 }
 
-/// False when the box, with all the margin its pair with this half-space can have, lies clear of the solid.
-inline bool may_touch(const Collider& half_space, const Aabb& box, double h, const CollisionSettings& s) {
-  const Plane plane = plane_of(half_space.shape, half_space.pose);
-  const Vec3 sizes = box.max() - box.min(), centre = (box.min() + box.max()) / 2;
-  double reach = 0;
-  for (int k = 0; k < 3; ++k) reach += std::abs(plane.normal[k]) * sizes[k];
-  const double lowest = dot(plane.normal, centre) - 0.5 * reach;
-  const double share =
-      s.margin >= 0 ? 0.5 * s.margin : std::max(norm(half_space.velocity) * h, 0.5 * max_entry(sizes));
-  return lowest - plane.offset <= s.contact_distance + share;
-}
+/// Which boxes a half-space may touch.
+struct PlaneReach {
+  Plane plane;
+  double way, margin, contact_distance;
+
+  PlaneReach(const Collider& half_space, double h, const CollisionSettings& s)
+      : plane(plane_of(half_space.shape, half_space.pose)), way(norm(half_space.velocity) * h), margin(s.margin), contact_distance(s.contact_distance) {}
+
+  /// False when the box, with all the margin its pair with this half-space can have, lies clear of the solid.
+  bool may_touch(const Aabb& box) const {
+    const Vec3 sizes = box.max() - box.min(), centre = (box.min() + box.max()) / 2;
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) reach += std::abs(plane.normal[k]) * sizes[k];
+    const double lowest = dot(plane.normal, centre) - 0.5 * reach;
+    const double share = margin >= 0 ? 0.5 * margin : std::max(way, 0.5 * max_entry(sizes));
+    return lowest - plane.offset <= contact_distance + share;
+  }
+};
 
 }  // namespace inner
 }  // namespace delassus

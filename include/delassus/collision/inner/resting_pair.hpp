@@ -26,6 +26,22 @@ struct RestingPair : PairMemory {
   FixedArray<double, capacity> gap{};                     ///< when the points were made, m
   FixedArray<std::uint8_t, capacity> by_id{};             ///< the points' places in the order of their ids
 
+  /// Begins anew, for this pair.
+  void reset(std::uint64_t of) {
+    pair = of;
+    set_zero(normal);
+    count = 0;
+    owner = NormalOwner::kernel;
+    is_plain = true;
+    area = {};
+    impact.is_there = false;
+    margin = -1;
+  }
+  /// To be asked when the pair was detected in full.
+  void see_if_plain() {
+    is_plain = margin < 0 && !impact.is_there && count <= 1 && (count == 0 || (point[0].name == Patch::witness && point[0].id == Patch::witness));
+  }
+
   /// Takes down what was just made in full, for the normal n in the frame of A.
   void keep(std::uint64_t of, const Pose& b_in_a, const Vec3& n, double up_to) {
     if (owner == NormalOwner::kernel || count < 3) return;

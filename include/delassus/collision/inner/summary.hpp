@@ -41,6 +41,7 @@ struct Summary {
   double scale = 0;         ///< `scale_in_pairs`, m
   double speed = 0;         ///< `top_speed`, m/s
   std::uint64_t shape = 0;  ///< its fingerprint
+  double way = 0;           ///< `longest_way` of a detection that looks ahead, m
 };
 
 inline Summary summary_of(const Collider& c) {

@@ -4,6 +4,7 @@
 #include <delassus/collision/certified_pair.hpp>
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/one_point.hpp>
 #include <delassus/math/rotation.hpp>
 
 #include <algorithm>
@@ -92,8 +93,11 @@ Impact time_of_impact(const Collider& a, const Collider& b, double h, double tar
 /// The same of two convex shapes, one of which may be a half-space.
 inline Impact time_of_impact(const Collider& a, const Collider& b, double h, double scale, double target) {
   Patch patch;
+  const bool is_round = is_round_pair(a.shape, b.shape);
   return time_of_impact(a, b, h, target, [&](const Pose& b_in_a, const Vec3& guess) {
-    return distance_of(a.shape, b.shape, b_in_a, std::numeric_limits<double>::infinity(), scale, guess, patch);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (SignedPair r; is_round && one_point(a.shape, b.shape, b_in_a, infinity, scale, r)) return r;
+    return distance_of(a.shape, b.shape, b_in_a, infinity, scale, guess, patch);
   });
 }
 

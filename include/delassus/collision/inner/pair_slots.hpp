@@ -1,0 +1,99 @@
+/// Where the memories of pairs lie: each in a slot of its own, which it keeps while the pair is listed.
+#pragma once
+
+#include <delassus/collision/inner/name_points.hpp>
+#include <delassus/collision/inner/resting_pair.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/core/index.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace delassus::inner {
+
+/// A job with its slot.
+struct ListedPair : PairJob {
+  Index slot = -1;
+  bool is_asked = false;  ///< apart, and asked whether it meets in the step
+};
+
+/// A memory is large and most pairs stay from step to step: lists of pairs change, memories do not move.
+class PairSlots {
+ public:
+  /// Gives each pair of the list, which is sorted by pair, the slot that it had, or a fresh one. Slots of all others are free then.
+  void assign(Array<ListedPair>& list) {
+    next_.clear();
+    next_.reserve(list.capacity());  // now, and not when the pairs change next in a warm step
+    known_.reserve(list.capacity());
+    std::size_t last = 0;
+    for (ListedPair& job : list) {
+      while (last < known_.size() && known_[last].pair < job.pair) free_.push_back(known_[last++].slot);
+      job.slot = last < known_.size() && known_[last].pair == job.pair ? known_[last++].slot : take(job.pair);
+      next_.push_back({job.pair, job.slot});
+    }
+    for (; last < known_.size(); ++last) free_.push_back(known_[last].slot);
+    known_.swap(next_);
+    free_.reserve(slot_.capacity());
+  }
+  [[gnu::always_inline]] RestingPair& operator[](Index slot) { return slot_[slot]; }
+
+  /// f(memory) of each pair in the order of pairs.
+  template <class F>
+  void each(const F& f) {
+    for (const Known& k : known_) f(slot_[k.slot]);
+  }
+  /// As a list by pair, and nothing in it that is not meant.
+  void memory(auto& archive) {
+    Array<RestingPair> pairs;
+    if (!archive.reads) copy_to(pairs);
+    archive(pairs);
+    if (archive.reads) take_from(pairs);
+  }
+  void copy_to(Array<RestingPair>& pairs) const {
+    pairs.reserve(known_.size());
+    for (const Known& k : known_) {
+      const RestingPair& from = slot_[k.slot];
+      pairs.emplace_back();
+      RestingPair& to = pairs[pairs.size() - 1];
+      std::memset(static_cast<void*>(&to), 0, sizeof to);
+      to.copy(from);
+      to.margin = from.margin;
+      if (from.margin < 0) continue;
+      to.shapes = from.shapes, to.normal_a = from.normal_a, to.normal_b = from.normal_b;
+      for (int i = 0; i < from.count; ++i) to.gap[i] = from.gap[i], to.by_id[i] = from.by_id[i];
+    }
+  }
+  void take_from(const Array<RestingPair>& pairs) {
+    slot_ = pairs;
+    free_.clear();
+    known_.clear();
+    for (Index k = 0; k < Index(slot_.size()); ++k) {
+      slot_[k].see_if_plain();
+      known_.push_back({slot_[k].pair, k});
+    }
+  }
+
+ private:
+  struct Known {
+    std::uint64_t pair;
+    Index slot;
+  };
+
+  Index take(std::uint64_t pair) {
+    if (free_.empty()) {
+      slot_.emplace_back();
+      free_.push_back(Index(slot_.size()) - 1);
+    }
+    const Index slot = free_.back();
+    free_.pop_back();
+    slot_[slot].reset(pair);
+    return slot;
+  }
+
+  Array<RestingPair> slot_;
+  Array<Index> free_;
+  Array<Known> known_, next_;  ///< by pair
+};
+
+}  // namespace delassus::inner
