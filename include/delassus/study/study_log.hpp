@@ -1,16 +1,13 @@
 /// The file that keeps a study's finished runs, so that an interrupted one goes on and shards come together.
 #pragma once
 
+#include <delassus/study/inner/run_log.hpp>
 #include <delassus/study/study.hpp>
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <optional>
-#include <sstream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,12 +20,8 @@ namespace delassus {
 class StudyLog {
  public:
   /// Reads what `path` holds of this study; an empty path keeps nothing.
-  StudyLog(std::string path, const Study& study) : path_(std::move(path)), key_(key_of(study)) {
-    std::ifstream file(path_);
-    for (std::string line; std::getline(file, line);) {
-      ends_midway_ = file.eof();
-      if (!ends_midway_) read(line, study.measures.size(), std::size_t(study.plan.outputs));
-    }
+  StudyLog(std::string path, const Study& study) : log_(std::move(path), "the study's log"), key_(key_of(study)) {
+    log_.each_line([&](std::span<const std::string_view> fields) { read(fields, study.measures.size(), std::size_t(study.plan.outputs)); });
   }
 
   /// A finished run by its number and its policies; null where there is none.
@@ -66,48 +59,39 @@ class StudyLog {
     for (const StudyMeasure& m : study.measures) text += "|" + m.name + "," + m.unit;
     for (const auto& axis : study.axes)
       for (const std::string& choice : axis) text += "|" + choice;
-    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
-    for (const char c : text) hash = (hash ^ std::uint8_t(c)) * 1099511628211ull;
-    char buffer[20];
-    std::snprintf(buffer, sizeof buffer, "%016llx", static_cast<unsigned long long>(hash));
-    return buffer;
+    return inner::key_of_text(text);
   }
 
  private:
   void append(std::string line, const std::vector<double>& values) {
-    if (path_.empty()) return;
-    if (std::exchange(ends_midway_, false)) line.insert(0, "\n");
     for (const double x : values) line += "\t" + inner::number_text(x, 17);
-    std::FILE* file = std::fopen(path_.c_str(), "ab");
-    DELASSUS_EXPECT(file != nullptr,
-                    "cannot open the study's log '" + path_ + "' for writing; does its folder exist?");
-    const bool is_written = std::fputs((line + "\n").c_str(), file) >= 0;
-    const bool is_closed = std::fclose(file) == 0;
-    DELASSUS_EXPECT(is_written && is_closed,
-                    "cannot write all of the study's log '" + path_ + "'; is the disk full?");
+    log_.append(std::move(line));
   }
 
-  void read(const std::string& line, std::size_t measures, std::size_t outputs) {
-    std::vector<std::string> fields;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, '\t');) fields.push_back(field);
-    const auto number = [&](std::size_t k) { return std::strtod(fields[k].c_str(), nullptr); };
-    // A count that a double holds exactly; −1 for what somebody else wrote there.
-    const auto count = [&](std::size_t k, double most) {
-      const double value = number(k);
-      return value >= 0 && value <= most ? long(value) : -1l;
-    };
+  void read(std::span<const std::string_view> fields, std::size_t measures, std::size_t outputs) {
     if (fields.size() < 2 || fields[0] != key_) return;
-    if (fields[1] == "reference" && fields.size() == 2 + measures * outputs) {
-      uncertainties_.emplace();
-      for (std::size_t k = 2; k < fields.size(); ++k) uncertainties_->push_back(number(k));
+    const bool is_reference = fields[1] == "reference", is_run = fields[1] == "run";
+    const std::size_t first = is_reference ? 2 : 5, count_of_all = is_reference ? 2 + measures * outputs : 16 + measures;
+    if (!(is_reference || is_run) || fields.size() != count_of_all) return;
+    std::vector<double> numbers;
+    for (const std::string_view field : fields.subspan(first)) {
+      const std::optional<double> value = inner::number_in(field);
+      if (!value) return;
+      numbers.push_back(*value);
     }
-    if (fields[1] != "run" || fields.size() != 16 + measures) return;
+    if (is_reference) uncertainties_ = std::move(numbers);
+    else read_run(fields, numbers);
+  }
+
+  /// `numbers` are those from the fifth field on.
+  void read_run(std::span<const std::string_view> fields, const std::vector<double>& numbers) {
+    const auto number = [&](std::size_t k) { return numbers[k - 5]; };
+    const auto count = [&](std::size_t k, double most) { return inner::count_in(fields[k], most); };
     const long outcome = count(7, double(Outcome::too_slow));
     constexpr double most_runs = std::numeric_limits<int>::max(), most_steps = 9007199254740992.0;  // 2⁵³
     StudyRun run{.number = int(count(2, most_runs)),
                  .combination = int(count(3, most_runs)),
-                 .code = fields[4],
+                 .code = std::string(fields[4]),
                  .tolerance = number(5),
                  .h = number(6),
                  .accuracy = number(13),
@@ -122,12 +106,12 @@ class StudyLog {
                  .errors = {}};
     if (std::min({long(run.number), long(run.combination), outcome, run.steps, run.inner_steps, run.repeated, run.capped_steps}) < 0)
       return;
-    for (std::size_t k = 16; k < fields.size(); ++k) run.errors.push_back(number(k));
+    run.errors.assign(numbers.begin() + 11, numbers.end());
     runs_.push_back(std::move(run));
   }
 
-  std::string path_, key_;
-  bool ends_midway_ = false;  ///< in a line that a crash cut short
+  inner::RunLog log_;
+  std::string key_;
   std::vector<StudyRun> runs_;
   std::optional<std::vector<double>> uncertainties_;
 };
