@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Runs delassus_run as a user would: check_delassus_run.py PROGRAM. What it prints, writes and returns is checked."""
 import csv
+import math
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 # A ball on a hinge at a metre: lets go level, and is at the lowest point after a quarter of its period.
@@ -19,6 +21,17 @@ PENDULUM = """<robot name="pendulum">
 BOX = """<mujoco model="box"><worldbody><body name="box" pos="0 0 3"><freejoint/><geom type="box" size="0.2 0.2 0.1" mass="1"/></body></worldbody>
 <keyframe><key name="low" qpos="0 0 0.2 1 0 0 0"/></keyframe></mujoco>
 """
+# A box thrown and turning, above a plane of the file's own. Without a key it stands on its edge, as high as the file says.
+THROWN = """<!-- <robot name="in a comment only"> -->
+<mujoco model="thrown"><worldbody><geom type="plane" size="1 1 1"/>
+<body name="box" pos="0 0 3"><freejoint name="root"/><geom type="box" size="0.2 0.2 0.1" mass="1"/>
+<body name="lid" pos="0 0 0.2"><joint name="lid" axis="0 1 0" range="-30 30"/><geom type="box" size="0.1 0.1 0.05" mass="0.1"/></body></body></worldbody>
+<keyframe><key name="up" qpos="1 2 3 1 0 0 0 0" qvel="0.5 0 4 0 0 2 0"/><key name="open" qpos="0 0 2 1 0 0 0 1"/></keyframe></mujoco>
+"""
+
+
+def last_row(path):
+    return {name: float(number) for name, number in list(csv.DictReader(open(path)))[-1].items()}
 
 
 def run(program, *words):
@@ -29,6 +42,94 @@ def run(program, *words):
 def expect(holds, what):
     if not holds:
         sys.exit(f"check_delassus_run: {what}")
+
+
+def thrown(folder):
+    path = folder / "thrown.xml"
+    path.write_text(THROWN)
+    return path
+
+
+def check_free_root(program, folder, out):
+    """In flight the root's numbers are those of a throw: the centre of both bodies moves along a parabola."""
+    status, text, _ = run(program, thrown(folder), "--key", "up", "--seconds", 0.5, "--dt", 0.001, "--out", out)
+    expect(status == 0, f"thrown: {text}")
+    row = last_row(out / "thrown.csv")
+    names = [f"box.{name}" for name in ("x (m)", "y (m)", "z (m)", "qw", "qx", "qy", "qz", "vx (m/s)", "vy (m/s)", "vz (m/s)", "wx (rad/s)", "wy (rad/s)", "wz (rad/s)")]
+    expect(all(name in row for name in names) and "lid (rad)" in row, f"columns of a free root: {list(row)}")
+    # Kick, then drift: after n steps of h z is v t - g t (t + h)/2 from the start. It spins about its vertical axis, at which the lid sits level.
+    for name, exact in ((names[0], 1.25), (names[1], 2), (names[2], 3 + 4 * 0.5 - 9.81 * 0.5 * 0.501 / 2), (names[3], math.cos(0.5)), (names[6], math.sin(0.5)),
+                        (names[7], 0.5), (names[9], 4 - 9.81 * 0.5), (names[12], 2)):
+        expect(abs(row[name] - exact) < 1e-3, f"{name} of the thrown box: {row[name]}, not {exact}")
+    expect(abs(sum(row[name] ** 2 for name in names[3:7]) - 1) < 1e-9, "the quaternion has length 1")
+
+
+def check_bases(program, folder, out):
+    """A keyframe on another base, and on a floor that lifts the machine."""
+    model = thrown(folder)
+    status, text, _ = run(program, model, "--key", "open", "--base", "fixed", "--seconds", 0.01, "--dt", 0.001, "--out", out)
+    expect(status == 0 and "the base is fixed: keyframe 'open' does not move 'root'" in text, f"a keyframe on a fixed base: {text}")
+    expect("joint 'lid' starts at 1 rad, outside of its limits -0.523599 and 0.523599" in text, f"a start beyond a limit: {text}")
+    expect("box.x (m)" not in last_row(out / "thrown.csv"), "a fixed root has no columns")
+    status, text, _ = run(program, model, "--ground", "--seconds", 0.01, "--out", out)
+    expect(status == 0 and "a floor of its own" in text and last_row(out / "thrown.csv")["box.z (m)"] > 2.9, f"two floors: {text}")
+    bare = folder / "bare.xml"
+    bare.write_text(THROWN.replace('<geom type="plane" size="1 1 1"/>', ""))
+    # Half a height of the box is 0.1 m: there it stands whatever height the keyframe has.
+    status, text, _ = run(program, bare, "--ground", "--key", "open", "--seconds", 0.002, "--dt", 0.001, "--out", out)
+    expect(status == 0 and abs(last_row(out / "bare.csv")["box.z (m)"] - 0.1) < 1e-3, f"a keyframe on the floor: {text}")
+    held = folder / "held.xml"
+    held.write_text(THROWN.replace('<freejoint name="root"/>', "").replace('qpos="1 2 3 1 0 0 0 0" qvel="0.5 0 4 0 0 2 0"', 'qpos="0.2"').replace('qpos="0 0 2 1 0 0 0 1"', 'qpos="0.3"'))
+    status, text, _ = run(program, held, "--base", "free", "--key", "up", "--seconds", 0.002, "--dt", 0.001, "--out", out)
+    row = last_row(out / "held.csv")
+    expect(status == 0 and abs(row["box.z (m)"] - 3) < 1e-3 and abs(row["lid (rad)"] - 0.2) < 1e-3, f"a keyframe on a freed base: {text} {row}")
+
+
+def check_names(program, folder, out):
+    """Files of one name in two folders, and one file twice, do not write over each other."""
+    for name in ("one", "two"):
+        (folder / name).mkdir()
+        (folder / name / "robot.urdf").write_text(PENDULUM)
+    files = [folder / "one" / "robot.urdf", folder / "two" / "robot.urdf", folder / "two" / "robot.urdf"]
+    status, text, _ = run(program, *files, "--seconds", 0.1, "--quiet", "--out", out)
+    expect(status == 0 and all((out / f"{name}.csv").exists() for name in ("one_robot", "two_robot", "two_robot_2")), f"equal names: {text}")
+
+
+def check_what_it_says(program, folder, out):
+    welded = folder / "welded.urdf"
+    tip = """<link name="tip"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><mesh filename="package://hand/tip.stl"/></geometry></collision></link>
+    <joint name="held" type="fixed"><parent link="rod"/><child link="tip"/></joint></robot>"""
+    welded.write_text(PENDULUM.replace("</robot>", tip))
+    status, text, _ = run(program, welded, "--seconds", 0.1, "--out", out)
+    expect(status == 0 and "a fixed joint holds move as one" in text, f"links in one body: {text}")
+    expect("--meshes and --package say where to look" in text and "UrdfOptions" not in text, f"a mesh that is not there: {text}")
+    (folder / "hand").mkdir()
+    (folder / "hand" / "tip.stl").write_text("solid t\n" + "".join(f"facet normal 0 0 0\nouter loop\n{''.join(f'vertex {v}' + chr(10) for v in f)}endloop\nendfacet\n" for f in
+        (("0 0 0", "0 1 0", "1 0 0"), ("0 0 0", "1 0 0", "0 0 1"), ("0 0 0", "0 0 1", "0 1 0"), ("1 0 0", "0 1 0", "0 0 1"))) + "endsolid t\n")
+    status, text, _ = run(program, welded, "--package", f"hand={folder / 'hand'}", "--seconds", 0.1, "--out", out)
+    expect(status == 0 and "not read" not in text, f"a package: {text}")
+    model = thrown(folder)
+    status, text, _ = run(program, model, "--audit", "--quiet", "--seconds", 2, "--out", out)
+    rows = {line.split("  ")[0] + " " + name: line for line in text.splitlines() for name in ("Contact<Coulomb>", "Limit<Turn> of 'lid'", "'box'") if name in line}
+    expect(status == 0 and " acted " in rows.get("contact Contact<Coulomb>", "") and any("'box'" in line for line in rows.values()), f"what acted: {text}")
+    status, text, _ = run(program, model, "--accuracy", 1e-3, "--audit", "--seconds", 2, "--out", out)
+    expect(status == 0 and "inner steps" in text and "What set the size of the steps" in text and "impact" in text, f"a kept error: {text}")
+    status, text, _ = run(program, model, "--integrator", "midpoint", "--seconds", 0.1, "--out", out)
+    expect(status == 0 and "ImplicitMidpoint" in text, f"another integrator: {text}")
+    pendulum = folder / "pendulum.urdf"
+    status, text, _ = run(program, pendulum, "--study", "--quiet", "--seconds", 0.5, "--budget", 1e-3, "--out", out)
+    expect(status == 0 and "cheapest within 0.001 m" in text and (out / "pendulum.study.svg").exists() and (out / "pendulum.study.csv").exists(), f"a study: {text}")
+    expect("loops of this program alone" in text, f"a study says what it compares: {text}")
+    command = next(line.split() for line in text.splitlines() if line.strip().startswith("./run machine"))
+    status, text, _ = run(program, *command[2:], "--seconds", 0.5, "--quiet", "--out", out)
+    expect(status == 0, f"the command that a study names: {command} {text}")
+
+
+def check_vtk(program, box, out):
+    status, text, _ = run(program, box, "--ground", "--vtk", "--seconds", 0.5, "--frames", 10, "--quiet", "--out", out)
+    files = [data.get("file") for data in ET.parse(out / "box.pvd").getroot().find("Collection")]
+    expect(status == 0 and len(files) == 5 and all(ET.parse(out / file).getroot().get("type") == "PolyData" for file in files), f"VTK: {text} {files}")
 
 
 def main():
@@ -47,7 +148,7 @@ def main():
         page = (out / "pendulum.html").read_text()
         expect("<html" in page and "pendulum" in page, "the page")
         status, text, _ = run(program, box, pendulum, "--ground", "--quiet", "--seconds", 1, "--out", out)
-        expect(status == 0 and (out / "box.html").exists() and "box: 1 bodies, 1 joints, 200 steps, 0 not converged" in text, f"a box: {text}")
+        expect(status == 0 and (out / "box.html").exists() and "box: 1 link, 1 joint, 200 steps, 0 not converged" in text, f"a box: {text}")
         last = list(csv.DictReader(open(out / "box.csv")))[-1]
         expect(int(last["contacts"]) == 4 and float(last["kinetic energy (J)"]) < 1e-6, f"the box stands where it was set down: {last}")
         status, text, _ = run(program, box, "--ground", "--key", "low", "--seconds", 1, "--out", out)
@@ -57,8 +158,18 @@ def main():
         expect(status == 1 and "has no keyframe 'high'; it has 'low'" in error, f"a keyframe that is not there: {status} {error}")
         status, _, error = run(program, bad, "--out", out)
         expect(status == 1 and "bad.urdf:4" in error, f"a bad number: {status} {error}")
+        check_free_root(program, Path(folder), out)
+        check_bases(program, Path(folder), out)
+        check_names(program, Path(folder), out)
+        check_what_it_says(program, Path(folder), out)
+        check_vtk(program, box, out)
         for words in ([], ["nowhere.urdf"], [box, "--dt", "-1"], [box, "--base", "flying"], [box, "--fast"]):
             status, text, error = run(program, *words)
+            expect(status not in (0, 1) and (text + error).strip(), f"{words}: {status} {text} {error}")
+        numbers = [("--seconds", word) for word in ("nan", "inf", "1e300", "0", "-1", "x")] + [("--dt", "nan"), ("--dt", "20"), ("--tolerance", "nan"),
+                   ("--friction", "-1"), ("--accuracy", "0.5"), ("--accuracy", "nan"), ("--budget", "0"), ("--frames", "0"), ("--package", "x")]
+        for words in [(*pair,) for pair in numbers] + [("--dt", "1", "--seconds", "0.5"), ("--seconds", "1e6", "--dt", "1e-9"), ("--dt", "0.01", "--accuracy", "1e-3")]:
+            status, text, error = run(program, box, *words, "--out", out)
             expect(status not in (0, 1) and (text + error).strip(), f"{words}: {status} {text} {error}")
     print("delassus_run: all as it should be")
 

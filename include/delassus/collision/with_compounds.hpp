@@ -59,6 +59,13 @@ struct WithCompounds {
     return KeptShape{ShapeKind::compound, int(compounds_.size()) - 1, reach};
   }
 
+  /// That a shape of `add` names.
+  const Compound& compound(const Shape& shape) const {
+    DELASSUS_EXPECT(shape.kind == ShapeKind::compound && std::size_t(shape.number()) < compounds_.size(),
+                    "this compound is none of the backend's; take what its add(...) returned");
+    return compounds_[std::size_t(shape.number())];
+  }
+
   void check() const { inner::check_if_it_can(backend); }
 
   template <class Filter = NoFilter>

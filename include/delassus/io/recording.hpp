@@ -10,22 +10,23 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace delassus {
 
-/// How one body looks. Made by `recorded_body` or `recorded_particle`, so that a hull is copied and not
-/// pointed at.
+/// How one body looks, or one part of it. Made by `recorded_body`, `recorded_surface` or `recorded_particle`,
+/// so that a hull is copied and not pointed at.
 struct RecordedBody {
   Shape shape;  ///< without its hull, which `vertices` and `faces` are
-  std::vector<Vec3> vertices{};             ///< of a convex hull, m
-  std::vector<std::vector<Index>> faces{};  ///< of a convex hull, counter-clockwise from outside
+  std::vector<Vec3> vertices{};             ///< of a convex hull or a surface, m
+  std::vector<std::vector<Index>> faces{};  ///< of the same, counter-clockwise from outside
   bool is_static = false;                 ///< drawn where the first frame has it
   bool is_particle = false;               ///< its rotation is not kept
   int colour = -1;  ///< place in the page's palette (0 … 7), −1: one after the other
 };
 
-/// A mesh and a compound, which only their backend knows, are not drawn.
+/// A mesh and a compound, which only their backend knows, have no look of their own: `Recorder` asks it.
 inline RecordedBody recorded_body(const Shape& shape, bool is_static = false) {
   RecordedBody body{.shape = shape.is_kept() ? Shape{} : shape, .is_static = is_static};
   if (shape.kind != ShapeKind::convex_hull) return body;
@@ -33,6 +34,13 @@ inline RecordedBody recorded_body(const Shape& shape, bool is_static = false) {
   for (Index f = 0; f < shape.hull->face_count(); ++f)
     body.faces.emplace_back(shape.hull->face(f).begin(), shape.hull->face(f).end());
   body.shape.hull = nullptr;
+  return body;
+}
+
+/// Polygons over vertices, in the place of a hull: they need not be convex together.
+inline RecordedBody recorded_surface(std::vector<Vec3> vertices, std::vector<std::vector<Index>> faces, bool is_static = false) {
+  RecordedBody body{.shape = {}, .vertices = std::move(vertices), .faces = std::move(faces), .is_static = is_static};
+  body.shape.kind = ShapeKind::convex_hull;
   return body;
 }
 
@@ -55,6 +63,7 @@ struct RecordedContact {
   Vec3 point = Vec3::Zero();  ///< m, world
   Vec3 impulse = Vec3::Zero();  ///< world axes
   RecordedState state = RecordedState::sticking;  ///< drawn in its own way
+  Vec3 normal = Vec3::Zero();  ///< unit, from A to B; the replay page does without
 };
 
 /// A joint: a line between two points, a dot where they coincide.

@@ -1,0 +1,11 @@
+// A loop for joints of any kind, its steps of second order.
+#include "in_loop.hpp"
+#include "loops.hpp"
+
+namespace delassus_run {
+
+std::unique_ptr<Motion> midpoint(const Model& model, const Pose& pose, Base base, const Asked& asked) {
+  return in_loop(model, pose, base, asked, every_law(asked), ImplicitMidpoint{});
+}
+
+}  // namespace delassus_run

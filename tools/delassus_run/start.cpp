@@ -1,0 +1,119 @@
+// A machine as its run begins.
+#include "start.hpp"
+
+#include <delassus/geometry/support.hpp>
+#include <delassus/model/inner/add_shapes.hpp>
+#include <delassus/model/joint_state.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace delassus_run {
+
+namespace {
+
+const model::Keyframe& keyframe(const Model& model, const std::string& name) {
+  std::string names;
+  for (const model::Keyframe& key : model.keyframes) {
+    if (key.name == name) return key;
+    names += " '" + key.name + "'";
+  }
+  inner::refuse("model '" + model.name + "' has no keyframe '" + name + "'; it has" + (names.empty() ? " none" : names));
+}
+
+bool collides(const model::Geometry& geometry) { return geometry.type != 0 || geometry.affinity != 0; }
+
+/// The lowest point of what a machine moves, m; 0 where it has no shape.
+double lowest_point(const Model& model, const std::vector<Pose>& at) {
+  inner::ModelShapes shapes(model);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const model::Geometry& geometry : model.geometries) {
+    if (geometry.body < 0 || !collides(geometry)) continue;
+    const auto [shape, pose] = shapes.placed(geometry, at[std::size_t(geometry.body)]);
+    if (shape.kind == ShapeKind::none || shape.kind == ShapeKind::half_space) continue;
+    const Vec3 down = transposed_times(pose.rotation, Vec3(0, 0, -1));
+    lowest = std::min(lowest, pose.to_world(support(shape, down)).z());
+  }
+  return std::isfinite(lowest) ? lowest : 0;
+}
+
+}  // namespace
+
+Start::Start(const Model& model, const Options& options) : model_(model), base_(options.base) {
+  find_numbers(options);
+  if (options.has_ground) find_floor(options);
+  tell_limits(*put({}));
+}
+
+/// Those of the joints that move on this base; a root that the base frees stands where the tree has it.
+void Start::find_numbers(const Options& options) {
+  if (options.key.empty()) return;
+  const model::Keyframe& key = keyframe(model_, options.key);
+  const JointSpace space(model_, base_), file(model_, Base::as_file);
+  q_.resize(std::size_t(space.q_size()));
+  v_.assign(std::size_t(space.v_size()), 0);
+  space.reference(q_);
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const model::JointKind kind = model_.joints[j].kind;
+    const int positions = kind == model::JointKind::free ? 7 : kind == model::JointKind::ball ? 4 : 1;
+    const int rates = kind == model::JointKind::free ? 6 : kind == model::JointKind::ball ? 3 : 1;
+    const Index q = space.q_of(Index(j)), v = space.v_of(Index(j)), from_q = file.q_of(Index(j)), from_v = file.v_of(Index(j));
+    if (q < 0) {
+      notes.push_back("the base is fixed: keyframe '" + key.name + "' does not move '" + model_.joints[j].name + "'");
+      continue;
+    }
+    for (int k = 0; k < positions && !key.q.empty(); ++k) q_[std::size_t(q + k)] = key.q[std::size_t(from_q + k)];
+    for (int k = 0; k < rates && !key.v.empty(); ++k) v_[std::size_t(v + k)] = key.v[std::size_t(from_v + k)];
+  }
+}
+
+/// The pose that sets the machine on z = 0, unless the file has a floor.
+void Start::find_floor(const Options&) {
+  for (const model::Geometry& geometry : model_.geometries)
+    if (geometry.body < 0 && collides(geometry) && (std::holds_alternative<model::Plane>(geometry.shape) || std::holds_alternative<model::FieldOf>(geometry.shape))) {
+      const bool is_plane = std::holds_alternative<model::Plane>(geometry.shape);
+      notes.push_back(is_plane ? "the file has a floor of its own: --ground adds none and lifts nothing"
+                               : "the file has a height field, which does not act here: --ground adds a level floor at z = 0");
+      if (is_plane) return;
+    }
+  adds_floor_ = true;
+  JointSpace space(model_, base_);
+  std::vector<double> q(std::size_t(space.q_size()));
+  space.reference(q);
+  if (!q_.empty()) q = q_;
+  std::vector<Pose> at(model_.bodies.size());
+  space.poses(q, at);
+  const double lift = -lowest_point(model_, at);
+  pose_.position[2] = lift;
+  // A free joint counts from the world, whatever the frame of the model is.
+  if (q_.empty()) return;
+  const JointSpace lifted(model_, base_, pose_);
+  std::vector<double> reference(q_.size()), before(q_.size());
+  lifted.reference(reference), space.reference(before);
+  for (std::size_t k = 0; k < q_.size(); ++k) q_[k] += reference[k] - before[k];
+}
+
+std::unique_ptr<Motion> Start::put(const Asked& asked) const {
+  std::unique_ptr<Motion> motion = moved(model_, pose_, base_, asked);
+  if (adds_floor_) motion->set().add_fixed(HalfSpace{});
+  if (!q_.empty()) {
+    JointSpace space(model_, base_, pose_);
+    set_joint_state(*motion, motion->machine, space, q_, v_);
+  }
+  return motion;
+}
+
+void Start::tell_limits(const Motion& motion) {
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const model::Joint& joint = model_.joints[j];
+    const bool has_number = joint.kind == model::JointKind::hinge || joint.kind == model::JointKind::slide;
+    const model::Axis& axis = motion.machine.axes[j];
+    if (!has_number || !joint.is_limited || (axis.a.is_world() && axis.b.is_world())) continue;
+    const double q = position_of(motion.world(), motion.machine, Index(j)), slack = 1e-9 * (1 + std::abs(joint.lower) + std::abs(joint.upper));
+    if (q >= joint.lower - slack && q <= joint.upper + slack) continue;
+    notes.push_back("joint '" + joint.name + "' starts at " + inner::text(q) + (joint.kind == model::JointKind::hinge ? " rad" : " m") + ", outside of its limits " +
+                    inner::text(joint.lower) + " and " + inner::text(joint.upper) + ", and is pushed back");
+  }
+}
+
+}  // namespace delassus_run
