@@ -18,7 +18,7 @@ struct FreeImpulse {
   const Span<T>* span;
   Index i, first;  ///< the item, and the first of its numbers in impulses that are set aside
   bool slips, is_outside = false, ends = false;
-  double over[most_rows], along[most_rows];  ///< 1/√w of each row, and what one unknown of a contact that slips is in each
+  double over[most_rows] = {}, along[most_rows] = {};  ///< 1/√w of each row, and what one unknown of a contact that slips is in each
 
   int rows() const { return span->pool->rows; }
   int unknowns() const { return slips ? 1 : rows(); }
@@ -124,7 +124,7 @@ class LeastImpulses {
     const bool is_contact = span.pool->table->friction, stands = std::sqrt(problem_.square_of_velocity(span, u)) <= small;
     const bool is_closed = is_contact && std::abs(double(u[0])) <= small && problem_.impulse(span, i)[0] > 0;
     if ((!stands && !is_closed) || !(span.pool->trace(i) > 0)) return;
-    FreeImpulse<T> free{&span, i, row, !stands, {}};
+    FreeImpulse<T> free{&span, i, row, !stands};
     span.pool->roots_of_weights(i, free.over);
     for (int k = 0; k < free.rows(); ++k) free.over[k] = free.over[k] > 0 ? 1 / free.over[k] : 0;
     work_.free.push_back(free);
