@@ -30,6 +30,13 @@ THROWN = """<!-- <robot name="in a comment only"> -->
 """
 
 
+# A wheel of 2 kg m² about z, with a motor on it.
+WHEEL = """<mujoco model="wheel"><worldbody><body name="wheel"><joint name="turn" axis="0 0 1"/>
+<inertial pos="0 0 0" mass="1" diaginertia="1.5 1.5 2"/></body></worldbody>
+<actuator><motor name="motor" joint="turn" gear="3"/></actuator></mujoco>
+"""
+
+
 def last_row(path):
     return {name: float(number) for name, number in list(csv.DictReader(open(path)))[-1].items()}
 
@@ -48,6 +55,24 @@ def thrown(folder):
     path = folder / "thrown.xml"
     path.write_text(THROWN)
     return path
+
+
+def check_control(program, folder, out):
+    """A motor that pushes from 0.1 s to 0.3 s gives the wheel the rate torque · time / inertia."""
+    wheel, table = folder / "wheel.xml", folder / "control.csv"
+    wheel.write_text(WHEEL)
+    table.write_text("time,motor\n0.1,0.5\n0.3,0\n")
+    status, text, _ = run(program, wheel, "--control", table, "--seconds", 0.5, "--dt", 0.001, "--out", out)
+    expect(status == 0, f"control: {text}")
+    rows = [{name: float(number) for name, number in row.items()} for row in csv.DictReader(open(out / "wheel.csv"))]
+    angles = {round(row["time (s)"], 6): row["turn (rad)"] for row in rows}
+    rate = (angles[0.5] - angles[0.4]) / 0.1
+    expect(abs(rate - 3 * 0.5 * 0.2 / 2) < 1e-6, f"rate after the push: {rate}")
+    expect(abs(angles[0.1]) < 1e-12, f"pushed too early: {angles[0.1]}")
+    for wrong, said in (("time,engine\n0,1\n", "engine"), ("motor\n1\n", "must be 'time'"), ("time,motor\n0,1\n0,2\n", "does not come after"), ("time,motor\n0,nan\n", "no finite number"), ("", "no row")):
+        table.write_text(wrong)
+        status, _, error = run(program, wheel, "--control", table, "--seconds", 0.01, "--out", out)
+        expect(status == 1 and said in error and str(table) in error, f"a wrong table: {error}")
 
 
 def check_free_root(program, folder, out):
@@ -158,6 +183,7 @@ def main():
         expect(status == 1 and "has no keyframe 'high'; it has 'low'" in error, f"a keyframe that is not there: {status} {error}")
         status, _, error = run(program, bad, "--out", out)
         expect(status == 1 and "bad.urdf:4" in error, f"a bad number: {status} {error}")
+        check_control(program, Path(folder), out)
         check_free_root(program, Path(folder), out)
         check_bases(program, Path(folder), out)
         check_names(program, Path(folder), out)

@@ -1,4 +1,5 @@
 // delassus_run: simulates robots of URDF and MJCF files, and shows them.
+#include "delassus_run/control.hpp"
 #include "delassus_run/options.hpp"
 #include "delassus_run/read.hpp"
 #include "delassus_run/show.hpp"
@@ -56,12 +57,14 @@ bool simulate(const Model& model, const Start& start, const Options& options, co
   Rows rows(base + ".csv", model, *motion);
   std::optional<VtkSeries> vtk;
   if (options.writes_vtk) vtk.emplace(base);
+  ControlTable control = options.control.empty() ? ControlTable() : ControlTable(options.control, motion->machine);
   const double h = options.caller_step();
   const long steps = std::max(1l, std::lround(options.seconds / h)), every = std::max(1l, steps / 10);
   long unconverged = 0, held = 0, inner_steps = 0, at_floor = 0;
   const auto begin = std::chrono::steady_clock::now();
   if (!options.is_quiet) print_head(asked.accuracy > 0);
   for (long n = 1; n <= steps; ++n) {
+    control.set(motion->machine, motion->time());
     const StepReport report = motion->step(h);
     unconverged += report.status != Status::converged && report.status != Status::stalled;
     held += report.quarantined;

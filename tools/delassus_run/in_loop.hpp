@@ -7,6 +7,7 @@
 
 #include <delassus/collision/with_compounds.hpp>
 #include <delassus/collision/with_filter.hpp>
+#include <delassus/model/actuators.hpp>
 #include <delassus/model/add.hpp>
 #include <delassus/solvers/direct_gauss_seidel.hpp>
 #include <delassus/study/audit.hpp>
@@ -41,7 +42,10 @@ class InLoop final : public Motion {
     for (const model::Body& body : model.bodies) links_.push_back(body.name);
   }
 
-  StepReport step(double h) override { return loop_.step(h); }
+  StepReport step(double h) override {
+    if (!machine.actuators.empty()) actuate(loop_, machine, h);
+    return loop_.step(h);
+  }
   World<RigidBodies>& world() override { return loop_.world(); }
   double time() const override { return loop_.time(); }
   std::span<const ContactResult> contacts() const override { return loop_.contacts(); }
@@ -103,12 +107,14 @@ inline auto every_law(const Asked& asked) {
                      SpringDamper<Precession>{}, SpringDamper<Nutation>{}, SpringDamper<Spin>{}, SpringDamper<Length>{}, RotorInertia<Turn>{},
                      RotorInertia<Slide>{}, RotorInertia<Precession>{}, RotorInertia<Nutation>{}, RotorInertia<Spin>{}, Motor<Turn>{},
                      Motor<Slide>{}, Motor<Precession>{}, Motor<Nutation>{}, Motor<Spin>{}, Coupling<Turn, Turn>{}, Coupling<Slide, Turn>{},
-                     Coupling<Turn, Slide>{}, Coupling<Slide, Slide>{}};
+                     Coupling<Turn, Slide>{}, Coupling<Slide, Slide>{}, Motor<Length>{}, Drive<Turn>{}, Drive<Slide>{},
+                     Drive<Precession>{}, Drive<Nutation>{}, Drive<Spin>{}, Drive<Length>{}, Limit<RotationAngle>{}, Tendon<3>{}, TendonLimit<3>{},
+                     TendonMotor<3>{}};
 }
 /// Those of links with one axis each, which most robots have.
 inline auto laws_of_single_axes(const Asked& asked) {
   return Constraints{Contact{Coulomb{.friction = asked.friction}}, Hinge{}, Slider{}, Limit<Turn>{}, Limit<Slide>{}, SpringDamper<Turn>{},
-                     SpringDamper<Slide>{}, RotorInertia<Turn>{}, RotorInertia<Slide>{}, Motor<Turn>{}, Motor<Slide>{}};
+                     SpringDamper<Slide>{}, RotorInertia<Turn>{}, RotorInertia<Slide>{}, Motor<Turn>{}, Motor<Slide>{}, Drive<Turn>{}, Drive<Slide>{}};
 }
 
 }  // namespace delassus_run

@@ -38,6 +38,7 @@ class Motion {
   Machine machine;
 
   virtual ~Motion() = default;
+  /// The machine's controls hold for h s.
   virtual StepReport step(double h) = 0;
   virtual World<RigidBodies>& world() = 0;
   virtual double time() const = 0;

@@ -16,7 +16,7 @@ namespace delassus_run {
 
 struct Options {
   std::vector<std::string> models, packages;
-  std::string out = "out/run", key, meshes;
+  std::string out = "out/run", key, meshes, control;
   double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = 0.8, budget = 1e-3, frames = 30;
   Base base = Base::as_file;
   Integration integration = Integration::euler;
@@ -60,6 +60,7 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_option("--base", options.base, "free or fixed: whether something holds the root; as the file says if not said")->transform(CLI::CheckedTransformer(bases));
   app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
   app.add_option("--key", options.key, "keyframe of the file to start from");
+  app.add_option("--control", options.control, "a CSV table: time (s), then a column for each actuator it controls, by name; else controls are those of --key, or 0")->check(CLI::ExistingFile);
   app.add_option("--meshes", options.meshes, "a folder of meshes, for URDF")->check(CLI::ExistingDirectory);
   app.add_option("--package", options.packages, "NAME=FOLDER of package://NAME, for URDF; may be repeated");
   app.add_flag("--study", options.studies, "runs the loops, steps and tolerances there are, and names the cheapest within --budget");
@@ -80,6 +81,7 @@ inline void check(const Options& options) {
                   "--dt " + inner::text(options.step) + " is longer than --seconds " + inner::text(options.seconds));
   DELASSUS_EXPECT(steps <= Options::most_steps, "--seconds " + inner::text(options.seconds) + " are " + inner::text(steps) + " steps of " +
                                                     inner::text(options.caller_step()) + " s; more than 1e7 are refused");
+  DELASSUS_EXPECT(!options.studies || options.control.empty(), "--study compares runs with the controls of --key; take --control out");
   for (const std::string& package : options.packages)
     DELASSUS_EXPECT(package.find('=') != 0 && package.find('=') != package.npos, "--package " + package + ": write NAME=FOLDER");
 }

@@ -5,9 +5,11 @@
 
 #include <delassus/constraints/joints/coupling.hpp>
 #include <delassus/constraints/joints/euler_angles.hpp>
+#include <delassus/constraints/joints/rotation_angle.hpp>
 #include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/constraints/joints/serial_joint.hpp>
 #include <delassus/constraints/joints/spring_damper.hpp>
+#include <delassus/constraints/joints/tendon.hpp>
 
 // Laws of machines that delassus/compiled.hpp does not have.
 #define DELASSUS_RUN_LAWS(WHAT, KIND) \
@@ -34,6 +36,15 @@
   WHAT(KIND, Motor<Precession>)       \
   WHAT(KIND, Motor<Nutation>)         \
   WHAT(KIND, Motor<Spin>)             \
+  WHAT(KIND, Motor<Length>)           \
+  WHAT(KIND, Drive<Precession>)       \
+  WHAT(KIND, Drive<Nutation>)         \
+  WHAT(KIND, Drive<Spin>)             \
+  WHAT(KIND, Drive<Length>)           \
+  WHAT(KIND, Limit<RotationAngle>)    \
+  WHAT(KIND, Tendon<3>)               \
+  WHAT(KIND, TendonLimit<3>)          \
+  WHAT(KIND, TendonMotor<3>)          \
   WHAT(KIND, Coupling<Slide, Slide>)
 
 namespace delassus {

@@ -2,6 +2,7 @@
 #include "start.hpp"
 
 #include <delassus/geometry/support.hpp>
+#include <delassus/model/actuators.hpp>
 #include <delassus/model/inner/add_shapes.hpp>
 #include <delassus/model/joint_state.hpp>
 
@@ -49,6 +50,7 @@ Start::Start(const Model& model, const Options& options) : model_(model), base_(
 void Start::find_numbers(const Options& options) {
   if (options.key.empty()) return;
   const model::Keyframe& key = keyframe(model_, options.key);
+  key_ = &key;
   const JointSpace space(model_, base_), file(model_, Base::as_file);
   q_.resize(std::size_t(space.q_size()));
   v_.assign(std::size_t(space.v_size()), 0);
@@ -100,6 +102,7 @@ std::unique_ptr<Motion> Start::put(const Asked& asked) const {
     JointSpace space(model_, base_, pose_);
     set_joint_state(*motion, motion->machine, space, q_, v_);
   }
+  if (key_) set_controls(motion->machine, *key_);
   return motion;
 }
 

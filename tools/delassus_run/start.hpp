@@ -31,6 +31,7 @@ class Start {
   Base base_;
   Pose pose_;
   bool adds_floor_ = false;
+  const model::Keyframe* key_ = nullptr;
   std::vector<double> q_, v_;  ///< of the joints, see `JointSpace`; empty: as the tree describes
 };
 
