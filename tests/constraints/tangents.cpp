@@ -118,7 +118,7 @@ TEST_CASE("the tangents of limits and motors are the slopes of their impulses") 
   for (int n = 0; n < 100; ++n) {
     const double first = any(random), second = any(random), before = any(random), after = any(random);
     Local<2> stops{w * Mat<2, 2>::Identity(), {first, second}, {before, after}};
-    const Mat<2, 2> slopes = Limit<Turn>{}.tangent({}, stops);
+    const Mat<2, 2> slopes = Limit<Turn>{}.tangent(Limit<Turn>::Item{}, stops);
     const double low = before - first / w, high = after - second / w;
     CHECK(stops.lambda[0] == std::max(0.0, low));
     CHECK(stops.lambda[1] == std::min(0.0, high));

@@ -62,7 +62,7 @@ class DrawnScene {
           drawn_.push_back({Index(s), b, pose});
         };
         if (!set.has_collider(b)) draw(recorded_particle(has_mesh<decltype(set)> ? 1e-3 : 0.03), {});
-        else if constexpr (requires { loop.template policy<role::Collision>(); })
+        else if constexpr (requires { loop.contacts(); })  // it has a collision then
           each_part(loop.template policy<role::Collision>(), set.shape(b), is_fixed(set, b), draw);
         else
           draw(recorded_body(set.shape(b), is_fixed(set, b)), {});

@@ -40,15 +40,15 @@ struct Interval {
 /// The largest is made positive and left out; the others lie in [−1/√2, 1/√2] and err by at most e =
 /// √2/65534. The largest is at least 1/2 and the others together at most √3/2, so it errs by at most √3 · √3
 /// e = 3e, the quaternion by √(3 + 9) e, and the rotation by twice that angle: 2 √12 e = 1.5e-4 rad.
-using Turn = std::array<std::uint16_t, 3>;
+using TurnCode = std::array<std::uint16_t, 3>;
 
-inline Turn turn_code(const Quat& rotation) {
+inline TurnCode turn_code(const Quat& rotation) {
   const Vec<4> q = rotation.coeffs().normalized();  // (x, y, z, w)
   Index largest = 0;
   for (Index k = 1; k < 4; ++k)
     if (std::abs(q[k]) > std::abs(q[largest])) largest = k;
   const double sign = q[largest] < 0 ? -1 : 1;
-  Turn words{};
+  TurnCode words{};
   for (Index k = 0, i = 0; k < 4; ++k) {
     if (k == largest) continue;
     const double unit = std::clamp(0.5 + sign * q[k] / std::sqrt(2.0), 0.0, 1.0);
