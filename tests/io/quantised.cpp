@@ -9,7 +9,7 @@ using namespace delassus;
 namespace {
 
 /// The rotation of three words, as the page reads them.
-Quat turn_value(const inner::Turn& words) {
+Quat turn_value(const inner::TurnCode& words) {
   const Index largest = (words[0] & 1) << 1 | (words[1] & 1);
   Vec<4> q = Vec<4>::Zero();
   for (Index k = 0, i = 0; k < 4; ++k)
