@@ -61,7 +61,7 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
   app.add_option("--key", options.key, "keyframe of the file to start from");
   app.add_option("--control", options.control, "a CSV table: time (s), then a column for each actuator it controls, by name; else controls are those of --key, or 0")->check(CLI::ExistingFile);
-  app.add_option("--meshes", options.meshes, "a folder of meshes, for URDF")->check(CLI::ExistingDirectory);
+  app.add_option("--meshes", options.meshes, "a folder of meshes and other files")->check(CLI::ExistingDirectory);
   app.add_option("--package", options.packages, "NAME=FOLDER of package://NAME, for URDF; may be repeated");
   app.add_flag("--study", options.studies, "runs the loops, steps and tolerances there are, and names the cheapest within --budget");
   app.add_option("--budget", options.budget, "largest error of a place in a study, m")->check(number_in(1e-12, 1e6, "a length from 1e-12 to 1e6 m"))->capture_default_str();

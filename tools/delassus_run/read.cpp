@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace delassus_run {
 
@@ -19,10 +20,14 @@ std::string_view root_element(std::string_view text) {
     at = found == text.npos ? text.size() : found + end.size();
   };
   while ((at = text.find('<', at)) != text.npos) {
-    if (text.substr(at, 4) == "<!--") pass("-->");
-    else if (text.substr(at, 2) == "<?") pass("?>");
-    else if (text.substr(at, 2) == "<!") pass(">");
-    else return text.substr(at + 1, text.find_first_of(" \t\r\n/>", at) - at - 1);
+    if (text.substr(at, 4) == "<!--")
+      pass("-->");
+    else if (text.substr(at, 2) == "<?")
+      pass("?>");
+    else if (text.substr(at, 2) == "<!")
+      pass(">");
+    else
+      return text.substr(at + 1, text.find_first_of(" \t\r\n/>", at) - at - 1);
   }
   return {};
 }
@@ -35,15 +40,25 @@ bool is_urdf(const std::string& path) {
 }  // namespace
 
 std::string in_words_of_options(std::string sentence) {
-  static constexpr std::string_view library = "UrdfOptions::meshes and packages say";
-  if (const std::size_t at = sentence.find(library); at != sentence.npos) sentence.replace(at, library.size(), "--meshes and --package say");
+  static constexpr std::pair<std::string_view, std::string_view> words[] = {
+      {"UrdfOptions::meshes and packages say", "--meshes and --package say"},
+      {"name its folder in MjcfOptions::files", "name its folder by --meshes"},
+      {"delassus: ", ""}};
+  for (const auto& [library, own] : words)
+    if (const std::size_t at = sentence.find(library); at != sentence.npos)
+      sentence.replace(at, library.size(), own);
   return sentence;
 }
 
 Model read(const std::string& path, const Options& options) {
-  if (!is_urdf(path)) return read_mjcf(path, {.strict = options.is_strict, .files = {}});
+  if (!is_urdf(path)) {
+    MjcfOptions words{.strict = options.is_strict, .files = {}};
+    if (!options.meshes.empty()) words.files.push_back(options.meshes);
+    return read_mjcf(path, words);
+  }
   UrdfOptions words{.strict = options.is_strict, .meshes = options.meshes};
-  for (const std::string& package : options.packages) words.packages[package.substr(0, package.find('='))] = package.substr(package.find('=') + 1);
+  for (const std::string& package : options.packages)
+    words.packages[package.substr(0, package.find('='))] = package.substr(package.find('=') + 1);
   return read_urdf(path, words);
 }
 
