@@ -45,12 +45,12 @@ class PairSlots {
   }
   /// As a list by pair, and nothing in it that is not meant.
   void memory(auto& archive) {
-    Array<RestingPair> pairs;
-    if (!archive.reads) copy_to(pairs);
-    archive(pairs);
-    if (archive.reads) take_from(pairs);
+    if (!archive.reads) copy_to(listed_);
+    archive(listed_);
+    if (archive.reads) take_from(listed_);
   }
   void copy_to(Array<RestingPair>& pairs) const {
+    pairs.clear();
     pairs.reserve(known_.size());
     for (const Known& k : known_) {
       const RestingPair& from = slot_[k.slot];
@@ -94,6 +94,7 @@ class PairSlots {
   Array<RestingPair> slot_;
   Array<Index> free_;
   Array<Known> known_, next_;  ///< by pair
+  Array<RestingPair> listed_;  ///< room for `memory`
 };
 
 }  // namespace delassus::inner

@@ -4,6 +4,7 @@
 #include <delassus/io/inner/drawn_polygons.hpp>
 #include <delassus/io/inner/text.hpp>
 #include <delassus/io/recording.hpp>
+#include <delassus/math/pose.hpp>
 
 #include <algorithm>
 #include <bit>
