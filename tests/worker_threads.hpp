@@ -4,7 +4,7 @@
 #include <delassus/step/in_parallel.hpp>
 
 #include <atomic>
-#include <thread>
+#include <future>
 #include <vector>
 
 namespace delassus {
@@ -19,10 +19,11 @@ struct WorkerThreads : InParallel {
     const auto work = [&](Index worker) {
       for (Index task; (task = next++) < tasks;) f(task, worker);
     };
-    std::vector<std::thread> threads;
-    for (Index worker = 1; worker < count; ++worker) threads.emplace_back(work, worker);
+    std::vector<std::future<void>> threads;
+    for (Index worker = 1; worker < count; ++worker)
+      threads.push_back(std::async(std::launch::async, work, worker));
     work(0);
-    for (std::thread& t : threads) t.join();
+    for (std::future<void>& thread : threads) thread.get();
   }
 };
 

@@ -7,7 +7,7 @@
 
 #include <atomic>
 #include <cstdio>
-#include <thread>
+#include <future>
 #include <vector>
 
 using namespace delassus;
@@ -20,10 +20,11 @@ struct HostThreads : InParallel {
     const auto work = [&](Index worker) {
       for (Index task; (task = next++) < tasks;) f(task, worker);
     };
-    std::vector<std::thread> threads;
-    for (Index worker = 1; worker < count; ++worker) threads.emplace_back(work, worker);
+    std::vector<std::future<void>> threads;
+    for (Index worker = 1; worker < count; ++worker)
+      threads.push_back(std::async(std::launch::async, work, worker));
     work(0);
-    for (std::thread& thread : threads) thread.join();
+    for (std::future<void>& thread : threads) thread.get();  // throws what a task threw
   }
 };
 

@@ -26,6 +26,9 @@ class Threads : public InParallel {
  public:
   /// 0: one a processor. Throws InvalidArgument outside of 0 … 1024.
   explicit Threads(int count = 0) : arena_(std::make_shared<oneapi::tbb::task_arena>(checked(count))) {}
+  /// A copy, of which neither is ever without threads.
+  Threads(const Threads&) = default;
+  Threads& operator=(const Threads&) = default;
 
   Index workers() const { return Index(arena_->max_concurrency()); }
   template <class F>

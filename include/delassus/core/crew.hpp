@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <thread>
+#include <utility>
 
 namespace delassus::inner {
 
@@ -20,12 +22,18 @@ class Crew {
   Crew(const Crew&) {}
   Crew& operator=(const Crew&) { return *this; }
 
-  /// Before the helpers come.
-  void assemble() { is_dismissed_.store(false, std::memory_order_relaxed); }
+  /// Before anybody comes.
+  void assemble() {
+    is_led_.store(false, std::memory_order_relaxed);
+    is_dismissed_.store(false, std::memory_order_relaxed);
+  }
+  /// Whether the one who asks leads: the first does, since a scheduler may begin with any task.
+  bool leads() { return !is_led_.exchange(true, std::memory_order_relaxed); }
   /// The helpers go.
   void dismiss() { is_dismissed_.store(true, std::memory_order_release); }
 
-  /// f(task) for each task in [0, tasks); the leader's. Pre: tasks < 2²⁰.
+  /// f(task) for each task in [0, tasks); the leader's. Pre: tasks < 2²⁰. Throws what a task threw, the first of
+  /// them, when all have ended.
   template <class F>
   void run(Index tasks, const F& f) {
     if (tasks <= 1) {
@@ -39,6 +47,7 @@ class Crew {
     while (take()) {
     }
     for (int waits = 0; ended_.load(std::memory_order_acquire) != tasks; ++waits) rest(waits);
+    if (has_failed_.load(std::memory_order_relaxed)) throw_failure();
   }
   /// Takes tasks until the leader dismisses the helpers.
   void help() {
@@ -60,9 +69,17 @@ class Crew {
       if ((open & low) >= (open >> 20 & low)) return false;
     } while (
         !open_.compare_exchange_weak(open, open + 1, std::memory_order_acquire, std::memory_order_acquire));
-    call_(with_, Index(open & low));
+    try {
+      call_(with_, Index(open & low));
+    } catch (...) {
+      if (!has_failed_.exchange(true, std::memory_order_relaxed)) failure_ = std::current_exception();
+    }
     ended_.fetch_add(1, std::memory_order_release);
     return true;
+  }
+  void throw_failure() {
+    has_failed_.store(false, std::memory_order_relaxed);
+    std::rethrow_exception(std::exchange(failure_, nullptr));
   }
   /// A processor that others want is given up after some microseconds.
   static void rest(int waits) {
@@ -74,7 +91,8 @@ class Crew {
 
   std::atomic<std::uint64_t> open_{0};  ///< number of the list, of its tasks, of the next one
   std::atomic<Index> ended_{0};
-  std::atomic<bool> is_dismissed_{true};
+  std::atomic<bool> is_dismissed_{true}, is_led_{false}, has_failed_{false};
+  std::exception_ptr failure_;  ///< of the one who set has_failed_, until all tasks have ended
   std::uint64_t list_ = 0;
   const void* with_ = nullptr;
   void (*call_)(const void*, Index) = nullptr;

@@ -30,10 +30,11 @@ template <int R, class T>
   for (int k = 0; k < R * R; ++k) x.data()[k] = double(at[k]);
   return x;
 }
-/// The same where it lies, if the type asks for no more than numbers have.
+/// The same where it lies, if the type asks for no more than the alignment of a number: blocks follow each
+/// other with no gap.
 template <int R, class T>
 [[gnu::always_inline]] inline decltype(auto) as_square(const T* at) {
-  if constexpr (std::is_same_v<T, double> && alignof(Mat<R, R, double>) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__)
+  if constexpr (std::is_same_v<T, double> && alignof(Mat<R, R, double>) <= alignof(T))
     return (*reinterpret_cast<const Mat<R, R, double>*>(at));
   else
     return load_square<R>(at);

@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/crew.hpp>
 #include <delassus/core/execution.hpp>
+#include <delassus/core/expect.hpp>
 #include <delassus/core/if_it_has.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
@@ -15,6 +16,7 @@
 #include <delassus/step/inner/rows_in_parts.hpp>
 
 #include <cstddef>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -73,9 +75,15 @@ struct InParallel {
 
   template <class Base>
   struct stages : Base {
-    static Index workers(auto& step) { return step.execution().workers(); }
+    static Index workers(auto& step) {
+      const Index count = step.execution().workers();
+      DELASSUS_EXPECT(count >= 1, "the execution of a loop has " + std::to_string(count) +
+                                      " workers; let workers() return 1 or more");
+      return count;
+    }
 
     static void write_rows(auto& step) {
+      workers(step);  // refused before anything is divided by it
       const auto laws = step.pools.all();
       const auto rows = step.arrays.all();
       for (std::size_t p = 0; p < laws.size(); ++p)
@@ -132,7 +140,7 @@ struct InParallel {
           while (large < islands.size() && islands[large].rows >= inner::large_island) ++large;
       return large;
     }
-    /// solve(worker, crew) by one worker, while the others help.
+    /// solve(worker, crew) by the worker that comes first, while the others help.
     static void solve_together(auto& step, const auto& solve) {
       inner::Crew& crew = kept(step).crew;
       struct Dismissal {
@@ -140,8 +148,8 @@ struct InParallel {
         ~Dismissal() { crew.dismiss(); }
       };
       crew.assemble();
-      step.execution().run(workers(step), [&](Index task, Index worker) {
-        if (task > 0) return crew.help();
+      step.execution().run(workers(step), [&](Index, Index worker) {
+        if (!crew.leads()) return crew.help();
         const Dismissal after{crew};
         solve(worker, crew);
       });

@@ -40,9 +40,14 @@ struct Bounded {
   void clamp(const Item&, Vec<1, T>& lambda, const Memory<T>& memory) const {
     lambda[0] = std::clamp(lambda[0], -memory.most, memory.most);
   }
-  /// −∂λ/∂d is 1/W below the cap, zero at it. The memory's scalar need not be that of `c`.
+  /// −∂λ/∂d is 1/W below the cap, zero at it and where nothing moves. The memory's scalar need not be that of
+  /// `c`.
   template <class Item, class T, class S>
   Mat<1, 1, T> tangent(const Item&, Local<1, T>& c, const Memory<S>& memory) const {
+    if (!(c.W(0, 0) > T(0))) {
+      c.lambda[0] = T(0);
+      return Mat<1, 1, T>(T(0));
+    }
     const T most = T(memory.most), free = c.lambda[0] - c.d[0] / c.W(0, 0);
     c.lambda[0] = std::clamp(free, -most, most);
     return Mat<1, 1, T>(c.lambda[0] == free ? 1 / c.W(0, 0) : T(0));

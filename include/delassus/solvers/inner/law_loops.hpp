@@ -54,7 +54,8 @@ struct LawItems {
     }
   }
   [[gnu::always_inline]] void clamp(Index i, Vec<R, double>& lambda) const { inner::clamp(law, item(i), lambda, memory[i]); }
-  /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ.
+  /// s λ − P_K(s λ − ũ); by default W_ii (λ − what the law would make of it), in the units of s λ. Where
+  /// W_ii = 0 no λ does anything: none is wrong.
   [[gnu::always_inline]] Vec<R, double> natural_map(Index i, const auto* own, const Vec<R, double>& lambda, const Vec<R, double>& u,
                                                     const Weights& scale) const {
     if constexpr (refines<Law>(refine::natural_map)) {
@@ -70,10 +71,11 @@ struct LawItems {
       if constexpr (Weights::is_mixed) {
         const Weights own_scale = Weights::of(own);
         Vec<R, double> out = W * change;
-        for (int k = 0; k < R; ++k) out[k] *= scale[k] / own_scale[k];
+        for (int k = 0; k < R; ++k) out[k] = own_scale[k] > 0 ? out[k] * (scale[k] / own_scale[k]) : 0;
         return out;
       } else {
-        return (scale.motion * R / trace(W)) * (W * change);
+        const double size = trace(W);
+        return (size > 0 ? scale.motion * R / size : 0.0) * (W * change);
       }
     }
   }
