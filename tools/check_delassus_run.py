@@ -37,6 +37,13 @@ WHEEL = """<mujoco model="wheel"><worldbody><body name="wheel"><joint name="turn
 """
 
 
+# Three links in a row, the first and the last of them balls that are in each other.
+KNEES = """<mujoco model="knees"><worldbody><body name="thigh"><joint name="hip" axis="0 1 0"/><geom type="sphere" size="0.3" mass="1"/>
+<body name="shank" pos="0.2 0 0"><joint name="knee" axis="0 1 0"/><geom type="sphere" size="0.05" mass="1"/>
+<body name="foot" pos="0.2 0 0"><joint name="ankle" axis="0 1 0"/><geom type="sphere" size="0.2" mass="1"/></body></body></body></worldbody></mujoco>
+"""
+
+
 def last_row(path):
     return {name: float(number) for name, number in list(csv.DictReader(open(path)))[-1].items()}
 
@@ -151,6 +158,17 @@ def check_what_it_says(program, folder, out):
     expect(status == 0, f"the command that a study names: {command} {text}")
 
 
+def check_overlaps(program, folder, out):
+    """Links that are in each other as a run begins do not collide, unless the user says so."""
+    knees = folder / "knees.xml"
+    knees.write_text(KNEES)
+    for more, ending, pushed in ([], "do not collide; --push-apart lets them", False), (["--push-apart"], "are pushed apart", True):
+        status, text, _ = run(program, knees, "--seconds", 0.005, "--out", out, *more)
+        expect(status == 0, f"overlaps: {text}")
+        expect(f"links 'thigh' and 'foot' are 0.1 m in each other at the start, and {ending}" in text, f"overlaps: {text}")
+        expect((last_row(out / "knees.csv")["contacts"] > 0) == pushed, f"overlaps: contacts by {more}")
+
+
 def check_vtk(program, box, out):
     status, text, _ = run(program, box, "--ground", "--vtk", "--seconds", 0.5, "--frames", 10, "--quiet", "--out", out)
     files = [data.get("file") for data in ET.parse(out / "box.pvd").getroot().find("Collection")]
@@ -184,6 +202,7 @@ def main():
         status, _, error = run(program, bad, "--out", out)
         expect(status == 1 and "bad.urdf:4" in error, f"a bad number: {status} {error}")
         check_control(program, Path(folder), out)
+        check_overlaps(program, Path(folder), out)
         check_free_root(program, Path(folder), out)
         check_bases(program, Path(folder), out)
         check_names(program, Path(folder), out)

@@ -20,7 +20,7 @@ struct Options {
   double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = 0.8, budget = 1e-3, frames = 30;
   Base base = Base::as_file;
   Integration integration = Integration::euler;
-  bool has_ground = false, lists_all = false, is_strict = false, is_quiet = false, audits = false, studies = false, writes_vtk = false;
+  bool has_ground = false, lists_all = false, is_strict = false, is_quiet = false, audits = false, studies = false, writes_vtk = false, pushes_apart = false;
 
   static constexpr double most_steps = 1e7;
   static constexpr double step_under_control = 0.01;  ///< from row to row of the table, s
@@ -59,6 +59,7 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_option("--friction", options.friction, "of all contacts")->check(number_in(0, 1e6, "a coefficient from 0 to 1e6"))->capture_default_str();
   app.add_option("--base", options.base, "free or fixed: whether something holds the root; as the file says if not said")->transform(CLI::CheckedTransformer(bases));
   app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
+  app.add_flag("--push-apart", options.pushes_apart, "links of one tree collide even where they are in each other at the start");
   app.add_option("--key", options.key, "keyframe of the file to start from");
   app.add_option("--control", options.control, "a CSV table: time (s), then a column for each actuator it controls, by name; else controls are those of --key, or 0")->check(CLI::ExistingFile);
   app.add_option("--meshes", options.meshes, "a folder of meshes and other files")->check(CLI::ExistingDirectory);

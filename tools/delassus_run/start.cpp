@@ -5,9 +5,12 @@
 #include <delassus/model/actuators.hpp>
 #include <delassus/model/inner/add_shapes.hpp>
 #include <delassus/model/joint_state.hpp>
+#include <delassus/study/code_of.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace delassus_run {
 
@@ -20,6 +23,17 @@ const model::Keyframe& keyframe(const Model& model, const std::string& name) {
     names += " '" + key.name + "'";
   }
   inner::refuse("model '" + model.name + "' has no keyframe '" + name + "'; it has" + (names.empty() ? " none" : names));
+}
+
+/// The link that a body of a loop was made of, the first of them; −1: none.
+Index link_of(const Machine& machine, const Anchor& body) {
+  for (std::size_t b = 0; b < machine.parts.size(); ++b)
+    if (!machine.parts[b].is_world && !body.is_world() && machine.parts[b].body.index == body.block) return Index(b);
+  return -1;
+}
+Index root_of(const Model& model, Index link) {
+  while (model.bodies[std::size_t(link)].parent >= 0) link = model.bodies[std::size_t(link)].parent;
+  return link;
 }
 
 bool collides(const model::Geometry& geometry) { return geometry.type != 0 || geometry.affinity != 0; }
@@ -43,7 +57,9 @@ double lowest_point(const Model& model, const std::vector<Pose>& at) {
 Start::Start(const Model& model, const Options& options) : model_(model), base_(options.base) {
   find_numbers(options);
   if (options.has_ground) find_floor(options);
-  tell_limits(*put({}));
+  const std::unique_ptr<Motion> first = put({});
+  tell_limits(*first);
+  find_overlaps(*first, options);
 }
 
 /// Those of the joints that move on this base; a root that the base frees stands where the tree has it.
@@ -116,6 +132,25 @@ void Start::tell_limits(const Motion& motion) {
     if (q >= joint.lower - slack && q <= joint.upper + slack) continue;
     notes.push_back("joint '" + joint.name + "' starts at " + inner::text(q) + (joint.kind == model::JointKind::hinge ? " rad" : " m") + ", outside of its limits " +
                     inner::text(joint.lower) + " and " + inner::text(joint.upper) + ", and is pushed back");
+  }
+}
+
+/// What joints hold cannot be pushed apart: bodies of one tree that are in each other by more than rest leaves.
+void Start::find_overlaps(Motion& motion, const Options& options) {
+  constexpr double most = 1e-3;  // m
+  std::map<std::pair<Index, Index>, double> deepest;
+  motion.step(1e-9);
+  for (const ContactResult& contact : motion.contacts()) {
+    const Index a = link_of(motion.machine, contact.record.a), b = link_of(motion.machine, contact.record.b);
+    if (a < 0 || b < 0 || contact.record.gap > -most || root_of(model_, a) != root_of(model_, b)) continue;
+    double& gap = deepest[std::minmax(a, b)];
+    gap = std::min(gap, contact.record.gap);
+  }
+  for (const auto& [pair, gap] : deepest) {
+    const auto name = [&](Index link) { return "'" + model_.bodies[std::size_t(link)].name + "'"; };
+    notes.push_back("links " + name(pair.first) + " and " + name(pair.second) + " are " + inner::number_text(-gap, 2) + " m in each other at the start, " +
+                    (options.pushes_apart ? "and are pushed apart" : "and do not collide; --push-apart lets them"));
+    if (!options.pushes_apart) model_.excludes.push_back({.body = pair.first, .other = pair.second});
   }
 }
 

@@ -13,8 +13,11 @@ class Start {
  public:
   std::vector<std::string> notes;  ///< sentences that the user should read
 
-  /// Refuses a keyframe that is not there.
+  /// Refuses a keyframe that is not there. Links of one tree that are in each other as the run begins do not collide, unless the
+  /// options say so.
   Start(const Model& model, const Options& options);
+
+  Start(const Start&) = delete;
 
   /// The machine in a loop of its own.
   std::unique_ptr<Motion> put(const Asked& asked) const;
@@ -26,8 +29,9 @@ class Start {
   void find_numbers(const Options& options);
   void find_floor(const Options& options);
   void tell_limits(const Motion& motion);
+  void find_overlaps(Motion& motion, const Options& options);
 
-  const Model& model_;
+  Model model_;
   Base base_;
   Pose pose_;
   bool adds_floor_ = false;
