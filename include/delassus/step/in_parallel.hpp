@@ -1,6 +1,8 @@
 /// The stages of a plain step by several workers: rows, W and islands.
 #pragma once
 
+#include <delassus/collision/inner/pairs_in_parts.hpp>
+#include <delassus/collision/native_engine.hpp>
 #include <delassus/compliance/inner/rows_of_w_in_parts.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/crew.hpp>
@@ -14,8 +16,10 @@
 #include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/inner/rows_in_parts.hpp>
+#include <delassus/step/plain_stages.hpp>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -43,23 +47,25 @@ struct WorkersKeep<P, true> {
   OwningArray<typename P::Solver::template Workspace<typename P::Rows>> solvers;  ///< by worker
   Array<Task> islands;                                                            ///< the largest first
   Crew crew;
+  Scratch pairs;  ///< of detection
 };
 
-/// Whether islands may be solved at once: W has blocks of its own for each, the solver keeps nothing for all, and nobody hears
-/// of sweeps.
+/// Whether islands may be solved at once: W has blocks of its own for each, the solver keeps nothing for all,
+/// and nobody hears of sweeps.
 template <class Step>
 inline constexpr bool solves_islands_apart =
     !Step::observes_sweeps &&
-    requires(typename Step::Policies::Solver::template Workspace<typename Step::Policies::Rows>& w) {
-      requires Step::Policies::Operator::islands_are_apart;
-      requires !requires { w.begin_step(); };
-    };
+    requires(typename Step::Policies::Solver::template Workspace<typename Step::Policies::Rows> & w) {
+  requires Step::Policies::Operator::islands_are_apart;
+  requires !requires { w.begin_step(); };
+};
 
 }  // namespace inner
 
 /// A policy of role::Execution derives from it and adds `workers()` and `run`, see `Execution`. Then these
 /// parts of a step run on its workers, whatever their number with the same bits:
 ///
+///   detection  contacts of the pairs whose boxes touch, by `NativeCollision` and backends of a kernel
 ///   rows       of laws with many items: H and φ
 ///   W          its rows, where it is a matrix (`AssembledCompliance`, the default)
 ///   islands    each is solved by one worker, the largest first; all sweep a large one together where the
@@ -82,6 +88,21 @@ struct InParallel {
       return count;
     }
 
+    static CollisionReport find_contacts(auto& step) {
+      auto& book = step.contact_cache;
+      const auto detect = [&](const auto& filter) {
+        const inner::InParts with{filter, step.execution(), kept(step).pairs};
+        const std::span<const Collider> colliders(book.colliders);
+        if constexpr (requires { step.collision().detect(colliders, step.h, book.points, with); })
+          return step.collision().detect(colliders, step.h, book.points, with);
+        else
+          return Base::find_contacts(step);
+      };
+      if constexpr (inner::asks_who_meets<decltype(step)>)
+        return detect(book.who_pushed());
+      else
+        return detect(NoFilter{});
+    }
     static void write_rows(auto& step) {
       workers(step);  // refused before anything is divided by it
       const auto laws = step.pools.all();

@@ -6,55 +6,16 @@
 namespace delassus {
 
 template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::look_ahead(const Collider& a, const Collider& b, const inner::Apart& apart, double scale, bool is_near, double h,
-                                                const CollisionSettings& settings, const PairMemory& last, RestingPair& now,
-                                                std::vector<ContactPoint>& out) {
-  const double target = meeting_distance(scale, settings);
-  if (inner::may_close(a, b, apart.normal, apart.distance, h) && inner::may_come_near(a, b, h, target)) {
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, target);
-    if (hit.is_now) return false;
-    if (hit.is_found) {
-      const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > inner::same_normal;
-      if (is_near && is_same && !inner::may_outgrow_margin(a, b, scale, h)) return false;
-      if (meet(a, b, Job{apart.job}, hit, scale, h, settings, last, now, out)) return true;
-    }
-  }
-  apart_.push_back(apart);
-  return true;
-}
-
-template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::meet(const Collider& a, const Collider& b, const Job& job, const inner::Impact& hit, double scale,
-                                          double h, const CollisionSettings& settings, const PairMemory& last, RestingPair& now,
-                                          std::vector<ContactPoint>& out) {
-  const Pose b_in_a = hit.a.to_local(hit.b);
-  const double speed = dot(hit.a.rotation * hit.normal_in_a, a.velocity - b.velocity),
-               margin = settings.contact_distance + inner::limited_margin(std::abs(speed) * (h - hit.time), scale);
-  const SignedPair r = inner::distance_of(a.shape, b.shape, b_in_a, margin, scale, hit.normal_in_a, patch_);
-  if (r.status != PairStatus::near) return false;
-  if (!is_half_space(a) && !is_half_space(b)) contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
-  now.owner = inner::NormalOwner::kernel;
-  now.normal = hit.a.rotation * r.normal;
-  const std::size_t first = out.size();
-  inner::name_points(patch_, last, b_in_a, r.normal, scale, settings.max_points, first, out, now, [&](int i, std::uint32_t id) {
-    out.push_back(inner::impact_row(job, a, b, hit, patch_.point[i], now.normal, settings.contact_distance, id));
-  });
-  if (now.count == 0) return false;
-  now.impact = impact_of(a, b, now, out);
-  hold_cores(a, b, job, h, out);
-  sort_last(int(out.size() - first), out);
-  return true;
-}
-
-template <class Kernel, class Broad>
 void CollisionEngine<Kernel, Broad>::keep_jobs_of_apart() {
-  for (const Job& job : waiting_) apart_.push_back({job, 0, zero<Vec3>()});
+  for (const Job& job : waiting_) worker_.apart_pairs.push_back({job, 0, zero<Vec3>()});
   waiting_.clear();
   const std::size_t known = jobs_.size();
-  for (const inner::Apart& p : apart_) {
+  for (const inner::Apart& p : worker_.apart_pairs) {
     Job* const listed = job_of(p.job.pair, known);
-    if (listed) listed->is_asked = true;
-    else jobs_.push_back(Job{p.job, -1, true});
+    if (listed)
+      listed->is_asked = true;
+    else
+      jobs_.push_back(Job{p.job, -1, true});
   }
   if (jobs_.size() > known) {
     inner::sort_and_merge(jobs_, known, merged_);
@@ -63,12 +24,15 @@ void CollisionEngine<Kernel, Broad>::keep_jobs_of_apart() {
 }
 
 template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::find_who_outgrew(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings) {
+bool CollisionEngine<Kernel, Broad>::find_who_outgrew(inner::Slice<const Collider> colliders, double h,
+                                                      const CollisionSettings& settings) {
   is_grown_.assign(colliders.size(), 0);
   bool is_any = false;
   for (Index i = 0; i < Index(colliders.size()); ++i) {
     const double speed = inner::top_speed(colliders[i]);
-    if (boxes_[i].is_empty() || !std::isfinite(speed) || speed * h <= 0.5 * inner::margin_share * summary_[i].scale) continue;
+    if (boxes_[i].is_empty() || !std::isfinite(speed) ||
+        speed * h <= 0.5 * inner::margin_share * summary_[i].scale)
+      continue;
     inner::Summary now = summary_[i];
     now.speed = std::max(speed, now.speed);
     const Aabb box = inner::box_of_way(colliders[i], now, h, settings);
@@ -81,21 +45,23 @@ bool CollisionEngine<Kernel, Broad>::find_who_outgrew(inner::Slice<const Collide
 }
 
 template <class Kernel, class Broad>
-void CollisionEngine<Kernel, Broad>::ask(inner::Slice<const Collider> colliders, const Job& job, Job* listed, double h, const CollisionSettings& settings) {
+void CollisionEngine<Kernel, Broad>::ask(inner::Slice<const Collider> colliders, const Job& job, Job* listed,
+                                         double h, const CollisionSettings& settings) {
   const double scale = std::min(summary_[job.a].scale, summary_[job.b].scale);
   if (listed) listed->is_asked = true;
-  if (!inner::may_come_near(colliders[job.a], colliders[job.b], h, meeting_distance(scale, settings))) {
+  if (!inner::may_come_near(colliders[job.a], colliders[job.b], h,
+                            settings.contact_distance + inner::meeting_share * scale)) {
     waiting_.push_back(job);
     return;
   }
   if (!listed) jobs_.push_back(Job{job, -1, true});
-  apart_.push_back({job, 0, zero<Vec3>()});
+  worker_.apart_pairs.push_back({job, 0, zero<Vec3>()});
 }
 
 template <class Kernel, class Broad>
 template <class Filter>
-void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
-                                                   const Filter& filter) {
+void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> colliders, double h,
+                                                   const CollisionSettings& settings, const Filter& filter) {
   const std::size_t known = jobs_.size();
   // Of an earlier call in this step; `merged_` has them by pair, for who is asked again below.
   merged_ = waiting_;
@@ -109,14 +75,16 @@ void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> 
       while (next < known && jobs_[next].pair < pair) ++next;
       return next < known && jobs_[next].pair == pair ? &jobs_[next] : nullptr;
     };
-    for (const inner::Apart& p : apart_)
+    for (const inner::Apart& p : worker_.apart_pairs)
       if (Job* const listed = find(p.job.pair)) listed->is_asked = true;
     next = 0;
     const auto see = [&](Index i, Index j) {
       const Collider &x = colliders[i], &y = colliders[j];
       const std::uint64_t pair = pair_key(x.key, y.key);
       Job* const listed = find(pair);
-      if (listed ? listed->is_asked || slots_[listed->slot].count > 0 : inner::is_listed(merged_, Job{{pair, i, j}})) return;
+      if (listed ? listed->is_asked || slots_[listed->slot].count > 0
+                 : inner::is_listed(merged_, Job{{pair, i, j}}))
+        return;
       if (!may_meet(x, y) || !filter.lets(pair)) return;
       ask(colliders, x.key < y.key ? Job{{pair, i, j}} : Job{{pair, j, i}}, listed, h, settings);
     };
@@ -136,39 +104,45 @@ void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> 
 
 template <class Kernel, class Broad>
 template <class Filter>
-void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
+void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h,
+                                                   const CollisionSettings& settings,
                                                    std::vector<ContactPoint>& out, const Filter& filter) {
   out.clear();
   if (!knows_who_is_apart_) keep_jobs_of_apart();
   bool any_flies_by = false;
   flies_by_.resize(colliders.size());
   for (std::size_t i = 0; i < colliders.size(); ++i)
-    any_flies_by = (flies_by_[i] = inner::flies_by(colliders[i], inner::top_speed(colliders[i]), h)) || any_flies_by;
+    any_flies_by =
+        (flies_by_[i] = inner::flies_by(colliders[i], inner::top_speed(colliders[i]), h)) || any_flies_by;
   find_outgrown(colliders, h, settings, filter);
-  erase_if(apart_, [&](const inner::Apart& p) {
+  worker_.scene = {colliders, summary_.data(), flies_by_.data(), h, settings};
+  erase_if(worker_.apart_pairs, [&](const inner::Apart& p) {
     const Collider &a = colliders[p.job.a], &b = colliders[p.job.b];
     if (!inner::may_close(a, b, p.normal, p.distance, h)) return false;
-    const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale);
-    if (!inner::may_come_near(a, b, h, meeting_distance(scale, settings))) return false;
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, meeting_distance(scale, settings));
+    const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale),
+                 near = worker_.meeting_distance(scale);
+    if (!inner::may_come_near(a, b, h, near)) return false;
+    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, near);
     if (!hit.is_found) return false;
     RestingPair& now = memory_of(p.job.pair);
     if (a.is_movable && b.is_movable) {
       // Nearest points, where they are those that meet, have one place for both.
       const std::size_t known = out.size();
-      collide(colliders, Job{p.job}, h, settings, now, NoFilter{}, out);
-      if (out.size() > known && dot(hit.a.rotation * hit.normal_in_a, now.normal) > inner::same_normal) return true;
+      worker_.collide(Job{p.job}, now, NoFilter{}, out);
+      if (out.size() > known && dot(hit.a.rotation * hit.normal_in_a, now.normal) > inner::same_normal)
+        return true;
       out.resize(known);
     }
     PairMemory last;
     last.copy(now);
     now.count = 0;
-    const bool is_met = meet(a, b, Job{p.job}, hit, scale, h, settings, last, now, out);
+    const bool is_met = worker_.meet(a, b, Job{p.job}, hit, scale, last, now, out);
     now.see_if_plain();
     return is_met;
   });
   for (std::size_t k = 0; any_flies_by && k < jobs_.size(); ++k)
-    if (slots_[jobs_[k].slot].count > 0) hold_cores(colliders[jobs_[k].a], colliders[jobs_[k].b], jobs_[k], h, out);
+    if (slots_[jobs_[k].slot].count > 0)
+      worker_.hold_cores(colliders[jobs_[k].a], colliders[jobs_[k].b], jobs_[k], out);
 }
 
 }  // namespace delassus
