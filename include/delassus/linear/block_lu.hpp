@@ -90,6 +90,7 @@ class BlockLu {
     for (Index i = 0; i < n; ++i) assign(work_[pattern_.place(i)], x[i]);
     for (Index j = 0; j < n; ++j) {
       if (ends(1)) return;
+      if (is_zero(work_[j])) continue;  // a right side of few entries reaches the blocks above it alone
       pivot_[j].solve(work_[j]);
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
         add_product(lower_[e], work_[j], work_[pattern_.row(e)], T(-1));

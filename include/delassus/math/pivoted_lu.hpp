@@ -42,13 +42,24 @@ class PivotedLu {
   template <int C>
   void solve(Mat<w, C, T>& x) const {
     for (int c = 0; c < C; ++c) {
-      for (int k = 0; k < w; ++k) std::swap(x(k, c), x(swap_[k], c));
-      for (int k = 0; k < w; ++k)
-        for (int i = k + 1; i < w; ++i) x(i, c) -= lu_(i, k) * x(k, c);
-      for (int k = w; k-- > 0;) {
-        x(k, c) *= over_[k];
-        for (int i = 0; i < k; ++i) x(i, c) -= lu_(i, k) * x(k, c);
+      T* const to = x.data() + w * c;
+      for (int k = 0; k < w; ++k) std::swap(to[k], to[swap_[k]]);
+      T y[w];  // in registers: x may be L or U for all that a compiler knows
+      DELASSUS_UNROLL
+      for (int k = 0; k < w; ++k) y[k] = to[k];
+      DELASSUS_UNROLL
+      for (int k = 0; k < w; ++k) {
+        DELASSUS_UNROLL
+        for (int i = k + 1; i < w; ++i) y[i] -= lu_.data()[i + w * k] * y[k];
       }
+      DELASSUS_UNROLL
+      for (int k = w - 1; k >= 0; --k) {
+        y[k] *= over_[k];
+        DELASSUS_UNROLL
+        for (int i = 0; i < k; ++i) y[i] -= lu_.data()[i + w * k] * y[k];
+      }
+      DELASSUS_UNROLL
+      for (int k = 0; k < w; ++k) to[k] = y[k];
     }
   }
 

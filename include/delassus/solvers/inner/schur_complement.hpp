@@ -2,6 +2,8 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/math/small_products.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
 #include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/island.hpp>
@@ -37,8 +39,8 @@ class SchurComplement {
   }
 
  private:
-  /// The constraints that were taken, in their order: whole spans of the island, since a law's rows are all equalities or
-  /// none is swept without the others.
+  /// The constraints that were taken, in their order: whole spans of the island, since a law's rows are all
+  /// equalities or none is swept without the others.
   Island<T> show(const Island<T>& whole) {
     pools_.clear(), spans_.clear(), first_.clear();
     std::size_t items = 0, squares = 0;
@@ -63,7 +65,8 @@ class SchurComplement {
         Island<T>::velocity(spans_[n], i, u);  // by W
         for (int c = 0; c < R; ++c) {
           u_[at + c] = double(u[c]);
-          for (int k = 0; k < R; ++k) diagonal[std::ptrdiff_t(R * R) * i + k + R * c] = T(column(at + c)[at + k]);
+          for (int k = 0; k < R; ++k)
+            diagonal[std::ptrdiff_t(R * R) * i + k + R * c] = T(column(at + c)[at + k]);
         }
         at += w;
       }
@@ -136,13 +139,26 @@ class SchurComplement {
       velocity_.assign(system.blocks(), zero<typename System::Twist>());
       for (Index k = 0; k < system.bilateral(); ++k)
         for (Index e = system.node(k).first; e < system.node(k).last; ++e)
-          velocity_[system.side(e).block] += system.side(e).G * system.answer(k);
+          add_columns(system.side(e).G, system.answer(k), system.node(k).rows,
+                      velocity_[system.side(e).block]);
       double* s = column(w * (j - first) + c);
       for (Index k = first; k < system.count(); ++k)
         for (Index e = system.node(k).first; e < system.node(k).last; ++e) {
-          const Vec<w> u = system.side(e).H * velocity_[system.side(e).block];
+          auto u = zero<Vec<w>>();
+          add_product(system.side(e).H, velocity_[system.side(e).block], u);
           for (int r = 0; r < system.node(k).rows; ++r) s[w * (k - first) + r] += u[r];
         }
+    }
+  }
+
+  /// v += G x, of the columns of G that a constraint has.
+  static void add_columns(const Mat<System::width, w>& G, const Vec<w>& x, int rows,
+                          typename System::Twist& v) {
+    for (int c = 0; c < rows; ++c) {
+      const double by = x[c];
+      if (by == 0) continue;
+      DELASSUS_UNROLL
+      for (int k = 0; k < System::width; ++k) v.data()[k] += G.data()[k + System::width * c] * by;
     }
   }
 
