@@ -153,7 +153,7 @@ TEST_CASE("what an actuator cannot do is said") {
   CHECK_THROWS_WITH(actuator_force(loop.world(), machine, 1), Contains("no actuator 1"));
   CHECK_THROWS_WITH(actuate(loop, machine, 0), Contains("actuate: h"));
   machine.controls[0] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH(actuate(loop, machine, 1e-2), Contains("control of actuator 'a'"));
+  CHECK_THROWS_WITH(actuate(loop, machine, 1e-2), Contains("actuator 'a': its control is not finite"));
 
   Model ball = arm(1);
   ball.joints[0].kind = model::JointKind::ball;

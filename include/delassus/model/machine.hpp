@@ -22,6 +22,7 @@ struct LeaveOut {
   bool couplings = false;      ///< between joints, points and bodies
   bool rotors = false;         ///< inertia of what turns with a joint
   bool actuators = false;      ///< they push nothing, whatever the controls are
+  bool surfaces = true;        ///< friction and restitution of single shapes: all contacts have the law of the loop
 };
 
 namespace model {
@@ -46,10 +47,24 @@ struct Part {
   Pose pose;  ///< of the link's frame in that of the body, or in the world
 };
 
+/// Weight that `actuate` takes off a body.
+struct Lift {
+  RigidBodies::Handle body{};
+  double mass = 0;             ///< kg
+  Vec3 moment = zero<Vec3>();  ///< Σ mass · place in the frame of the body, about its centre, kg·m
+};
+
 /// Names a constraint of some law: the numbers of its `ConstraintHandle`.
 struct ConstraintNumber {
   Index index = -1;
   std::uint32_t generation = 0, owner = 0;
+};
+
+/// What an actuator shall do in the next step, found before any of them acts.
+struct Order {
+  double activation = 0;       ///< at the end of the step
+  double force = 0;            ///< that is pushed, before the gear
+  double rest = 0, speed = 0;  ///< of its law
 };
 
 /// How an actuator acts in a loop.
@@ -68,6 +83,7 @@ struct Actuation {
   int size = 0;
   ConstraintNumber constraint;
   Part site;                   ///< of an actuator on a site: its body, and its frame in it
+  Order order;                 ///< of `actuate`
 };
 
 }  // namespace model
@@ -79,12 +95,31 @@ struct Machine {
   std::vector<model::Actuation> actuators;  ///< of each actuator of the model
   std::vector<double> controls;             ///< of each actuator: set them as you like, `actuate` reads them; at first 0
   std::vector<double> activations;          ///< what their filters have made of the controls; of no account without a filter
+  std::vector<model::Lift> lifts;           ///< weight that `actuate` takes off
   /// What the model asks for and the loop does not do, a sentence each.
   std::vector<std::string> left_out;
+
+  /// Controls, activations and the turns that servos have counted, which a checkpoint of the loop does not hold: keep them
+  /// beside it by an `ArchiveWriter`, and give them to a machine of the same model by an `ArchiveReader`.
+  void memory(auto& archive) {
+    archive(controls, activations);
+    for (model::Actuation& act : actuators)
+      for (TendonPart& part : act.parts) archive(part.position);
+    if (archive.reads) expect_controls("memory");
+  }
+  /// Refuses lists of controls and activations that have another size than the one of actuators.
+  void expect_controls(const char* what) const {
+    DELASSUS_EXPECT(controls.size() == actuators.size() && activations.size() == actuators.size(),
+                    std::string(what) + ": the machine has " + std::to_string(controls.size()) + " controls and " +
+                        std::to_string(activations.size()) + " activations; give it one of each for each of its " +
+                        std::to_string(actuators.size()) + " actuators");
+  }
 };
 
 /// Where a link is now.
 inline Pose pose_of(const RigidBodies& set, const Machine& machine, Index body) {
+  DELASSUS_EXPECT(body >= 0 && std::size_t(body) < machine.parts.size(),
+                  "pose_of: this machine has no body " + std::to_string(body));
   const model::Part& part = machine.parts[std::size_t(body)];
   if (part.is_world) return part.pose;
   const Pose own{set.position(part.body), set.orientation(part.body).toRotationMatrix()};
@@ -93,12 +128,16 @@ inline Pose pose_of(const RigidBodies& set, const Machine& machine, Index body) 
 
 namespace inner {
 
-/// Refuses what is no hinge and no slide of the machine, or one that the world holds.
-inline const model::Axis& axis_of(const Machine& machine, Index joint, const char* what) {
+/// Refuses what is no hinge and no slide of the machine, one that the world holds, and one of a body that is not in this world.
+template <class World>
+const model::Axis& axis_of(const World& world, const Machine& machine, Index joint, const char* what) {
   DELASSUS_EXPECT(joint >= 0 && std::size_t(joint) < machine.axes.size() &&
                       !(machine.axes[std::size_t(joint)].a.is_world() && machine.axes[std::size_t(joint)].b.is_world()),
                   std::string(what) + ": joint " + std::to_string(joint) + " is no hinge or slide that moves in this machine");
-  return machine.axes[std::size_t(joint)];
+  const model::Axis& axis = machine.axes[std::size_t(joint)];
+  const std::string why = what_is_wrong(bodies<RigidBodies>(world), axis.a, axis.b);
+  if (!why.empty()) refuse(std::string(what) + ": joint " + std::to_string(joint) + ": " + why);
+  return axis;
 }
 
 }  // namespace inner
@@ -106,7 +145,7 @@ inline const model::Axis& axis_of(const Machine& machine, Index joint, const cha
 /// q of a hinge or a slide now, rad or m. A hinge is known up to whole turns: it is within half a turn of its reference.
 template <class World>
 double position_of(const World& world, const Machine& machine, Index joint) {
-  const model::Axis& axis = inner::axis_of(machine, joint, "position_of");
+  const model::Axis& axis = inner::axis_of(world, machine, joint, "position_of");
   const double value = inner::axis_value(axis.kind, {axis.a, axis.b, world}, axis.zero);
   return axis.reference + axis.sign * (value - axis.zero);
 }
@@ -114,14 +153,15 @@ double position_of(const World& world, const Machine& machine, Index joint) {
 /// q̇ of a hinge or a slide now, rad/s or m/s.
 template <class World>
 double rate_of(const World& world, const Machine& machine, Index joint) {
-  const model::Axis& axis = inner::axis_of(machine, joint, "rate_of");
+  const model::Axis& axis = inner::axis_of(world, machine, joint, "rate_of");
   return axis.sign * inner::rate_between(world, axis.kind, axis.a, axis.b);
 }
 
 /// Pushes a hinge or a slide with `force` (N·m or N) to larger q in the next step, as a motor between its two bodies.
 template <class Loop>
 void push_joint(Loop& loop, const Machine& machine, Index joint, double force) {
-  const model::Axis& axis = inner::axis_of(machine, joint, "push_joint");
+  inner::expect_number(std::isfinite(force), "push_joint: force", force, "must be finite");
+  const model::Axis& axis = inner::axis_of(loop.world(), machine, joint, "push_joint");
   inner::push_between(loop.world(), axis.kind, axis.a, axis.b, axis.sign * force);
 }
 

@@ -39,7 +39,7 @@ template <class Item, class F>
 void each_pair(Item& item, F&& f) {
   if constexpr (HasParts<Item>) {
     for (auto& part : item.parts)
-      if (part.is_used()) f(part.a, part.b);
+      if (part.is_given()) f(part.a, part.b);
   } else if constexpr (HasEnds<Item>) {
     f(item.a, item.b);
   }

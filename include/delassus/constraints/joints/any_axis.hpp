@@ -13,6 +13,8 @@ enum class AxisKind { turn, slide, precession, nutation, spin, length };
 
 namespace inner {
 
+inline bool is_axis_kind(AxisKind kind) { return kind >= AxisKind::turn && kind <= AxisKind::length; }
+
 /// f.operator()<C>() with the coordinate C of that kind.
 template <class F>
 decltype(auto) with_axis(AxisKind kind, F&& f) {

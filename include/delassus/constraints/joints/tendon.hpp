@@ -17,7 +17,9 @@
 
 namespace delassus {
 
-/// The share of one coordinate in the length of a tendon. One that is not given has none.
+/// The share of one coordinate in the length of a tendon. It may be 0 for a while: the turns are counted all
+/// the same, and the tendon goes when a body of the part is removed. A part that names no body and has none
+/// is not there.
 struct TendonPart {
   Anchor a{}, b{};                 ///< the ends of the axis, whose z axes it is; of a length the two points
   double coefficient = 0;          ///< of the coordinate in the length
@@ -25,6 +27,7 @@ struct TendonPart {
   double position = 0;             ///< the coordinate at the start of the last step, rad over all turns or m
 
   bool is_used() const { return coefficient != 0; }
+  bool is_given() const { return is_used() || a.owner != 0 || b.owner != 0; }
 };
 
 namespace inner {
@@ -42,8 +45,11 @@ struct OfParts {
                     part.coefficient, "must be finite");
       expect_number(std::isfinite(part.position), (std::string(what) + ": position").c_str(), part.position,
                     "must be finite");
-      if (!part.is_used()) continue;
-      any = true;
+      if (!part.is_given()) continue;
+      any = any || part.is_used();
+      DELASSUS_EXPECT(is_axis_kind(part.kind), std::string(what) + ": kind " +
+                                                   std::to_string(int(part.kind)) +
+                                                   " of a part is no AxisKind; take one of its names");
       with_axis(part.kind, [&]<class C>() { C::check(part, what); });
     }
     DELASSUS_EXPECT(any, std::string(what) + ": no part has a coefficient that is not 0; a tendon needs one");
@@ -58,7 +64,7 @@ struct OfParts {
   }
   static void follow_parts(Parts& parts, const auto& world) {
     for (TendonPart& part : parts)
-      if (part.is_used()) part.position = axis_value(part.kind, {part.a, part.b, world}, part.position);
+      if (part.is_given()) part.position = axis_value(part.kind, {part.a, part.b, world}, part.position);
   }
   /// u_k += l̇ in rows k = first … last; returns l.
   static double write(const Parts& parts, const auto& world, auto& row, int first = 0, int last = 0) {

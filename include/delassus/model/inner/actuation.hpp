@@ -1,15 +1,11 @@
-/// One actuator of a machine: what its filter makes of a control, its force, and how it reaches the bodies.
+/// One actuator of a machine: what its filter makes of a control, and its force.
 #pragma once
 
-#include <delassus/constraints/joints/drive.hpp>
-#include <delassus/constraints/joints/spring_damper.hpp>
-#include <delassus/constraints/pool.hpp>
 #include <delassus/core/cmath.hpp>
-#include <delassus/model/inner/add_actuators.hpp>
 #include <delassus/model/machine.hpp>
 
 #include <algorithm>
-#include <type_traits>
+#include <string>
 
 namespace delassus::inner {
 
@@ -43,6 +39,30 @@ Pose site_of(const World& world, const model::Actuation& act, double ahead = 0) 
 inline Vec3 gear_of_site(const model::Actuator& a, const Mat3& axes, int first) {
   return axes *
          Vec3(a.gear[std::size_t(first)], a.gear[std::size_t(first) + 1], a.gear[std::size_t(first) + 2]);
+}
+
+/// Refuses what an actuator is told or moves, unless the rule holds.
+inline void expect_of(const model::Actuation& act, bool holds, const char* rule) {
+  if (!holds) refuse("actuate: actuator '" + act.actuator.name + "': " + rule);
+}
+/// Refuses an actuator whose bodies are not in this world.
+template <class World>
+void expect_there(const World& world, const model::Actuation& act, const char* what) {
+  const RigidBodies& set = bodies<RigidBodies>(world);
+  std::string why;
+  if (act.law != model::Actuation::Law::none && act.actuator.transmission == model::Transmission::site)
+    why = what_is_wrong(set, act.site.body);
+  for (const TendonPart& part : act.parts)
+    if (why.empty()) why = what_is_wrong(set, part.a, part.b);
+  if (!why.empty()) refuse(std::string(what) + ": actuator '" + act.actuator.name + "': " + why);
+}
+
+/// Counts turns on, from the last step to this one.
+template <class World>
+void follow(const World& world, model::Actuation& act) {
+  if (act.actuator.bias[1] == 0) return;
+  for (TendonPart& part : act.parts)
+    part.position = axis_value(part.kind, {part.a, part.b, world}, part.position);
 }
 
 struct LengthAndRate {
@@ -79,77 +99,6 @@ double force_of(const World& world, const model::Actuation& act, double control,
     force += a.bias[1] * (length + ahead * rate) + a.bias[2] * rate;
   }
   return clamped_force(a, force);
-}
-
-/// Pushes with `force` before the gear, halfway through a step of h.
-template <class Loop>
-void push_by(Loop& loop, const model::Actuation& act, double force, double h) {
-  const model::Actuator& a = act.actuator;
-  if (force == 0) return;
-  if (a.transmission == model::Transmission::site) {
-    RigidBodies& set = bodies<RigidBodies>(loop.world());
-    const Pose site = site_of(loop.world(), act, h / 2);
-    const Vec3 pull = force * gear_of_site(a, site.rotation, 0);
-    const Vec3 arm = site.position - set.position(act.site.body) - h / 2 * set.velocity(act.site.body);
-    set.apply_force(act.site.body, pull);
-    set.apply_torque(act.site.body, force * gear_of_site(a, site.rotation, 3) + cross(arm, pull));
-    return;
-  }
-  for (const TendonPart& part : act.parts)
-    push_between(loop.world(), part.kind, part.a, part.b, part.coefficient * a.gear[0] * force, h / 2);
-}
-
-/// f(item) of the actuator's constraint of this law; nothing where the loop does not name the law.
-template <class Law, class Loop, class F>
-void with_item(Loop& loop, const model::Actuation& act, F&& f) {
-  if constexpr (!std::is_void_v<typename Loop::Laws::template law_of<typename Law::Item>::type>) {
-    const model::ConstraintNumber& number = act.constraint;
-    f(loop.item(ConstraintHandle<Law>{number.index, number.generation, number.owner}));
-  }
-}
-template <template <int> class Law, int n = 1, class Loop, class F>
-void with_tendon_item(Loop& loop, const model::Actuation& act, F&& f) {
-  if constexpr (n <= most_tendon_parts) {
-    if (act.size == n)
-      with_item<Law<n>>(loop, act, f);
-    else
-      with_tendon_item<Law, n + 1>(loop, act, f);
-  }
-}
-
-/// f(item) of a spring's rest, or of a motor's target and speed.
-template <class Loop, class Spring, class Motor>
-void with_law(Loop& loop, const model::Actuation& act, const Spring& spring, const Motor& motor) {
-  const bool is_spring = act.law == model::Actuation::Law::spring;
-  if (act.is_tendon && is_spring) return with_tendon_item<Tendon>(loop, act, spring);
-  if (act.is_tendon) return with_tendon_item<TendonMotor>(loop, act, motor);
-  with_axis(act.parts[0].kind, [&]<class C>() {
-    if (is_spring)
-      with_item<SpringDamper<C>>(loop, act, spring);
-    else
-      with_item<Drive<C>>(loop, act, motor);
-  });
-}
-
-/// The force of a control for a step of h, where a law gives what depends on length and rate:
-///
-///   gear (gain u + b₀) − k x − c ẋ,   x = offset + Σ coefficient · coordinate, before the gear.
-template <class Loop>
-void apply(Loop& loop, const model::Actuation& act, double control, double h) {
-  using Law = model::Actuation::Law;
-  const model::Actuator& a = act.actuator;
-  if (act.law == Law::force) return push_by(loop, act, force_of(loop.world(), act, control, h / 2), h);
-  // A cap about its mean, which is a force of its own.
-  const double mean = act.law == Law::motor ? (a.force_lower + a.force_upper) / 2 : 0;
-  const double drive = a.gain * control + a.bias[0] - mean, stiffness = stiffness_of(a),
-               damping = damping_of(a);
-  const double side = act.is_tendon ? 1 : act.parts[0].coefficient;  // ±1: to the coordinate of a joint
-  const double rest = side * (stiffness > 0 ? a.gear[0] * drive / stiffness - act.offset : 0);
-  const double speed = side * (stiffness > 0 ? 0 : a.gear[0] * drive / damping);
-  with_law(
-      loop, act, [&](auto& item) { item.rest = rest; },
-      [&](auto& item) { item.target = rest, item.speed = speed; });
-  push_by(loop, act, act.law == Law::spring && !(stiffness > 0) ? drive : mean, h);
 }
 
 }  // namespace delassus::inner

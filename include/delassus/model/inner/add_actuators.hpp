@@ -94,6 +94,7 @@ void add_actuators(Builder& builder) {
   for (const model::Actuator& actuator : model.actuators) {
     model::Actuation& act = machine.actuators.emplace_back();
     act.actuator = actuator;
+    builder.speak_of("actuator", actuator.name);
     if (builder.leave_out().actuators) continue;
     if (actuator.transmission == model::Transmission::site) {
       const model::Site& site = model.sites[std::size_t(actuator.target)];

@@ -1,4 +1,4 @@
-/// Limits, springs, dry friction and couplings of the tendons of a model.
+/// Limits, springs and dry friction of the tendons of a model.
 #pragma once
 
 #include <delassus/constraints/joints/limit.hpp>
@@ -38,6 +38,7 @@ void add_string(Builder& builder, const model::Tendon& tendon, const TendonParts
 template <class Builder>
 void add_tendon(Builder& builder, const model::Tendon& tendon) {
   const LeaveOut& leave_out = builder.leave_out();
+  builder.speak_of("tendon", tendon.name);
   const double stiffness = leave_out.springs ? 0 : tendon.stiffness,
                damping = leave_out.damping ? 0 : tendon.damping;
   const bool acts =
@@ -70,36 +71,6 @@ void add_tendon(Builder& builder, const model::Tendon& tendon) {
 template <class Builder>
 void add_tendons(Builder& builder) {
   for (const model::Tendon& tendon : builder.model().tendons) add_tendon(builder, tendon);
-}
-
-/// A coupling of two lengths, or of two joints that `Coupling` does not take: past − c₁ · other's past = c₀.
-template <class Builder>
-void couple_lengths(Builder& builder, const model::Coupling& coupling) {
-  const auto parts_of = [&](Index k) {
-    return coupling.of_tendons ? tendon_parts(builder, builder.model().tendons[std::size_t(k)])
-                               : joint_parts(builder, k, 1);
-  };
-  // The length where the tree is as described, of which `past` counts.
-  const auto reference = [&](Index k) {
-    const TendonParts sum = parts_of(k);
-    double length = sum.offset;
-    for (const TendonPart& part : sum.parts)
-      length += part.coefficient *
-                (part.kind == AxisKind::length ? builder.distance(part.a, part.b) : part.position);
-    return length;
-  };
-  TendonParts sum = parts_of(coupling.joint);
-  double rest = reference(coupling.joint) + coupling.coefficients[0];
-  if (coupling.other >= 0) {
-    sum.add(parts_of(coupling.other), -coupling.coefficients[1]);
-    rest -= coupling.coefficients[1] * reference(coupling.other);
-  }
-  if (sum.parts.empty())
-    return builder.leave("coupling '" + coupling.name + "' does not act: nothing moves what it couples");
-  if (int(sum.parts.size()) > most_tendon_parts)
-    return builder.leave("coupling '" + coupling.name + "' does not act: it has more than " +
-                         std::to_string(most_tendon_parts) + " parts");
-  emit_tendon<Tendon>(builder, "Tendon", sum, [&](auto& item) { item.rest = rest - sum.offset; });
 }
 
 }  // namespace delassus::inner
