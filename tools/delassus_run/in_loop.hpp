@@ -36,9 +36,9 @@ template <class Loop>
 class InLoop final : public Motion {
  public:
   template <class... Parts>
-  explicit InLoop(const Model& model, const Pose& pose, Base base, Parts... parts) : loop_(World{RigidBodies{}}, std::move(parts)...) {
+  explicit InLoop(const Model& model, const Pose& pose, Base base, bool has_one_friction, Parts... parts) : loop_(World{RigidBodies{}}, std::move(parts)...) {
     set().gravity = model.gravity;
-    machine = add(loop_, model, pose, base);
+    machine = add(loop_, model, pose, base, LeaveOut{.surfaces = has_one_friction});
     for (const model::Body& body : model.bodies) links_.push_back(body.name);
   }
 
@@ -93,15 +93,18 @@ template <class Laws, class... Parts>
 std::unique_ptr<Motion> in_loop(const Model& model, const Pose& pose, Base base, const Asked& asked, Laws laws, Parts... parts) {
   const auto make = [&](auto... all) {
     using Loop = decltype(AnimationLoop{World{RigidBodies{}}, all...});
-    return std::make_unique<InLoop<Loop>>(model, pose, base, std::move(all)...);
+    return std::make_unique<InLoop<Loop>>(model, pose, base, asked.friction >= 0, std::move(all)...);
   };
   return make(std::move(laws), WithFilter{WithCompounds{NativeCollision{}}}, DirectGaussSeidel{.tolerance = asked.tolerance},
               AuditWhereAsked{.audit = {}, .is_asked = asked.audits}, std::move(parts)...);
 }
 
+/// Of contacts with what has no surface of its own.
+inline double friction_of(const Asked& asked) { return asked.friction >= 0 ? asked.friction : usual_friction; }
+
 /// Every law that a machine of a file may need.
 inline auto every_law(const Asked& asked) {
-  return Constraints{Contact{Coulomb{.friction = asked.friction}}, Hinge{}, Slider{}, BallJoint{}, Weld{}, SerialJoint<0, 2>{}, SerialJoint<0, 3>{},
+  return Constraints{Contact{Coulomb{.friction = friction_of(asked)}}, Hinge{}, Slider{}, BallJoint{}, Weld{}, SerialJoint<0, 2>{}, SerialJoint<0, 3>{},
                      SerialJoint<1, 1>{}, SerialJoint<2, 0>{}, SerialJoint<2, 1>{}, SerialJoint<3, 0>{}, Limit<Turn>{}, Limit<Slide>{},
                      Limit<Precession>{}, Limit<Nutation>{}, Limit<Spin>{}, Limit<Length>{}, SpringDamper<Turn>{}, SpringDamper<Slide>{},
                      SpringDamper<Precession>{}, SpringDamper<Nutation>{}, SpringDamper<Spin>{}, SpringDamper<Length>{}, RotorInertia<Turn>{},
@@ -113,7 +116,7 @@ inline auto every_law(const Asked& asked) {
 }
 /// Those of links with one axis each, which most robots have.
 inline auto laws_of_single_axes(const Asked& asked) {
-  return Constraints{Contact{Coulomb{.friction = asked.friction}}, Hinge{}, Slider{}, Limit<Turn>{}, Limit<Slide>{}, SpringDamper<Turn>{},
+  return Constraints{Contact{Coulomb{.friction = friction_of(asked)}}, Hinge{}, Slider{}, Limit<Turn>{}, Limit<Slide>{}, SpringDamper<Turn>{},
                      SpringDamper<Slide>{}, RotorInertia<Turn>{}, RotorInertia<Slide>{}, Motor<Turn>{}, Motor<Slide>{}, Drive<Turn>{}, Drive<Slide>{}};
 }
 

@@ -21,12 +21,16 @@ using namespace delassus;
 /// Who makes a step.
 enum class Integration { euler, midpoint };
 
+/// Of contacts whose shapes say none.
+inline constexpr double usual_friction = 0.8;
+
 /// Which loop, and its numbers.
 struct Asked {
   Integration integration = Integration::euler;
   double accuracy = 0;  ///< of `ErrorControlled`; 0: the steps are as the caller says
   bool audits = false;
-  double tolerance = 1e-6, friction = 0.8;
+  double tolerance = 1e-6;
+  double friction = -1;  ///< of all contacts; negative: as the shapes say
   double longest_step = 0.1;  ///< that the caller makes, s
 };
 

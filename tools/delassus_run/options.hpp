@@ -17,7 +17,7 @@ namespace delassus_run {
 struct Options {
   std::vector<std::string> models, packages;
   std::string out = "out/run", key, meshes, control;
-  double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = 0.8, budget = 1e-3, frames = 30;
+  double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = -1, budget = 1e-3, frames = 30;
   Base base = Base::as_file;
   Integration integration = Integration::euler;
   bool has_ground = false, lists_all = false, is_strict = false, is_quiet = false, audits = false, studies = false, writes_vtk = false, pushes_apart = false;
@@ -56,7 +56,7 @@ inline void describe(CLI::App& app, Options& options) {
       ->excludes(step);
   app.add_option("--integrator", options.integration, "euler or midpoint, of second order; --accuracy takes midpoint")->transform(CLI::CheckedTransformer(integrations));
   app.add_option("--tolerance", options.tolerance, "of the solver, a share of the speeds; 1e-6, or what the accuracy takes")->check(number_in(1e-15, 1, "a tolerance from 1e-15 to 1"));
-  app.add_option("--friction", options.friction, "of all contacts")->check(number_in(0, 1e6, "a coefficient from 0 to 1e6"))->capture_default_str();
+  app.add_option("--friction", options.friction, "of all contacts; else what the file says, and 0.8 where it says nothing")->check(number_in(0, 1e6, "a coefficient from 0 to 1e6"));
   app.add_option("--base", options.base, "free or fixed: whether something holds the root; as the file says if not said")->transform(CLI::CheckedTransformer(bases));
   app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
   app.add_flag("--push-apart", options.pushes_apart, "links of one tree collide even where they are in each other at the start");

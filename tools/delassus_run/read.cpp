@@ -59,7 +59,9 @@ Model read(const std::string& path, const Options& options) {
   UrdfOptions words{.strict = options.is_strict, .meshes = options.meshes};
   for (const std::string& package : options.packages)
     words.packages[package.substr(0, package.find('='))] = package.substr(package.find('=') + 1);
-  return read_urdf(path, words);
+  Model model = read_urdf(path, words);
+  for (model::Geometry& geometry : model.geometries) geometry.friction = usual_friction;  // it says none
+  return model;
 }
 
 }  // namespace delassus_run

@@ -77,7 +77,7 @@ std::string words_for(const StudyRun& run, const std::string& file, const Option
   if (options.base != Base::as_file) words += options.base == Base::free ? " --base free" : " --base fixed";
   if (options.has_ground) words += " --ground";
   if (!options.key.empty()) words += " --key " + options.key;
-  if (options.friction != 0.8) words += " --friction " + number(options.friction);
+  if (options.friction >= 0) words += " --friction " + number(options.friction);
   return words;
 }
 
