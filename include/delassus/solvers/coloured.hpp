@@ -6,11 +6,12 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/solvers/inner/colouring.hpp>
+#include <delassus/solvers/inner/lane_loops.hpp>
 #include <delassus/solvers/inner/pieces.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
-#include <cstddef>
+#include <type_traits>
 
 namespace delassus {
 namespace inner {
@@ -20,6 +21,7 @@ struct ColouredSpace {
   Space solver;
   Colouring<T> colours;
   Pieces<T> pieces;
+  std::conditional_t<std::is_same_v<T, double>, PackedContacts, NothingPacked> packed;
 
   void reset(Index rows) { reset_if_it_can(solver, rows); }
 };
@@ -30,8 +32,13 @@ struct ColouredSpace {
 /// colour act on the same moving body. So several threads sweep a colour at once (`Threads`), with the same
 /// bits as one.
 ///
+/// Contacts of a colour by `Coulomb` in double are swept by as many at a time as the vector unit takes: those
+/// of the loop's first such law. A solve copies their rows of W for that. Other laws are visited item by
+/// item.
+///
 /// The sums of a sweep have another order than without it, and so does the sweep: another solution within the
-/// tolerance, after more or fewer sweeps. Small islands, those under a deadline and those of a W without
+/// tolerance, after more or fewer sweeps. Its bits depend on the vector unit that the program is compiled for
+/// (`-march`), not on the number of threads. Small islands, those under a deadline and those of a W without
 /// blocks (`MatrixFreeCompliance`) are swept in their own order.
 template <class Solver = inner::Absent>
 struct Coloured {
@@ -49,10 +56,17 @@ struct Coloured {
   template <class T, class Space>
   SolveReport solve(Island<T>& problem, Space& work) const {
     // An island may be solved again, after bounces were taken away.
-    if (problem.row_count() >= least_rows && !problem.timer() && !problem.has_own_passes() &&
-        work.colours.make(problem.begin(), problem.end()))
-      problem.pass_by(work.colours.spans().data(), int(work.colours.spans().size()), work.pieces);
-    return solver.solve(problem, work.solver);
+    if (!problem.has_own_passes() && problem.row_count() >= least_rows && !problem.timer() &&
+        work.colours.make(problem.begin(), problem.end())) {
+      Array<Span<T>>& spans = work.colours.spans();
+      work.packed.take(spans);
+      problem.pass_by(spans.data(), int(spans.size()), work.pieces);
+    }
+    if (!problem.has_own_passes()) return solver.solve(problem, work.solver);
+    work.packed.fill(problem.crew());
+    const SolveReport report = solver.solve(problem, work.solver);
+    work.packed.give_back();
+    return report;
   }
 };
 

@@ -45,7 +45,7 @@ struct PoolView : RowView<T> {
   void* memory = nullptr;         ///< what the law keeps of each item
 };
 
-/// Some items of a pool, ascending.
+/// Some items of a pool: ascending, or in an order by which the last is not `count` − 1 behind the first.
 template <class T>
 struct Span {
   const PoolView<T>* pool;
@@ -91,6 +91,7 @@ struct LawTable {
   void (*add_share)(const PoolView<T>&, Index i, const T* u, const T* lambda, MeasureSums&);
   /// μ of a round cone; null where the law is none.
   double (*friction)(const PoolView<T>&, Index i);
+  bool is_coulomb;  ///< `Coulomb` answers for each item from its own memory, whatever is around it
 };
 
 }  // namespace delassus

@@ -8,8 +8,20 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace delassus::inner {
+
+/// So many items of a colour one thread sweeps at a time: some microseconds.
+inline constexpr Index items_of_piece = 64;
+
+/// W between the items of the pool; null where they do not meet.
+template <class T>
+const BlockRowsView<T>* own_blocks(const PoolView<T>& pool) {
+  for (int b = 0; b < pool.block_rows; ++b)
+    if (pool.blocks[b].lambda == pool.lambda) return pool.blocks + b;
+  return nullptr;
+}
 
 /// Each span of a pool becomes a span for each colour, pool by pool. Greedy: each item in order takes the
 /// first colour that none of its neighbours in the pool has, so that it depends on the island alone. Up to 64
@@ -30,7 +42,8 @@ class Colouring {
     for (const Span<T>* span = first; span != last; ++span) add(*span);
     return true;
   }
-  const Array<Span<T>>& spans() const { return spans_; }
+  /// Of each pool one after the other, and their items too.
+  Array<Span<T>>& spans() { return spans_; }
 
  private:
   static constexpr int most = 64;
@@ -53,7 +66,7 @@ class Colouring {
     sort(span, counts);
   }
 
-  /// By colour, ascending in each.
+  /// By colour, ascending but for the order inside a piece.
   void sort(const Span<T>& span, std::size_t* counts) {
     const std::size_t first = items_.size();
     items_.resize(first + std::size_t(span.count));
@@ -67,13 +80,26 @@ class Colouring {
     }
     for (const Index i : span) items_[next[colour_[std::size_t(i)]]++] = i;
     for (const Index i : span) colour_[std::size_t(i)] = none;
+    at = first;
+    for (int c = 0; c < most; at += counts[c], ++c) {
+      Index* const items = items_.data() + at;
+      const Index count = Index(counts[c]);
+      for (Index k = 0; k < count; k += items_of_piece)
+        sort_by_neighbours(span, items + k, std::min(count - k, items_of_piece));
+      if (count > 2 && items[count - 1] - items[0] == count - 1) std::swap(items[0], items[1]);  // see `Span`
+    }
   }
-
-  /// W between the items of the pool; null where they do not meet.
-  static const BlockRowsView<T>* own_blocks(const PoolView<T>& pool) {
-    for (int b = 0; b < pool.block_rows; ++b)
-      if (pool.blocks[b].lambda == pool.lambda) return pool.blocks + b;
-    return nullptr;
+  /// Those with many neighbours first: lanes sweep some that follow each other in the time of the slowest.
+  static void sort_by_neighbours(const Span<T>& span, Index* items, Index count) {
+    const BlockRowsView<T>* const own = own_blocks(*span.pool);
+    if (!own) return;
+    const auto neighbours = [own](Index i) { return own->start[i + 1] - own->start[i]; };
+    for (Index k = 1; k < count; ++k) {
+      const Index i = items[k];
+      Index to = k;
+      for (; to > 0 && neighbours(items[to - 1]) < neighbours(i); --to) items[to] = items[to - 1];
+      items[to] = i;
+    }
   }
 
   static constexpr std::uint8_t none = 255;

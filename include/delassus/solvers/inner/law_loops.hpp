@@ -4,6 +4,7 @@
 #include <delassus/constraints/law.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/fwd.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/free_velocity.hpp>
 #include <delassus/rows/local.hpp>
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
 
 namespace delassus::inner {
 
@@ -89,6 +91,16 @@ constexpr bool is_round_cone() {
     return false;
   else
     return kinds[0] == RowKind::lower && kinds[1] == RowKind::friction && kinds[2] == RowKind::friction;
+}
+
+/// Whether `Coulomb` itself answers, from its memory and with what it makes of cones: who is around it says nothing of that.
+template <class Law>
+constexpr bool is_answered_by_coulomb() {
+  constexpr unsigned answers = refine::prepare | refine::clamp | refine::natural_map | refine::natural_squares;
+  if constexpr (std::is_same_v<Law, Coulomb>) return true;
+  else if constexpr (requires { typename Law::wraps; } && (declared_refinements<Law> & answers) == 0)
+    return is_answered_by_coulomb<typename Law::wraps>();
+  else return false;
 }
 
 // What a visit does is inlined by order: whether compilers do it by themselves depends on what else a program holds, and one
@@ -195,7 +207,7 @@ struct LawLoops {
   }
 
   static constexpr LawTable<T> make_table() {
-    LawTable<T> out{kinds.data(), prepare, sweep, project_once, measure, extrapolate, nullptr, changed, velocity, add_share, nullptr};
+    LawTable<T> out{kinds.data(), prepare, sweep, project_once, measure, extrapolate, nullptr, changed, velocity, add_share, nullptr, is_answered_by_coulomb<Law>()};
     if constexpr (refines<Law>(refine::clamp)) out.clamp = clamp;
     if constexpr (is_round_cone<Law>()) out.friction = friction;
     return out;

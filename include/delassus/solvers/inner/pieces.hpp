@@ -4,12 +4,15 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/crew.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/solvers/inner/colouring.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/law_table.hpp>
 #include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <thread>
 
 namespace delassus::inner {
 
@@ -34,8 +37,6 @@ class Pieces : public Passes<T> {
   Pieces() : Passes<T>{sweep, measure, extrapolate} {}
 
  private:
-  static constexpr Index items = 32;  ///< of a piece: some microseconds
-
   static void sweep(Passes<T>* self, const Island<T>& island, const SweepRule& rule, const T* x,
                     Sweep<T>& all) {
     Pieces& own = *static_cast<Pieces*>(self);
@@ -65,20 +66,34 @@ class Pieces : public Passes<T> {
     const Sums start = all;
     Index row = 0;
     for (const Span<T>& span : island) {
-      const Index count = (span.count + items - 1) / items, R = span.pool->rows;
+      const Index count = (span.count + items_of_piece - 1) / items_of_piece, R = span.pool->rows;
       sums.assign(std::size_t(count), start);
       const auto visit = [&](Index k) {
-        const Index at = k * items;
-        const Span<T> piece{span.pool, span.items + at, std::min(span.count - at, items)};
+        const Index at = k * items_of_piece;
+        const Span<T> piece{span.pool, span.items + at, std::min(span.count - at, items_of_piece)};
         f(piece, row + at * R, sums[std::size_t(k)]);
       };
       if (Crew* const crew = island.crew())
-        crew->run(count, visit);
+        from_both_ends(*crew, count, visit);
       else
         for (Index k = 0; k < count; ++k) visit(k);
       for (const Sums& one : sums) add_sums(all, one);
       row += span.count * R;
     }
+  }
+
+  /// f(k) for all k below `count`, from the first on by the crew's leader, from the last on by the others.
+  /// Pieces of two colours that lie near each other meet, and impulses that the same thread wrote are near to
+  /// it.
+  template <class F>
+  static void from_both_ends(Crew& crew, Index count, const F& f) {
+    Index led = 0;
+    alignas(64) std::atomic<Index> helped{0};
+    const std::thread::id leader = std::this_thread::get_id();
+    crew.run(count, [&](Index) {
+      f(std::this_thread::get_id() == leader ? led++
+                                             : count - 1 - helped.fetch_add(1, std::memory_order_relaxed));
+    });
   }
 
   Array<Sweep<T>> sweeps_;
