@@ -32,8 +32,8 @@ class Crew {
   /// The helpers go.
   void dismiss() { is_dismissed_.store(true, std::memory_order_release); }
 
-  /// f(task) for each task in [0, tasks); the leader's. Pre: tasks < 2²⁰. Throws what a task threw, the first of
-  /// them, when all have ended.
+  /// f(task) for each task in [0, tasks); the leader's. Pre: tasks < 2²⁰. Throws what a task threw, the first
+  /// of them, when all have ended.
   template <class F>
   void run(Index tasks, const F& f) {
     if (tasks <= 1) {
