@@ -140,9 +140,9 @@ class CollisionEngine {
   void add_jobs_of_impacts(inner::Slice<const Collider> colliders, const Filter& filter) {
     const std::size_t known = jobs_.size();
     const auto place_of = [&](std::uint32_t key) {
-      return Index(
-          std::find_if(colliders.begin(), colliders.end(), [&](const Collider& c) { return c.key == key; }) -
-          colliders.begin());
+      Index i = 0;
+      while (i < Index(colliders.size()) && colliders[i].key != key) ++i;
+      return i;
     };
     slots_.each([&](const RestingPair& m) {
       if (m.is_plain || !m.impact.is_there) return;

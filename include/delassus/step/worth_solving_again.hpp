@@ -65,11 +65,12 @@ bool is_worth_solving_again(auto& step) {
   const auto& book = step.contact_cache;
   Index first[World::set_count + 1] = {};
   step.world().each([&](const auto& set, auto s) { first[s + 1] = first[s] + set.blocks(); });
-  return std::any_of(book.missed.begin(), book.missed.end(), [&](const ContactPoint& p) {
+  for (const ContactPoint& p : book.missed) {
     const bool is_large = rows_about(step.islands, step.arrays.all(), first, book.anchor_of(p.a), book.anchor_of(p.b)) > small_island;
     if (is_found && !is_large) return true;
-    return book.overlap_of(p, step.h) > (is_large ? shallow_share : margin_share);
-  });
+    if (book.overlap_of(p, step.h) > (is_large ? shallow_share : margin_share)) return true;
+  }
+  return false;
 }
 
 }  // namespace delassus::inner

@@ -96,9 +96,10 @@ class PairWorker {
     for (const bool is_a : {true, false}) {
       if (!scene.flies_by[is_a ? job.a : job.b]) continue;
       const HeldCore core{job.pair, is_a};
-      if (std::any_of(cores.begin(), cores.end(),
-                      [&](const HeldCore& c) { return c.pair == core.pair && c.is_a == is_a; }))
-        continue;
+      bool is_known = false;
+      for (const HeldCore& known : cores)
+        is_known = is_known || (known.pair == core.pair && known.is_a == core.is_a);
+      if (is_known) continue;
       if (hold_core(job, a, b, is_a, scene.h, out)) cores.push_back(core);
     }
   }
