@@ -5,18 +5,7 @@
 #include <delassus/step/in_parallel.hpp>
 
 #include "allocation_scenes.hpp"
-
-namespace {
-
-struct InTurns : InParallel {
-  Index workers() const { return 3; }
-  template <class F>
-  void run(Index tasks, F&& f) const {
-    for (Index task = 0; task < tasks; ++task) f(task, task % 3);
-  }
-};
-
-}  // namespace
+#include "in_turns.hpp"
 
 TEST_CASE("a warm step of ten stacks by three workers allocates nothing") {
   AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}, InTurns{}};

@@ -4,8 +4,10 @@
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/compliance/inner/assembled_rows.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/pack.hpp>
 #include <delassus/rows/block_list.hpp>
 #include <delassus/rows/block_row.hpp>
+#include <delassus/rows/shared_set.hpp>
 #include <delassus/rows/show_rows.hpp>
 
 #include <algorithm>
@@ -57,15 +59,19 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     for_each_index<pools>([&](auto a) __attribute__((always_inline)) { Built::template build_pool<R_of<a>>(own_, a, nullptr); });
   }
 
-  /// The same by several workers; `parts` is room for what each makes.
+  /// The same by several workers; `parts` is room for what each makes, `sets` what they keep of the sets of
+  /// bodies.
   template <class Parts, class E>
-  void build(const auto& world, Rows& rows, Parts& parts, const E& execution) {
+  void build(const auto& world, Rows& rows, Parts& parts, auto& sets, const E& execution) {
     world.each([&](const auto& set, auto s) __attribute__((always_inline)) { invert(set, rows, s); });
-    prepare(world, rows);
-    for_each_index<pools>([&](auto a) {
-      if (own_.is_coupled(a)) Built::template build_pool<R_of<a>>(own_, a, nullptr);
-      else parts.template build<R_of<a>>(own_, a, execution);
+    show(rows);
+    world.each([&](const auto& set, auto s) {
+      if constexpr (inner::SharedSet<std::remove_cvref_t<decltype(set)>>)
+        own_.prepare(set, s, inner::part<s>(sets), execution);
+      else
+        own_.prepare(set, s);
     });
+    for_each_index<pools>([&](auto a) { parts.template build<R_of<a>>(own_, a, execution); });
   }
   /// Each island has rows and blocks of its own: several may be solved at once.
   static constexpr bool islands_are_apart = true;
@@ -211,10 +217,13 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
       inner::apply_inverse_to_all(set, rows, s);
     }
   }
-  [[gnu::always_inline]] void prepare(const auto& world, Rows& rows) {
+  [[gnu::always_inline]] void show(Rows& rows) {
     for_each_index<pools>([&](auto p) __attribute__((always_inline)) {
       inner::show_rows(rows.template pool<p>(), p, own_.views[p], own_.sets(p));
     });
+  }
+  [[gnu::always_inline]] void prepare(const auto& world, Rows& rows) {
+    show(rows);
     world.each([&](const auto& set, auto s) __attribute__((always_inline)) { own_.prepare(set, s); });
   }
 

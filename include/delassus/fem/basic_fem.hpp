@@ -5,6 +5,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/fem/inner/bodies_of_nodes.hpp>
 #include <delassus/fem/inner/elastic_body.hpp>
+#include <delassus/fem/inner/elastic_workers.hpp>
 #include <delassus/fem/soft_body.hpp>
 
 #include <algorithm>
@@ -75,6 +76,18 @@ class BasicFem : public inner::BodiesOfNodes<BasicFem<E, M, T>, inner::PointStor
   void factor(SystemScale scale) {
     scale_ = scale;
     each_body([&](auto& body) { body.factor(scale, x_, mass_, inverse_mass_); });
+  }
+  /// What several workers keep.
+  using Workers = inner::ElasticWorkers<inner::ElasticBody<E, M, T>>;
+  /// The same by several workers, with the same bits.
+  template <class Ex>
+  void factor(SystemScale scale, Workers& by, const Ex& execution) {
+    scale_ = scale;
+    by.sort(body_slots_.active(), execution.workers(),
+            [&](Index k) { return Index(bodies_[k].blocks().size()); });
+    for (const Index k : by.large)
+      bodies_[k].factor(scale, x_, mass_, inverse_mass_, by, by.at(k), execution);
+    by.each_small(execution, [&](Index k) { bodies_[k].factor(scale, x_, mass_, inverse_mass_); });
   }
   /// Elastic forces and A without its factor, for a compliance that has one of its own.
   void assemble(SystemScale scale) {

@@ -3,7 +3,9 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
+#include <delassus/linear/inner/front_solve.hpp>
 #include <delassus/linear/inner/front_triangle.hpp>
+#include <delassus/linear/inner/front_workers.hpp>
 #include <delassus/linear/node_compliance.hpp>
 #include <delassus/math/long_vectors.hpp>
 
@@ -53,77 +55,82 @@ class MultifrontalCholesky {
   /// Makes the factor of A; false when A is not positive definite or not finite: then nothing may be solved.
   bool factor() {
     L_.resize(plan_);
+    const auto part_of = [&](Index s) { return L_.part(plan_, s); };
     for (Index s = 0; s < fronts(); ++s)
-      if (!factor_front(s)) return false;
+      if (!L_.factor_front(plan_, s, diagonal(), below(), part_of, kernel_)) return false;
     return true;
   }
 
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w, T>> x) const {
-    y_.resize(std::size_t(w) * blocks());
-    for (Index i = 0; i < blocks(); ++i) for (int c = 0; c < w; ++c) y_[w * pattern().place(i) + c] = x[i][c];
-    for (Index s = 0; s < fronts(); ++s) forward(s);
-    for (Index s = fronts(); s-- > 0;) backward(s);
-    for (Index i = 0; i < blocks(); ++i) for (int c = 0; c < w; ++c) x[i][c] = y_[w * pattern().place(i) + c];
+    enter(x);
+    gather_.resize(std::size_t(plan_.layout.most_rows));
+    T* const y = y_.data();
+    T* const gather = gather_.data();
+    for (Index s = 0; s < fronts(); ++s) {
+      const Supernode& front = plan_.supernode(s);
+      inner::solve_forward<w, T>(front, columns_of(s), y, gather);
+      inner::add_rows<w>(front, front.width, Index(front.rows.size()), gather + w * front.width, y);
+    }
+    for (Index s = fronts(); s-- > 0;)
+      inner::solve_backward<w, T>(plan_.supernode(s), columns_of(s), y, gather);
+    leave(x);
   }
 
   /// The rows and columns of A⁻¹ of some nodes, each named once: C is (w n) × (w n) by columns. See
   /// `NodeCompliance`.
   void compliance(std::span<const Index> nodes, std::span<T> C) const { compliance_.find(*this, nodes, C); }
 
+  // --- the same by several workers, with the same bits ---
+
+  /// What they keep of one factor, and what each keeps for all factors.
+  using Workers = inner::FrontWorkers<w, T>;
+  using Dense = inner::DenseWorkers<T>;
+
+  /// After `analyse`, and before `factor` and `solve`.
+  void prepare(Workers& by, Dense& dense, Index workers) const {
+    by.analyse(plan_, workers);
+    dense.prepare(workers, plan_.layout.most_rows, std::size_t(plan_.layout.most_rows));
+  }
+  /// E is an `Execution` with as many workers, and so below.
+  template <class E>
+  bool factor(Workers& by, Dense& dense, const E& execution) {
+    return by.factor(plan_, L_, diagonal(), below(), dense, execution);
+  }
+  template <class E>
+  void solve(std::span<Vec<w, T>> x, Workers& by, Dense& dense, const E& execution) const {
+    enter(x);
+    by.solve(plan_, L_, y_.data(), dense, execution);
+    leave(x);
+  }
+  template <class E>
+  void compliance(std::span<const Index> nodes, std::span<T> C, Dense& dense, const E& execution) const {
+    compliance_.find(*this, nodes, C, dense, execution);
+  }
+
   const SupernodalPattern& pattern() const { return plan_.pattern; }
   /// The columns of L of a supernode, with its rows.
   inner::Columns<const T> columns_of(Index s) const { return L_.columns(plan_, s); }
 
  private:
-  template <class U>
-  using Columns = inner::Columns<U>;
-
   Index fronts() const { return plan_.fronts(); }
-
-  bool factor_front(Index s) {
-    const Index height = w * Index(plan_.supernode(s).rows.size()), width = w * plan_.supernode(s).width,
-                below = height - width;
-    const Columns<T> L = L_.columns(plan_, s);
-    L_.open(
-        plan_, s, [&](Index place) -> const Block& { return A_[place]; },
-        [&](Index entry) -> const Block& { return A_[blocks() + entry]; });
-    if (!kernel_.factor(L, height, width)) return false;
-    const Columns<const T> L21{L.at(width, 0), L.stride};
-    kernel_.negated_product(L_.part(plan_, s), L21, L21, below, below, width, true);
-    L_.pass_on(plan_, s);
-    return true;
+  /// A's blocks, of a place and of an entry below the diagonal.
+  auto diagonal() const {
+    return [this](Index place) -> const Block& { return A_[place]; };
+  }
+  auto below() const {
+    return [this](Index entry) -> const Block& { return A_[blocks() + entry]; };
   }
 
-  /// y ← L⁻¹ y, the share of one supernode; rows are gathered so that columns of L are read from end to end.
-  void forward(Index s) const {
-    const Supernode& x = plan_.supernode(s);
-    const Index height = w * Index(x.rows.size()), width = w * x.width;
-    const Columns<const T> L = columns_of(s);
-    gather_.assign(height, T(0));
-    std::copy_n(&y_[w * x.first], width, gather_.begin());
-    for (Index j = 0; j < width; ++j) {
-      const T y = gather_[j] /= *L.at(j, j);
-      add_multiple<T>(-y, L.at(j, j) + 1, gather_.data() + j + 1, height - j - 1);
-    }
-    std::copy_n(gather_.begin(), width, &y_[w * x.first]);
-    for (Index k = x.width; k < Index(x.rows.size()); ++k)
-      for (int c = 0; c < w; ++c) y_[w * x.rows[k] + c] += gather_[w * k + c];
+  /// From the order of the nodes to that of elimination, and back.
+  [[gnu::always_inline]] void enter(std::span<const Vec<w, T>> x) const {
+    y_.resize(std::size_t(w) * blocks());
+    for (Index i = 0; i < blocks(); ++i)
+      for (int c = 0; c < w; ++c) y_[w * pattern().place(i) + c] = x[i][c];
   }
-  /// y ← L⁻ᵀ y.
-  void backward(Index s) const {
-    const Supernode& x = plan_.supernode(s);
-    const Index height = w * Index(x.rows.size());
-    const Columns<const T> L = columns_of(s);
-    gather_.resize(height);
-    for (Index k = 0; k < Index(x.rows.size()); ++k)
-      for (int c = 0; c < w; ++c) gather_[w * k + c] = y_[w * x.rows[k] + c];
-    for (Index j = w * x.width; j-- > 0;) {
-      const Index rest = height - j - 1;
-      const T below = sum_of_products<T>(L.at(j, j) + 1, gather_.data() + j + 1, rest);
-      gather_[j] = (gather_[j] - below) / *L.at(j, j);
-    }
-    std::copy_n(gather_.begin(), w * x.width, &y_[w * x.first]);
+  [[gnu::always_inline]] void leave(std::span<Vec<w, T>> x) const {
+    for (Index i = 0; i < blocks(); ++i)
+      for (int c = 0; c < w; ++c) x[i][c] = y_[w * pattern().place(i) + c];
   }
 
   inner::FrontPlan plan_;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/linear/inner/dense_kernel.hpp>
+#include <delassus/linear/inner/dense_workers.hpp>
 #include <delassus/linear/supernodes.hpp>
 #include <delassus/math/long_vectors.hpp>
 
@@ -31,18 +33,7 @@ class NodeCompliance {
   void find(const auto& factor, std::span<const Index> nodes, std::span<T> C) {
     const SupernodalPattern& pattern = factor.pattern();
     const Index columns = w * Index(nodes.size());
-    find_reach(pattern, nodes);
-    if (y_.size() < std::size_t(columns) * rows_) y_.resize(std::size_t(columns) * rows_);
-    for (const Index s : visited_) {
-      const auto [lo, hi] = wanted_below(pattern.supernodes()[s]);
-      for (Index c = 0; c < w * pattern.supernodes()[s].width; ++c)
-        std::fill_n(line(pattern.supernodes()[s].first, c, columns, lo), hi - lo, T(0));
-    }
-    result_.assign(std::size_t(columns) * columns, T(0));
-    for (Index k = 0; k < Index(nodes.size()); ++k) {
-      const Index place = wanted_[k].first;
-      for (int c = 0; c < w; ++c) *line(place, c, columns, w * k + c) = T(1);
-    }
+    begin(pattern, nodes);
     const inner::Columns<T> minus{result_.data(), std::size_t(columns)};
     for (const Index s : visited_) {
       const Supernode& x = pattern.supernodes()[s];
@@ -51,18 +42,86 @@ class NodeCompliance {
       forward(x, factor.columns_of(s), Y, minus.from(lo, lo), lo, hi - lo, columns);
     }
     for (Index q = 0; q < Index(nodes.size()); ++q)
-      for (Index p = q; p < Index(nodes.size()); ++p) {
-        const inner::Columns<T> from = minus.from(w * p, w * q);
-        const std::size_t first_row = w * wanted_[p].second, first_column = w * wanted_[q].second;
-        for (int c = 0; c < w; ++c)
-          for (int r = p == q ? c : 0; r < w; ++r) {
-            const std::size_t a = first_row + r, b = first_column + c;
-            C[a + b * columns] = C[b + a * columns] = -*from.at(r, c);
-          }
-      }
+      for (Index p = q; p < Index(nodes.size()); ++p) write(p, q, minus.from(w * p, w * q), C, columns);
+  }
+
+  /// The same by several workers, with the same bits. Each makes some columns of Y, then some rows of −C.
+  template <class E>
+  void find(const auto& factor, std::span<const Index> nodes, std::span<T> C, inner::DenseWorkers<T>& dense,
+            const E& execution) {
+    const SupernodalPattern& pattern = factor.pattern();
+    const Index count = Index(nodes.size()), columns = w * count,
+                tasks = inner::tasks_of(count, least_nodes, execution.workers());
+    reach(pattern, nodes);
+    Index below = 0;
+    for (const Index s : visited_) below = std::max(below, w * pattern.supernodes()[s].below());
+    const Index largest = w * inner::range_of(count, tasks - 1, tasks).count();
+    dense.prepare(execution.workers(), columns, std::size_t(largest) * below);
+    result_.resize(std::size_t(columns) * columns);
+    execution.run(tasks, [&](Index task, Index worker) {
+      const inner::Range mine = inner::range_of(count, task, tasks);
+      each_visited(pattern, mine, [&](const Supernode& x, Index, Index, Index first, Index used) {
+        clear_some(x, first, used, columns);
+      });
+      enter(mine.first, mine.last, columns);
+      each_visited(pattern, mine, [&](const Supernode& x, Index s, Index, Index first, Index used) {
+        solve_some(x, factor.columns_of(s), first, used, columns, dense[worker]);
+      });
+    });
+    const inner::Columns<T> minus{result_.data(), std::size_t(columns)};
+    execution.run(tasks, [&](Index task, Index worker) {
+      const inner::Range mine = inner::range_of_triangle(count, task, tasks);
+      for (Index q = 0; q < w * mine.last; ++q)
+        std::fill_n(minus.at(w * mine.first, q), w * mine.count(), T(0));
+      each_visited(pattern, mine, [&](const Supernode& x, Index, Index lo, Index first, Index used) {
+        subtract_some(x, minus, lo, first, used, columns, dense[worker].kernel);
+      });
+      for (Index q = 0; q < mine.last; ++q)
+        for (Index p = std::max(q, mine.first); p < mine.last; ++p)
+          write(p, q, minus.from(w * p, w * q), C, columns);
+    });
   }
 
  private:
+  static constexpr Index least_nodes = 6;  ///< whose columns are worth a task
+
+  /// Room for Y and −C, and Sᵀ in it.
+  [[gnu::always_inline]] void begin(const SupernodalPattern& pattern, std::span<const Index> nodes) {
+    const Index columns = w * Index(nodes.size());
+    reach(pattern, nodes);
+    for (const Index s : visited_) {
+      const auto [lo, hi] = wanted_below(pattern.supernodes()[s]);
+      clear_some(pattern.supernodes()[s], lo, hi - lo, columns);
+    }
+    result_.assign(std::size_t(columns) * columns, T(0));
+    enter(0, Index(nodes.size()), columns);
+  }
+  [[gnu::always_inline]] void reach(const SupernodalPattern& pattern, std::span<const Index> nodes) {
+    find_reach(pattern, nodes);
+    const std::size_t size = std::size_t(w) * nodes.size() * std::size_t(rows_);
+    if (y_.size() < size) y_.resize(size);
+  }
+  /// Y = 0, some columns of a supernode's rows.
+  [[gnu::always_inline]] void clear_some(const Supernode& x, Index first, Index used, Index columns) {
+    for (Index c = 0; c < w * x.width; ++c) std::fill_n(line(x.first, c, columns, first), used, T(0));
+  }
+  /// Y += Sᵀ, the columns of some nodes.
+  [[gnu::always_inline]] void enter(Index first, Index last, Index columns) {
+    for (Index k = first; k < last; ++k) {
+      const Index place = wanted_[k].first;
+      for (int c = 0; c < w; ++c) *line(place, c, columns, w * k + c) = T(1);
+    }
+  }
+  /// Block (p, q) of C in the order of the nodes, and its mirror, p ≥ q in the order of elimination.
+  [[gnu::always_inline]] void write(Index p, Index q, inner::Columns<T> from, std::span<T> C,
+                                    Index columns) const {
+    const std::size_t first_row = w * wanted_[p].second, first_column = w * wanted_[q].second;
+    for (int c = 0; c < w; ++c)
+      for (int r = p == q ? c : 0; r < w; ++r) {
+        const std::size_t a = first_row + r, b = first_column + c;
+        C[a + b * columns] = C[b + a * columns] = -*from.at(r, c);
+      }
+  }
 
   /// Y ← L⁻¹ Y and −C ← −C − Yᵀ Y, the share of one supernode. Y is stored transposed, one column a row of L,
   /// `used` of its columns from `first` on.
@@ -74,6 +133,39 @@ class NodeCompliance {
     kernel_.solve_and_multiply(Y, L, L.from(width, 0), G, minus, used, below, width);
     for (Index i = 0; i < below; ++i)
       add_multiple<T>(1, G.at(0, i), line(x.rows[x.width + i / w], i % w, columns, first), used);
+  }
+
+  /// f(x, its number, lo, first, used) for the supernodes that some of the nodes reach: Y of x has the
+  /// columns from lo on, and `used` of them, from `first` on, are of these nodes.
+  void each_visited(const SupernodalPattern& pattern, inner::Range nodes, const auto& f) const {
+    for (const Index s : visited_) {
+      const Supernode& x = pattern.supernodes()[s];
+      const auto [lo, hi] = wanted_below(x);
+      const Index first = std::max(lo, w * nodes.first), used = std::min(hi, w * nodes.last) - first;
+      if (used > 0) f(x, s, lo, first, used);
+    }
+  }
+  /// `forward` of some columns, without the product.
+  void solve_some(const Supernode& x, inner::Columns<const T> L, Index first, Index used, Index columns,
+                  typename inner::DenseWorkers<T>::Worker& by) {
+    const Index width = w * x.width, below = w * x.below();
+    const inner::Columns<T> Y{line(x.first, 0, columns, first), std::size_t(columns)},
+        G{by.gather.data(), std::size_t(used)};
+    by.kernel.solve_right(Y, L, used, width);
+    if (below == 0) return;
+    by.kernel.negated_product(G, {Y.data, Y.stride}, L.from(width, 0), used, below, width, false);
+    for (Index i = 0; i < below; ++i)
+      add_multiple<T>(1, G.at(0, i), line(x.rows[x.width + i / w], i % w, columns, first), used);
+  }
+  /// −C ← −C − Yᵀ Y, some rows of it.
+  void subtract_some(const Supernode& x, inner::Columns<T> minus, Index lo, Index first, Index used,
+                     Index columns, inner::DenseKernel<T>& kernel) {
+    const std::size_t stride = std::size_t(columns);
+    const inner::Columns<const T> all{line(x.first, 0, columns, lo), stride},
+        mine{line(x.first, 0, columns, first), stride};
+    const Index width = w * x.width;
+    kernel.subtract(minus.from(first, lo), mine, all, used, first - lo, width, false);
+    kernel.subtract(minus.from(first, first), mine, mine, used, used, width, true);
   }
 
   /// The wanted nodes by place, the supernodes above them, and where the rows of those are kept.
@@ -96,7 +188,8 @@ class NodeCompliance {
       for (Index c = 0; c < supernodes[s].width; ++c, rows_ += w) slot_[supernodes[s].first + c] = rows_;
   }
   Index first_wanted(Index place) const {
-    return Index(inner::lower_bound(wanted_.data(), wanted_.data() + wanted_.size(), std::pair<Index, Index>(place, -1)) -
+    return Index(inner::lower_bound(wanted_.data(), wanted_.data() + wanted_.size(),
+                                    std::pair<Index, Index>(place, -1)) -
                  wanted_.begin());
   }
   /// The columns of Y that begin in a supernode or below it: [first, last).

@@ -1,4 +1,4 @@
-/// The stages of a plain step by several workers: rows, W and islands.
+/// The stages of a plain step by several workers: soft bodies, rows, W and islands.
 #pragma once
 
 #include <delassus/collision/inner/pairs_in_parts.hpp>
@@ -11,10 +11,14 @@
 #include <delassus/core/if_it_has.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
+#include <delassus/core/pack.hpp>
 #include <delassus/core/ranges.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/core/wrapping.hpp>
+#include <delassus/rows/shared_set.hpp>
 #include <delassus/solvers/island_problem.hpp>
+#include <delassus/step/correct.hpp>
+#include <delassus/step/free_motion.hpp>
 #include <delassus/step/inner/rows_in_parts.hpp>
 #include <delassus/step/plain_stages.hpp>
 
@@ -42,6 +46,7 @@ struct WorkersKeep<P, true> {
     bool operator<(const Task& o) const { return rows != o.rows ? rows > o.rows : island < o.island; }
   };
 
+  typename kept_of_sets<typename P::World>::type sets;
   RowsInParts<T> rows;
   RowsOfWInParts<T> W;
   OwningArray<typename P::Solver::template Workspace<typename P::Rows>> solvers;  ///< by worker
@@ -49,6 +54,27 @@ struct WorkersKeep<P, true> {
   Crew crew;
   Scratch pairs;  ///< of detection
 };
+
+/// What answers with A⁻¹, see `inverse_of`: workers for a set that they share, where the operator W has no
+/// factors of its own.
+template <class W, class Kept, class E>
+struct InverseInParallel {
+  W& of;
+  Kept& kept;
+  const E& execution;
+
+  template <int s, class Set>
+  decltype(auto) inverse(Set& set, int guess) {
+    if constexpr (requires { of.template inverse<s>(set, guess); })
+      return of.template inverse<s>(set, guess);
+    else if constexpr (SharedSet<Set>)
+      return SetInParallel<Set, E>{set, part<s>(kept), execution};
+    else
+      return (set);
+  }
+};
+template <class W, class Kept, class E>
+InverseInParallel(W&, Kept&, const E&) -> InverseInParallel<W, Kept, E>;
 
 /// Whether islands may be solved at once: W has blocks of its own for each, the solver keeps nothing for all,
 /// and nobody hears of sweeps.
@@ -65,11 +91,12 @@ inline constexpr bool solves_islands_apart =
 /// A policy of role::Execution derives from it and adds `workers()` and `run`, see `Execution`. Then these
 /// parts of a step run on its workers, whatever their number with the same bits:
 ///
-///   detection  contacts of the pairs whose boxes touch, by `NativeCollision` and backends of a kernel
-///   rows       of laws with many items: H and φ
-///   W          its rows, where it is a matrix (`AssembledCompliance`, the default)
-///   islands    each is solved by one worker, the largest first; all sweep a large one together where the
-///   solver is `Coloured`
+///   soft bodies  of finite elements: the elements, the factor of A and what it solves
+///   detection    contacts of the pairs whose boxes touch, by `NativeCollision` and backends of a kernel
+///   rows         of laws with many items: H and φ
+///   W            its rows, where it is a matrix (`AssembledCompliance`, the default)
+///   islands      each is solved by one worker, the largest first; all sweep a large one together where the
+///                solver is `Coloured`
 ///
 /// Parts that another policy of the loop replaces run as that policy does them, as do islands under a
 /// deadline or with a listener that hears each sweep.
@@ -110,12 +137,24 @@ struct InParallel {
       for (std::size_t p = 0; p < laws.size(); ++p)
         kept(step).rows.write(laws[p], step.view, rows[p], step.execution());
     }
+    static void free_motion(auto& step) {
+      inner::InverseInParallel inverse{step.W, kept(step).sets, step.execution()};
+      step.world().each([&](auto& set, auto s) {
+        delassus::free_motion(set, inner::inverse_of<s>(inverse, set, 0), step.integrator(),
+                              inner::part<s>(step.scratch), step.h);
+      });
+    }
+    static void correct(auto& step) {
+      inner::InverseInParallel inverse{step.W, kept(step).sets, step.execution()};
+      delassus::correct(step.world(), step.arrays.all(), inverse, step.scratch, step.islands, step.reports,
+                        step.is_nonfinite);
+    }
     static void build_W(auto& step) {
       constexpr bool can = requires {
-        step.W.build(std::as_const(step).world(), step.rows, kept(step).W, step.execution());
+        step.W.build(std::as_const(step).world(), step.rows, kept(step).W, kept(step).sets, step.execution());
       };
       if constexpr (can)
-        step.W.build(std::as_const(step).world(), step.rows, kept(step).W, step.execution());
+        step.W.build(std::as_const(step).world(), step.rows, kept(step).W, kept(step).sets, step.execution());
       else
         Base::build_W(step);
     }

@@ -38,10 +38,12 @@ class AssembledRows {
   }
   SetBlocksView<T>* sets(int pool) { return sets_.data() + std::size_t(pool) * coupled.size(); }
 
-  template <class Set>
-  void prepare(const Set& set, int s) {
+  /// `by`: what several workers keep of the set, and the execution.
+  template <class Set, class... By>
+  void prepare(const Set& set, int s, By&... by) {
     if (coupled[std::size_t(s)] == HowCoupled::not_at_all) incidence_.find(views.data(), pools_, s, set.blocks());
-    else if constexpr (NodeCompliantSet<Set>) nodal_.prepare(set, views.data(), pools_, s);
+    else if constexpr (NodeCompliantSet<Set>)
+      nodal_.prepare(set, views.data(), pools_, s, by...);
     else if constexpr (may_couple<Set>) columns_.prepare(set, views.data(), pools_, s);
   }
 
@@ -105,7 +107,7 @@ class AssembledRows {
   void add_coupled(BlockMatrix<T>& to, int a, Index i) {
     for (int s = 0; s < int(coupled.size()); ++s) {
       if (coupled[std::size_t(s)] == HowCoupled::nodes)
-        nodal_.each(views.data(), s, a, i, [&](int b, Index j, const T* block) {
+        nodal_.each(views.data(), s, a, i, to.along, to.block, [&](int b, Index j, const T* block) {
           to.template add<height>(a, b, i, j, views[std::size_t(b)].rows, block);
         });
       else if (coupled[std::size_t(s)] == HowCoupled::columns)

@@ -16,12 +16,11 @@ namespace delassus::inner {
 template <class T>
 class RowsOfWInParts {
  public:
-  /// The rows of pool a, `height` an item. W becomes what one worker builds. Pre: no set that the pool acts
-  /// on couples its blocks.
+  /// The rows of pool a, `height` an item. W becomes what one worker builds.
   template <int height, class E>
   void build(AssembledRows<T>& W, int a, const E& execution) {
     const Index items = W.views[std::size_t(a)].items,
-                tasks = tasks_of(items, least_items, execution.workers());
+                tasks = tasks_of(items, W.is_coupled(a) ? least_coupled : least_items, execution.workers());
     if (tasks == 1) return AssembledRows<T>::template build_pool<height>(W, a, nullptr);
     W.matrix.begin_rows(W.views.data(), a);
     const int pools = int(W.views.size());
@@ -39,7 +38,7 @@ class RowsOfWInParts {
   }
 
  private:
-  static constexpr Index least_items = 64;
+  static constexpr Index least_items = 64, least_coupled = 8;  ///< that are worth a task
 
   struct Part {
     BlockMatrix<T> matrix;

@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/inner/body_storage.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/rows/asked_nodes.hpp>
 #include <delassus/rows/body_set.hpp>
 
 #include <span>
@@ -80,6 +81,14 @@ class BodiesOfNodes : public Storage {
   void solve(std::span<Velocity> x) const {
     each_body([&](const auto& body) { body.solve(x); });
   }
+  /// The same by several workers, with the same bits; `by` is what they keep.
+  template <class By, class E>
+  void solve(std::span<Velocity> x, By& by, const E& execution) const {
+    by.sort(body_slots_.active(), execution.workers(),
+            [&](Index k) { return Index(bodies_[k].blocks().size()); });
+    by.each_small(execution, [&](Index k) { bodies_[k].solve(x); });
+    for (const Index k : by.large) bodies_[k].solve(x, by.at(k).factor, by.dense, execution);
+  }
   void add_stiffness_times_velocity(std::span<Velocity> p, double s) const {
     each_body([&](const auto& body) { body.add_stiffness_times_velocity(p, v_, T(s)); });
   }
@@ -93,6 +102,27 @@ class BodiesOfNodes : public Storage {
     touched_.clear();
     for (const Index b : blocks) touched_.push_back(node_[b]);
     bodies_[body_[blocks.front()]].compliance(touched_, C);
+  }
+  /// The same of several bodies by several workers: those of body k are the blocks asked[k], C begins there
+  /// at C + asked[k].C, and the bodies differ.
+  template <class By, class E>
+  void node_compliances(std::span<const Index> blocks, std::span<const AskedNodes> asked, T* C, By& by,
+                        const E& execution) const {
+    by.nodes.clear();
+    for (const Index b : blocks) by.nodes.push_back(node_[b]);
+    const std::span<const Index> nodes(by.nodes);
+    const auto body_of = [&](const AskedNodes& a) { return body_[blocks[a.first]]; };
+    const auto find = [&](const AskedNodes& a, auto&... with) {
+      bodies_[body_of(a)].compliance(nodes.subspan(a.first, a.count),
+                                     std::span<T>(C + a.C, a.size(Set::width)), with...);
+    };
+    by.small.clear();
+    for (Index k = 0; k < Index(asked.size()); ++k)
+      if (!By::is_large(Index(bodies_[body_of(asked[k])].blocks().size())))
+        by.small.push_back(k);
+      else
+        find(asked[k], by.dense, execution);
+    by.each_small(execution, [&](Index k) { find(asked[k]); });
   }
 
  protected:

@@ -19,9 +19,10 @@ struct HeldNodes {
   bool is_factored;
 
   /// x ← A⁻¹ x on the body's blocks; held nodes become zero. A body on which nothing acts is passed over.
-  template <class Matrix, class Velocity>
-  void solve(const Matrix& A, std::span<const Index> blocks, Array<Velocity>& work,
-             std::span<Velocity> x) const {
+  /// `by`: who solves, if not one worker.
+  template <class Matrix, class Velocity, class... By>
+  void solve(const Matrix& A, std::span<const Index> blocks, Array<Velocity>& work, std::span<Velocity> x,
+             By&... by) const {
     bool is_still = true;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       if (is_held[k]) x[blocks[k]].setZero();
@@ -30,7 +31,7 @@ struct HeldNodes {
     }
     if (is_still) return;
     if (is_factored)
-      A.solve(work);
+      A.solve(work, by...);
     else
       for (Velocity& w : work) w.setConstant(std::numeric_limits<typename Velocity::Scalar>::quiet_NaN());
     for (std::size_t k = 0; k < blocks.size(); ++k)
@@ -38,13 +39,13 @@ struct HeldNodes {
   }
 
   /// The rows and columns of A⁻¹ of n nodes, (width n) × (width n) by columns; those of held nodes are zero.
-  template <int width, class Matrix, class T>
-  void compliance(const Matrix& A, std::span<const Index> nodes, std::span<T> C) const {
+  template <int width, class Matrix, class T, class... By>
+  void compliance(const Matrix& A, std::span<const Index> nodes, std::span<T> C, By&... by) const {
     if (!is_factored) {
       std::fill(C.begin(), C.end(), std::numeric_limits<T>::quiet_NaN());
       return;
     }
-    A.compliance(nodes, C);
+    A.compliance(nodes, C, by...);
     const std::size_t rows = width * nodes.size();
     for (std::size_t i = 0; i < rows; ++i) {
       if (!is_held[nodes[i / width]]) continue;

@@ -3,7 +3,9 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/sort.hpp>
+#include <delassus/fem/inner/pairs_of_nodes.hpp>
 #include <delassus/fem/inner/tie.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/math/lanes.hpp>
@@ -18,15 +20,6 @@
 
 namespace delassus::inner {
 
-/// The pairs of an element's n nodes: (0, 1), (0, 2), … (n − 2, n − 1).
-template <int n>
-inline constexpr auto pairs_of_nodes = [] {
-  std::array<std::array<int, 2>, n*(n - 1) / 2> pairs{};
-  for (int a = 0, k = 0; a < n; ++a)
-    for (int b = a + 1; b < n; ++b, ++k) pairs[k] = {a, b};
-  return pairs;
-}();
-
 /// Symmetric: K_ij of the pairs i < j of elements of `corners` nodes, which every element names in ascending
 /// order; where each of its blocks goes is looked up once. No shift of all nodes strains, so that
 ///
@@ -39,6 +32,7 @@ class NodeMatrix {
  public:
   using Block = Mat<3, 3, T>;
   using Velocity = Vec<3, T>;
+  using Factor = MultifrontalCholesky<3, T>;
   static constexpr int pairs_each = corners * (corners - 1) / 2;
 
   /// The first `batched` elements are going to be added lane_count at a time.
@@ -138,10 +132,45 @@ class NodeMatrix {
   template <class F>
   void enter(F& factor, T mass_share, T stiffness_share, std::span<const T> mass,
              std::span<const char> is_held) const {
+    factor.set_zero();
+    enter_some(factor, mass_share, stiffness_share, mass, is_held, {0, Index(diagonal_.size())},
+               {0, Index(pairs_.size())});
+  }
+  /// Factors it; false where there is no factor.
+  bool factor(T mass_share, T stiffness_share, std::span<const T> mass, std::span<const char> is_held) {
+    enter(factor_, mass_share, stiffness_share, mass, is_held);
+    return factor_.factor();
+  }
+  /// The same by several workers, after `prepare`.
+  template <class E>
+  bool factor(T mass_share, T stiffness_share, std::span<const T> mass, std::span<const char> is_held,
+              auto& by, auto& dense, const E& execution) {
+    factor_.set_zero();
+    const Index nodes = Index(diagonal_.size()), pairs = Index(pairs_.size()),
+                tasks = tasks_of(pairs, 1024, execution.workers());
+    execution.run(tasks, [&](Index task, Index) {
+      enter_some(factor_, mass_share, stiffness_share, mass, is_held, range_of(nodes, task, tasks),
+                 range_of(pairs, task, tasks));
+    });
+    return factor_.factor(by, dense, execution);
+  }
+  void prepare(auto& by, auto& dense, Index workers) const { factor_.prepare(by, dense, workers); }
+
+  /// `by`: what several workers keep, and the execution, and so below.
+  void solve(std::span<Velocity> x, auto&... by) const { factor_.solve(x, by...); }
+  /// The rows and columns of the inverse that belong to `nodes`, 3n × 3n by columns.
+  void compliance(std::span<const Index> nodes, std::span<T> C, auto&... by) const {
+    factor_.compliance(nodes, C, by...);
+  }
+
+ private:
+  /// Some nodes and some pairs, each in a place of its own.
+  template <class F>
+  [[gnu::always_inline]] void enter_some(F& factor, T mass_share, T stiffness_share, std::span<const T> mass,
+                                         std::span<const char> is_held, Range nodes, Range pairs) const {
     using Other = typename F::Block;
     using S = typename Other::Scalar;
-    factor.set_zero();
-    for (Index i = 0; i < Index(diagonal_.size()); ++i) {
+    for (Index i = nodes.first; i < nodes.last; ++i) {
       Block A = Block::Identity();
       if (!is_held[i]) {
         A = stiffness_share * diagonal_[i];
@@ -149,22 +178,13 @@ class NodeMatrix {
       }
       factor.add_diagonal(i, Other(A.template cast<S>()));
     }
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    for (std::size_t p = pairs.first; p < std::size_t(pairs.last); ++p) {
       const auto [i, j] = pairs_[p];
       if (!is_held[i] && !is_held[j])
         factor.add_pair(i, j, Other((stiffness_share * block(p)).template cast<S>()));
     }
   }
-  /// Factors it; false where there is no factor.
-  bool factor(T mass_share, T stiffness_share, std::span<const T> mass, std::span<const char> is_held) {
-    enter(factor_, mass_share, stiffness_share, mass, is_held);
-    return factor_.factor();
-  }
-  void solve(std::span<Velocity> x) const { factor_.solve(x); }
-  /// The rows and columns of the inverse that belong to `nodes`, 3n × 3n by columns.
-  void compliance(std::span<const Index> nodes, std::span<T> C) const { factor_.compliance(nodes, C); }
 
- private:
   /// Pair p's block is the one with number 1 + p, which is kept with a minus where no element adds to it
   /// before: block 0 stays zero and is added to there, without a branch.
   struct Place {
@@ -221,7 +241,7 @@ class NodeMatrix {
   Array<Block> diagonal_;
   Array<Eight> sums_;  ///< Σ K_p by node, and its last number: at work
   Array<T> ninth_sums_;
-  MultifrontalCholesky<3, T> factor_;
+  Factor factor_;
 };
 
 }  // namespace delassus::inner

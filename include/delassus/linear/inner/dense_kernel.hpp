@@ -29,11 +29,17 @@ template <class T>
 class DenseKernel {
   using Packet = delassus::Packet<T>;
   static constexpr Index lanes = packet_size<T>;
-  /// Twelve sums in sixteen registers, or twenty-four in thirty-two.
-  static constexpr Index strip = 3 * lanes, panel = packet_registers >= 32 ? 8 : 4;
   static constexpr Index depth = 128;  ///< columns of A packed at a time
 
  public:
+  /// Twelve sums in sixteen registers, or twenty-four in thirty-two.
+  static constexpr Index strip = 3 * lanes, panel = packet_registers >= 32 ? 8 : 4;
+
+  /// Matrices with so many rows allocate nothing from now on.
+  void reserve(Index rows) {
+    fit(a_, rounded_up(rows, lanes) * depth);
+    fit(b_, std::max(rounded_up(rows, panel), depth + panel) * depth);
+  }
   /// C −= A Bᵀ, C is m × n, A is m × k, B is n × k. With `is_lower` only entries i ≥ j are needed (others may
   /// change).
   void subtract(Columns<T> C, Columns<const T> A, Columns<const T> B, Index m, Index n, Index k,
@@ -54,11 +60,24 @@ class DenseKernel {
     return true;
   }
 
+  /// Columns of the left half of n.
+  static constexpr Index half_of(Index n) { return rounded_up(n / 2, panel); }
+  /// L Lᵀ = C, n × n, by halves: left half, what is below it, its product off the right half, right half.
+  bool factor_square(Columns<T> C, Index n) {
+    if (n <= panel) return factor_narrow(C, n);
+    const Index half = half_of(n);
+    if (!factor_square(C, half)) return false;
+    const Columns<const T> below{C.at(half, 0), C.stride};
+    solve_right(C.from(half, 0), {C.data, C.stride}, n - half, half);
+    subtract(C.from(half, half), below, below, n - half, n - half, half, true);
+    return factor_square(C.from(half, half), n - half);
+  }
+
   /// Y ← Y L⁻ᵀ, Y is m × k, L is k × k lower: by halves, whose product comes off the right half, until a
   /// triangle fits into the cache.
   void solve_right(Columns<T> Y, Columns<const T> L, Index m, Index k) {
     if (k <= depth) return solve_by_strips(Y, L, m, k);
-    const Index half = rounded_up(k / 2, panel);
+    const Index half = half_of(k);
     solve_right(Y, L, m, half);
     subtract(Y.from(0, half), {Y.data, Y.stride}, L.from(half, 0), m, k - half, half, false);
     solve_right(Y.from(0, half), L.from(half, half), m, k - half);
@@ -259,17 +278,6 @@ class DenseKernel {
     }
     if (is_whole) return;
     for (Index j = 0; j < k; ++j) std::copy_n(strip_of_y + std::size_t(j) * high, rows, Y.at(0, j));
-  }
-
-  /// L Lᵀ = C, n × n, by halves: left half, what is below it, its product off the right half, right half.
-  bool factor_square(Columns<T> C, Index n) {
-    if (n <= panel) return factor_narrow(C, n);
-    const Index half = rounded_up(n / 2, panel);
-    if (!factor_square(C, half)) return false;
-    const Columns<const T> below{C.at(half, 0), C.stride};
-    solve_right(C.from(half, 0), {C.data, C.stride}, n - half, half);
-    subtract(C.from(half, half), below, below, n - half, n - half, half, true);
-    return factor_square(C.from(half, half), n - half);
   }
 
   static bool factor_narrow(Columns<T> C, Index n) {

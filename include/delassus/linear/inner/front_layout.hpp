@@ -28,12 +28,13 @@ template <class Index>
 struct BasicFrontLayout {
   std::vector<FrontPlace> fronts;
   std::size_t factor_size = 0, stack_size = 0;
+  Index most_rows = 0;  ///< of a front, in numbers
 
   /// `w`: numbers a node.
   void analyse(const SupernodalPattern& pattern, int w) {
     const auto& supernodes = pattern.supernodes();
     fronts.assign(supernodes.size(), {});
-    factor_size = 0;
+    factor_size = 0, most_rows = 0;
     Array<char> depth(fronts.size(), 0);  // modulo 2
     for (Index s = Index(fronts.size()); s-- > 0;)
       if (supernodes[s].parent >= 0) depth[s] = !depth[supernodes[s].parent];
@@ -42,6 +43,7 @@ struct BasicFrontLayout {
       const Supernode& x = supernodes[s];
       FrontPlace& front = fronts[s];
       const std::size_t below = std::size_t(w) * x.below();
+      most_rows = std::max(most_rows, w * Index(x.rows.size()));
       front.factor = factor_size;
       factor_size += std::size_t(w) * x.rows.size() * w * x.width;
       if (!x.children.empty()) top[!depth[s]] = fronts[x.children[0]].update;

@@ -52,6 +52,8 @@ class FrontTriangle {
     factor_.resize(plan.layout.factor_size);
     stack_.resize(plan.layout.stack_size);
   }
+  /// Without room for parts, which somebody else has.
+  void resize_columns(const FrontPlan& plan) { factor_.resize(plan.layout.factor_size); }
 
   Columns<T> columns(const FrontPlan& plan, Index s) {
     return {&factor_[plan.layout.fronts[s].factor], w * plan.supernode(s).rows.size()};
@@ -67,10 +69,38 @@ class FrontTriangle {
   /// The columns of front s ← the matrix's own entries, diagonal(place) and below(entry) by blocks, and what
   /// its children left there.
   void open(const FrontPlan& plan, Index s, const auto& diagonal, const auto& below) {
+    open_some(plan, s, 0, plan.supernode(s).width, columns(plan, s), diagonal, below,
+              [&](Index child) { return part(plan, child); });
+  }
+  /// The part for the parent += what the children left there.
+  void pass_on(const FrontPlan& plan, Index s) {
+    pass_on_some(plan, s, 0, plan.supernode(s).below(), part(plan, s),
+                 [&](Index child) { return part(plan, child); });
+  }
+
+  /// Opens front s, factors its columns, and leaves its part for the parent; false where a pivot is not
+  /// positive. `part_of(s)`: where a front leaves it.
+  bool factor_front(const FrontPlan& plan, Index s, const auto& diagonal, const auto& below,
+                    const auto& part_of, DenseKernel<T>& kernel) {
     const Supernode& x = plan.supernode(s);
+    const Index height = w * Index(x.rows.size()), width = w * x.width, rest = height - width;
     const Columns<T> L = columns(plan, s);
-    std::fill_n(L.data, L.stride * w * x.width, T(0));
-    for (Index c = 0; c < x.width; ++c) {
+    open_some(plan, s, 0, x.width, L, diagonal, below, part_of);
+    if (!kernel.factor(L, height, width)) return false;
+    const Columns<const T> L21{L.at(width, 0), L.stride};
+    kernel.negated_product(part_of(s), L21, L21, rest, rest, width, true);
+    pass_on_some(plan, s, 0, x.below(), part_of(s), part_of);
+    return true;
+  }
+
+  // --- the same of the columns of nodes first … last − 1 of the front or of its part, for several workers
+
+  [[gnu::always_inline]] static void open_some(const FrontPlan& plan, Index s, Index first, Index last,
+                                               Columns<T> L, const auto& diagonal, const auto& below,
+                                               const auto& part_of) {
+    const Supernode& x = plan.supernode(s);
+    std::fill_n(L.at(0, w * first), L.stride * w * (last - first), T(0));
+    for (Index c = first; c < last; ++c) {
       const Index j = x.first + c;
       put(L.from(w * c, w * c), diagonal(j));
       for (Index e = plan.entries.start[j], at = c; e < plan.entries.start[j + 1]; ++e) {
@@ -78,13 +108,15 @@ class FrontTriangle {
         put(L.from(w * at, w * c), below(e));
       }
     }
-    for (const Index child : x.children) add(plan, child, L, 0, w * x.width);
+    for (const Index child : x.children)
+      add(plan, child, part_of(child), L.from(w * first, w * first), w * first, w * last);
   }
-  /// The part for the parent += what the children left there.
-  void pass_on(const FrontPlan& plan, Index s) {
+  [[gnu::always_inline]] static void pass_on_some(const FrontPlan& plan, Index s, Index first, Index last,
+                                                  Columns<T> part, const auto& part_of) {
     const Supernode& x = plan.supernode(s);
     for (const Index child : x.children)
-      add(plan, child, part(plan, s), w * x.width, w * Index(x.rows.size()));
+      add(plan, child, part_of(child), part.from(w * first, w * first), w * (x.width + first),
+          w * (x.width + last));
   }
 
  private:
@@ -93,9 +125,9 @@ class FrontTriangle {
   }
 
   /// The parent's columns first … last − 1 += what a child left; `to` begins with entry (first, first).
-  void add(const FrontPlan& plan, Index child, Columns<T> to, Index first, Index last) {
+  static void add(const FrontPlan& plan, Index child, Columns<T> from, Columns<T> to, Index first,
+                  Index last) {
     const auto& runs = plan.layout.fronts[child].runs;
-    const Columns<T> from = part(plan, child);
     for (std::size_t b = 0; b < runs.size(); ++b)
       for (Index c = 0; c < w * runs[b].length; ++c) {
         const Index column = w * runs[b].to + c;
