@@ -107,7 +107,7 @@ class AssembledRows {
   void add_coupled(BlockMatrix<T>& to, int a, Index i) {
     for (int s = 0; s < int(coupled.size()); ++s) {
       if (coupled[std::size_t(s)] == HowCoupled::nodes)
-        nodal_.each(views.data(), s, a, i, to.along, to.block, [&](int b, Index j, const T* block) {
+        nodal_.each(views.data(), s, a, i, to.room_along, to.room_of_block, [&](int b, Index j, const T* block) {
           to.template add<height>(a, b, i, j, views[std::size_t(b)].rows, block);
         });
       else if (coupled[std::size_t(s)] == HowCoupled::columns)

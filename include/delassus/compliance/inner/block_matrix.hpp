@@ -115,7 +115,7 @@ class BlockMatrix {
     diagonal_ = from.diagonal_;
   }
 
-  Array<T> along, block;  ///< at work while a row is made
+  Array<T> room_along, room_of_block;  ///< at work while a row is made
 
  private:
   T* own_block(const RowView<T>& mine, int a, Index i) { return diagonal(a).data() + std::ptrdiff_t(mine.rows * mine.rows) * i; }
