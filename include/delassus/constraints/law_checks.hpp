@@ -57,7 +57,7 @@ consteval bool law_solves() {
 /// What laws with items and laws inside a contact can be asked for.
 inline constexpr unsigned asked_of_all = refine::prepare | refine::clamp | refine::natural_map |
                                          refine::natural_squares | refine::tangent | refine::convex_tangent |
-                                         refine::is_sliding | refine::check;
+                                         refine::is_sliding | refine::check | refine::projection_step;
 inline constexpr unsigned asked_of_items =
     asked_of_all | refine::speed | refine::follow | refine::breaks | refine::restitution;
 inline constexpr unsigned asked_in_contact =

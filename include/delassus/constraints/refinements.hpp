@@ -30,6 +30,7 @@ enum Refinement : unsigned {
   set_friction = 1 << 12,     ///< void set_friction(Parameters&, double): what a pair of materials says; in a contact
   set_restitution = 1 << 13,  ///< void set_restitution(Parameters&, double): the same of a wrapper inside Contact{...}
   soften = 1 << 14,           ///< void soften(const Parameters&, row, double gap): of such a wrapper, when the rows of a contact are written
+  projection_step = 1 << 15,  ///< Vec<R, T> projection_step(item, const Mat<R, R, T>& W, λ, u): P(λ − M⁻¹ ũ) in the metric of an M ≥ W, which leaves what meets the law
 };
 
 }  // namespace refine

@@ -32,6 +32,10 @@ struct SweepRule {
   double relaxation = 1;
   bool tells_change = false;  ///< sets the last change: its roots are an eighth of a sweep
   bool projects = false;      ///< one projection a visit in the place of the exact answer
+  bool descends = false;      ///< one in the metric of the own block, of laws that have it: `refine::projection_step`
+
+  /// What a law does on such a visit.
+  [[gnu::always_inline]] auto loop_of(const auto& law) const { return projects ? law.project_once : descends && law.descend ? law.descend : law.sweep; }
 };
 
 template <class T>
@@ -97,8 +101,7 @@ class Island {
     else
       for (Pass pass(*this); pass.next();) {
         if (x) sums.x = x + pass.row();
-        const LawTable<T>& law = *pass.span->pool->table;
-        (rule.projects ? law.project_once : law.sweep)(*pass.span, sums);
+        rule.loop_of(*pass.span->pool->table)(*pass.span, sums);
       }
     if (rule.tells_change) {
       last_change_ = h_ * double(sums.displacement);

@@ -92,6 +92,8 @@ struct LawTable {
   /// μ of a round cone; null where the law is none.
   double (*friction)(const PoolView<T>&, Index i);
   bool is_coulomb;  ///< `Coulomb` answers for each item from its own memory, whatever is around it
+  /// λ_i ← (1 − ω) λ_i + ω P(λ_i − M⁻¹ ũ_i) in a metric M ≥ W_ii; null where the law has no such projection.
+  void (*descend)(const Span<T>&, Sweep<T>&);
 };
 
 }  // namespace delassus

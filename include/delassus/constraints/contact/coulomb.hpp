@@ -27,7 +27,7 @@ struct Coulomb {
   static constexpr int rows = 3;
   static constexpr std::array<RowKind, 3> kinds{RowKind::lower, RowKind::friction, RowKind::friction};
   static constexpr auto refines = refine::check | refine::set_friction | refine::prepare | refine::clamp | refine::natural_map |
-                                  refine::natural_squares | refine::tangent | refine::convex_tangent | refine::is_sliding;
+                                  refine::natural_squares | refine::projection_step | refine::tangent | refine::convex_tangent | refine::is_sliding;
 
   double friction = 0.5;  ///< μ ≥ 0, where neither the pair nor the materials say otherwise
 
@@ -137,6 +137,30 @@ struct Coulomb {
   template <class T>
   Vec<2, T> natural_squares(const Parameters& p, const Vec<3, T>& lambda, const Vec<3, T>& u, T scale) const {
     return coulomb_natural_squares(lambda, u, T(p.friction), scale);
+  }
+  /// P(λ − M⁻¹ ũ) on the cone in the metric M = diag(m_n, m_t, m_t) ≥ W, ũ = u + μ |u_t| e_n. With y_t = λ_t − u_t/m_t and
+  /// z = m_n λ_n − ũ_n:
+  ///
+  ///   y in the cone: y;   μ m_t |y_t| ≤ −z: 0;   else n = (z + μ m_t |y_t|)/(m_n + μ² m_t), (n, μ n y_t/|y_t|).
+  ///
+  /// W couples λ_n to λ_t by |W_nt|/√(W_nn |W_tt|) at most, by which both are larger.
+  template <class T>
+  [[gnu::always_inline]] Vec<3, T> projection_step(const Parameters& p, const Mat<3, 3, T>& W, const Vec<3, T>& lambda,
+                                                   const Vec<3, T>& u) const {
+    T normal = W(0, 0), tangential = std::max(W(1, 1), W(2, 2)) + std::abs(W(1, 2));
+    const T across = W(0, 1) * W(0, 1) + W(0, 2) * W(0, 2);
+    if (across > T(0)) {
+      const T more = T(1) + std::sqrt(across / (normal * tangential));
+      normal *= more, tangential *= more;
+    }
+    const T mu = T(p.friction), z = normal * lambda[0] - u[0] - mu * inner::length(u[1], u[2]);
+    const T y1 = lambda[1] - u[1] / tangential, y2 = lambda[2] - u[2] / tangential;
+    const T square = y1 * y1 + y2 * y2, limit = mu * z;
+    if (z >= T(0) && normal * normal * square <= limit * limit) return {z / normal, y1, y2};
+    const T size = std::sqrt(square), pushed = mu * tangential * size;
+    if (!(pushed > -z)) return Vec<3, T>::Zero();
+    const T n = (z + pushed) / (normal + mu * mu * tangential), share = size > T(0) ? mu * n / size : T(0);
+    return {n, share * y1, share * y2};
   }
   template <class T>
   void clamp(const Parameters& p, Vec<3, T>& lambda) const {

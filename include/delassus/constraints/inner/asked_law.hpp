@@ -44,6 +44,11 @@ concept HasNaturalSquares = requires(const typename A::Law& law, const typename 
   { law.natural_squares(given, x, x, scale) } -> std::same_as<Vec<2, typename A::T>>;
 };
 template <class A>
+concept HasProjectionStep = requires(const typename A::Law& law, const typename A::Given& given, const typename A::Vector& x,
+                                     const typename A::Matrix& W) {
+  { law.projection_step(given, W, x, x) } -> std::same_as<typename A::Vector>;
+};
+template <class A>
 concept HasTangent = requires(const typename A::Law& law, const typename A::Given& given, Local<A::Law::rows>& c) {
   { law.tangent(given, c) } -> std::same_as<Mat<A::Law::rows, A::Law::rows>>;
 } || requires(const typename A::Law& law, const typename A::Given& given, Local<A::Law::rows>& c, const typename A::Memory& memory) {

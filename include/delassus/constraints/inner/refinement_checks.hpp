@@ -27,6 +27,10 @@ consteval bool has_what_it_declares() {
   static_assert(natural_squares,
                 "delassus: a law declares refine::natural_squares, but Vec<2, T> natural_squares(item, const Vec<rows, T>& "
                 "lambda, const Vec<rows, T>& u, T scale) const is not there or has other types");
+  constexpr bool projection_step = !(said & refine::projection_step) || HasProjectionStep<A>;
+  static_assert(projection_step,
+                "delassus: a law declares refine::projection_step, but Vec<rows, T> projection_step(item, const Mat<rows, rows, "
+                "T>& W, const Vec<rows, T>& lambda, const Vec<rows, T>& u) const is not there or has other types");
   constexpr bool tangent = !(said & refine::tangent) || HasTangent<A>;
   static_assert(tangent,
                 "delassus: a law declares refine::tangent, but Mat<rows, rows> tangent(item, Local<rows>&) const, with const "
@@ -66,7 +70,7 @@ consteval bool has_what_it_declares() {
   static_assert(set_restitution,
                 "delassus: a law declares refine::set_restitution, but void set_restitution(Parameters&, double) const is not "
                 "there or has other types");
-  return prepare && clamp && natural_map && natural_squares && tangent && convex_tangent && is_sliding && check && speed &&
+  return prepare && clamp && natural_map && natural_squares && projection_step && tangent && convex_tangent && is_sliding && check && speed &&
          follow && breaks && restitution && set_friction && set_restitution;
 }
 
@@ -116,6 +120,9 @@ consteval bool declares_what_it_has() {
   static_assert(!(stray & refine::set_restitution),
                 "delassus: a law has a member set_restitution that it does not declare, so that nobody would call it; add "
                 "refine::set_restitution to its `refines`, or give it another name");
+  static_assert(!(stray & refine::projection_step),
+                "delassus: a law has a member projection_step that it does not declare, so that nobody would call it; add "
+                "refine::projection_step to its `refines`, or give it another name");
   static_assert(!(stray & refine::soften),
                 "delassus: a law has a member soften that it does not declare, so that nobody would call it; add "
                 "refine::soften to its `refines`, or give it another name");

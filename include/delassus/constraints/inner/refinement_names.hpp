@@ -10,7 +10,7 @@ namespace delassus::inner {
 /// Members with these names. A name that a class inherits twice is ambiguous, whatever overloads and templates it has.
 struct NamesOfRefinements {
   int prepare, clamp, natural_map, natural_squares, tangent, convex_tangent, is_sliding, check, speed, follow, breaks, restitution,
-      set_friction, set_restitution, soften;
+      set_friction, set_restitution, soften, projection_step;
 };
 template <class L>
 struct BesideNames : std::conditional_t<std::is_final_v<L>, NoMemory, L>, NamesOfRefinements {};
@@ -38,6 +38,7 @@ consteval unsigned named_refinements() {
   if (requires { &B::set_friction; } || requires { requires PointsToData<decltype(&L::set_friction)>; }) absent |= refine::set_friction;
   if (requires { &B::set_restitution; } || requires { requires PointsToData<decltype(&L::set_restitution)>; }) absent |= refine::set_restitution;
   if (requires { &B::soften; } || requires { requires PointsToData<decltype(&L::soften)>; }) absent |= refine::soften;
+  if (requires { &B::projection_step; } || requires { requires PointsToData<decltype(&L::projection_step)>; }) absent |= refine::projection_step;
   return ~absent;
 }
 

@@ -83,6 +83,14 @@ class ConvergenceMonitor {
            report_.sweeps - progressed_ > std::max(60, (progressed_ - opened_) / 2);
   }
 
+  /// Whether the last sweep was measured, for the criterion.
+  [[gnu::always_inline]] bool is_measured_now() const { return measured_ == report_.sweeps && options_.is_measured(); }
+  /// That of the last measure, and what it is compared with.
+  [[gnu::always_inline]] double error() const { return options_.error(report_.measure); }
+  [[gnu::always_inline]] double tolerance() const { return tolerance_; }
+  /// The stage may stand so many times as long.
+  [[gnu::always_inline]] void give_patience(int times) { patience_ *= times; }
+
   /// The tolerance is met, or no sweep is left.
   bool is_over() const { return is_met_ || is_last_ || is_quarantined(); }
   bool is_quarantined() const { return report_.status == Status::quarantined; }

@@ -157,6 +157,26 @@ struct LawLoops {
     }
   }
 
+  /// Of laws that refine the step; the others have none in their table.
+  static void descend(const Span<T>& span, Sweep<T>& sums) {
+    if constexpr (refines<Law>(refine::projection_step)) {
+      const PoolView<T>& pool = *span.pool;
+      const Items of(pool);
+      const auto& law = who_refines<refine::projection_step>(of.law);
+      const double share = double(sums.relaxation);
+      for (Index k = 0; k < span.count; ++k) {
+        const Index i = span.items[k];
+        if constexpr (is_round_cone<Law>())
+          if (stays_open(pool, i)) continue;
+        const Vec<R, double> lambda = load<R>(pool.lambda + std::ptrdiff_t(R) * i);
+        const T* own = block_of(pool, i);
+        Vec<R, double> next = law.projection_step(given<Law>(of.item(i)), as_square<R>(own), lambda, inner::velocity<R>(pool, i));
+        if (share != 1) next = lambda + share * (next - lambda);
+        sums.energy += accept(pool, i, k, lambda, next, own, sums.x || sums.tells_change, sums);
+      }
+    }
+  }
+
   static void measure(const Span<T>& span, MeasureSums& sums) {
     const PoolView<T>& pool = *span.pool;
     const Items of(pool);
@@ -207,9 +227,10 @@ struct LawLoops {
   }
 
   static constexpr LawTable<T> make_table() {
-    LawTable<T> out{kinds.data(), prepare, sweep, project_once, measure, extrapolate, nullptr, changed, velocity, add_share, nullptr, is_answered_by_coulomb<Law>()};
+    LawTable<T> out{kinds.data(), prepare, sweep, project_once, measure, extrapolate, nullptr, changed, velocity, add_share, nullptr, is_answered_by_coulomb<Law>(), nullptr};
     if constexpr (refines<Law>(refine::clamp)) out.clamp = clamp;
     if constexpr (is_round_cone<Law>()) out.friction = friction;
+    if constexpr (refines<Law>(refine::projection_step)) out.descend = descend;
     return out;
   }
   static const LawTable<T> table;

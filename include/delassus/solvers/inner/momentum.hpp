@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
+#include <delassus/solvers/inner/pile_sweeps.hpp>
 #include <delassus/solvers/island.hpp>
 
 #include <algorithm>
@@ -60,21 +61,28 @@ struct NoNewton {
 ///
 /// and where `RestartRule` asks for it y = z once and θ⁺ = θ/2: a restart from θ = 1 would forget how slow
 /// the problem is, and take up to twice the sweeps on rigid rows. Ends, and returns true, where the restarts are
-/// futile and the error stands. Where `newton` opens it acts, and momentum begins anew. `x` is room for the impulses
-/// before; the monitor calls the stage `name`. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
+/// futile and the error stands. A pile has rules of its own, `PileSweeps`. Where `newton` opens it acts, and momentum
+/// begins anew. `x` is room for the impulses before; the monitor calls the stage `name`. Source: [Nesterov1983] for the sequence, [ODonoghueCandes2015] for the
 /// gradient restart.
 template <class T, class ConvergenceMonitor, class Newton>
 bool momentum(Island<T>& problem, ConvergenceMonitor& monitor, Array<T>& x, const SweepRule& rule, Newton& newton, const char* name) {
+  PileSweeps pile(rule);
   for (;;) {
     RestartRule restarts;
     double theta = 1;
     bool is_first = true, is_futile = false;
     while (!is_futile && !newton.opens()) {
       double curvature = 0;  // of the first sweep, where y = x, it is −(z − x)²: no sign of a restart
-      const double moved = problem.sweep(rule, is_first ? nullptr : x.data(), is_first ? nullptr : &curvature);  // λ is z now
+      const double moved = problem.sweep(pile.rule(), is_first ? nullptr : x.data(), is_first ? nullptr : &curvature);  // λ is z now
       is_first = false;
       if (!monitor.goes_on(moved)) break;
-      if (restarts.asks(curvature, moved)) {
+      if (pile.turns(problem, monitor)) {
+        problem.save(x);
+        theta = 1;
+        is_first = true;
+        continue;
+      }
+      if (pile.is_on() ? pile.asks(curvature, moved) : restarts.asks(curvature, moved)) {
         problem.save(x);
         theta = std::max(1.0, 0.5 * theta);
         is_futile = restarts.is_futile() && monitor.is_stagnating();

@@ -4,6 +4,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/solvers/inner/body_space.hpp>
 #include <delassus/solvers/inner/momentum.hpp>
+#include <delassus/solvers/inner/pile_sweeps.hpp>
 #include <delassus/solvers/inner/proximal_point.hpp>
 #include <delassus/solvers/island.hpp>
 
@@ -40,8 +41,9 @@ class NewtonStage {
     monitor.keep_start_in(space.start);
   }
 
-  /// Asked before each sweep of momentum. The island is gathered when it has been swept for a while, and
-  /// where Newton's method cannot act nothing is changed.
+  /// Asked before each sweep of momentum. The island is gathered when it has been swept for a while, a pile,
+  /// whose order alone costs dozens of sweeps, later than others. Where Newton's method cannot act nothing is
+  /// changed.
   bool opens() { return monitor_.sweeps() >= opening_ && is_due(); }
 
   /// The rows keep the better of what they had and what was found.
@@ -87,7 +89,13 @@ class NewtonStage {
  private:
   /// Most islands are solved before that is asked once.
   [[gnu::noinline]] bool is_due() {
-    if (!is_gathered_ && !problem_.may_attempt(gathering)) return false;
+    if (!is_gathered_) {
+      if (gathers_after_ < 0) {
+        const BodyNet net = find_body_net(problem_);
+        gathers_after_ = net.is_pile(limits_.tolerance) ? net.factorization : 0;
+      }
+      if (monitor_.sweeps() < gathers_after_ || !problem_.may_attempt(gathering)) return false;
+    }
     if (!std::exchange(is_gathered_, true)) {
       problem_.attempted(false);  // that far: what is gathered and not begun is of no use either
       if (space_.body.gather(problem_)) {
@@ -125,6 +133,7 @@ class NewtonStage {
   ConvergenceMonitor& monitor_;
   Space& space_;
   double cost_ = 0;  ///< of a factorization, in sweeps
+  double gathers_after_ = -1;  ///< sweeps; below zero: not known yet
   double epsilon_ = 1e-5;
   int opening_, wait_ = least, openings_ = 0;
   bool is_gathered_ = false;

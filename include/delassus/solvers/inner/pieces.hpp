@@ -42,8 +42,7 @@ class Pieces : public Passes<T> {
     Pieces& own = *static_cast<Pieces*>(self);
     own.pass(island, all, own.sweeps_, [&](const Span<T>& piece, Index row, Sweep<T>& to) {
       if (x) to.x = x + row;
-      const LawTable<T>& law = *piece.pool->table;
-      (rule.projects ? law.project_once : law.sweep)(piece, to);
+      rule.loop_of(*piece.pool->table)(piece, to);
     });
   }
   static void measure(Passes<T>* self, const Island<T>& island, MeasureSums& all) {
