@@ -106,8 +106,11 @@ TEST_CASE("a checkpoint and the memory of the machine go on as the loop did") {
 
   Machine bigger = machine;
   bigger.actuators.push_back(machine.actuators[0]);
+  bigger.controls = {3, 4}, bigger.activations = {5, 6};
   ArchiveReader again(beside.data);
   CHECK_THROWS(bigger.memory(again));
+  CHECK(bigger.controls == std::vector<double>{3, 4});
+  CHECK(bigger.activations == std::vector<double>{5, 6});
 }
 
 }  // namespace actuator_turns_tests

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace delassus {
@@ -101,11 +102,15 @@ struct Machine {
 
   /// Controls, activations and the turns that servos have counted, which a checkpoint of the loop does not hold: keep them
   /// beside it by an `ArchiveWriter`, and give them to a machine of the same model by an `ArchiveReader`.
+  /// What is refused leaves the machine as it is.
   void memory(auto& archive) {
-    archive(controls, activations);
-    for (model::Actuation& act : actuators)
+    Machine read = *this;
+    archive(read.controls, read.activations);
+    for (model::Actuation& act : read.actuators)
       for (TendonPart& part : act.parts) archive(part.position);
-    if (archive.reads) expect_controls("memory");
+    if (!archive.reads) return;
+    read.expect_controls("memory");
+    *this = std::move(read);
   }
   /// Refuses lists of controls and activations that have another size than the one of actuators.
   void expect_controls(const char* what) const {
