@@ -78,3 +78,13 @@ function(delassus_program name)
   list(TRANSFORM components PREPEND delassus::)
   target_link_libraries(${name} PRIVATE delassus::delassus ${components} delassus_warnings)
 endfunction()
+
+# delassus_program_threads(<name>): the program may include program_threads.hpp, which has threads where oneTBB is there.
+function(delassus_program_threads name)
+  if(TARGET delassus::tbb)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tools/with_tbb)
+    target_link_libraries(${name} PRIVATE delassus::tbb)
+  else()
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tools/without_tbb)
+  endif()
+endfunction()

@@ -16,7 +16,7 @@ namespace study_program {
 namespace {
 
 constexpr const char* help =
-    R"text(delassus_study [--accuracy] [--scene NAME] [--budget E] [--shard I/N] [--out DIR] [--quick] [--quiet]
+    R"text(delassus_study [--accuracy] [--scene NAME] [--budget E] [--shard I/N] [--threads N] [--out DIR] [--quick] [--quiet]
 
 Runs scenes over integrators, stabilisations, solvers, builders, tolerances and steps; draws error against time; and names
 the cheapest combination that holds an error budget. A run that was interrupted goes on from its log in DIR.
@@ -25,6 +25,7 @@ the cheapest combination that holds an error budget. A run that was interrupted 
   --scene NAME   sliding_box, double_pendulum, ten_boxes, heavy_chain or soft_bar; all that there are if not said
   --budget E     the largest error of a place, m; 1 mm if not said
   --shard I/N    every Nth run, from the Ith, I = 0 ... N-1; logs of shards joined in NAME.log are the whole study
+  --threads N    N runs at once, each timed by the time of its thread; 0: one a processor; 1 if not said
   --out DIR      the folder of NAME.svg, NAME.csv and NAME.log, made if missing; "out/study" if not said
   --quick        two steps and one tolerance each
   --quiet        only the manifest and the choice
@@ -60,6 +61,11 @@ bool read_shard(const char* word, Options& options) {
          options.shard >= 0 && options.shard < options.shards;
 }
 
+bool read_threads(const char* word, Options& options) {
+  int read = 0;
+  return std::sscanf(word, "%d%n", &options.threads, &read) == 1 && word[read] == '\0' && options.threads >= 0 && options.threads <= 1024;
+}
+
 bool read_budget(const char* word, Options& options) {
   char* end = nullptr;
   options.budget = std::strtod(word, &end);
@@ -84,6 +90,8 @@ Options read_options(std::span<char*> arguments) {
     else if (word == "--scene" && has_value)
       options.scene = arguments[++i];
     else if (word == "--budget" && has_value && read_budget(arguments[i + 1], options))
+      ++i;
+    else if (word == "--threads" && has_value && read_threads(arguments[i + 1], options))
       ++i;
     else if (word == "--shard" && has_value && read_shard(arguments[i + 1], options))
       ++i;

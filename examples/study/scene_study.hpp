@@ -1,6 +1,8 @@
 /// What the built-in scenes of delassus_study share: options, and the way from a scene to its files.
 #pragma once
 
+#include "program_threads.hpp"
+
 #include <delassus/adapters/posix.hpp>
 #include <delassus/io/csv.hpp>
 #include <delassus/study/diagram.hpp>
@@ -21,6 +23,7 @@ struct Options {
   std::string out = "out/study", scene, unknown;
   double budget = 0;  ///< in the unit of the scene's first measure; 0: the scene's own
   int shard = 0, shards = 1;
+  int threads = 1;    ///< runs at once; 0: one a processor
   bool has_accuracy = false, is_quick = false, is_quiet = false, wants_help = false;
 };
 
@@ -42,7 +45,7 @@ bool run_study(const Options& options, const char* file, double usual_budget, co
   if (!options.is_quiet) std::printf("\n%s.\n", announcement(list, plan).c_str());
   std::fflush(stdout);
 
-  const Study study = sweep(scene, list, plan, measures, references, ThreadClock{});
+  const Study study = sweep(scene, list, plan, measures, references, ThreadClock{}, program_threads(options.threads));
   write_diagram(base + ".svg", study, {.measure = 0, .budget = budget});
   write_csv(base + ".csv", runs_table(study));
   if (!options.is_quiet) {

@@ -4,6 +4,7 @@
 #include "shared_laws.hpp"  // before all else
 
 #include "motion.hpp"
+#include "program_threads.hpp"
 
 #include <delassus/collision/with_compounds.hpp>
 #include <delassus/collision/with_filter.hpp>
@@ -96,7 +97,7 @@ std::unique_ptr<Motion> in_loop(const Model& model, const Pose& pose, Base base,
     return std::make_unique<InLoop<Loop>>(model, pose, base, asked.friction >= 0, std::move(all)...);
   };
   return make(std::move(laws), WithFilter{WithCompounds{NativeCollision{}}}, DirectGaussSeidel{.tolerance = asked.tolerance},
-              AuditWhereAsked{.audit = {}, .is_asked = asked.audits}, std::move(parts)...);
+              AuditWhereAsked{.audit = {}, .is_asked = asked.audits}, program_threads(asked.threads), std::move(parts)...);
 }
 
 /// Of contacts with what has no surface of its own.

@@ -32,6 +32,7 @@ struct Asked {
   double tolerance = 1e-6;
   double friction = -1;  ///< of all contacts; negative: as the shapes say
   double longest_step = 0.1;  ///< that the caller makes, s
+  int threads = 1;            ///< of a step; 0: one a processor
 };
 
 /// Has what the rest asks of a loop, one virtual call each a step.

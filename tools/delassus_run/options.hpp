@@ -18,6 +18,7 @@ struct Options {
   std::vector<std::string> models, packages;
   std::string out = "out/run", key, meshes, control;
   double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = -1, budget = 1e-3, frames = 30;
+  int threads = 1;
   Base base = Base::as_file;
   Integration integration = Integration::euler;
   bool has_ground = false, lists_all = false, is_strict = false, is_quiet = false, audits = false, studies = false, writes_vtk = false, pushes_apart = false;
@@ -28,7 +29,7 @@ struct Options {
   /// Which loop it is, and its numbers. A tolerance that nobody said is fine enough for the accuracy.
   Asked asked() const {
     const double usual = accuracy > 0 ? std::min(1e-6, 1e-3 * accuracy) : 1e-6;
-    return {.integration = integration, .accuracy = accuracy, .audits = audits, .tolerance = tolerance > 0 ? tolerance : usual, .friction = friction, .longest_step = caller_step()};
+    return {.integration = integration, .accuracy = accuracy, .audits = audits, .tolerance = tolerance > 0 ? tolerance : usual, .friction = friction, .longest_step = caller_step(), .threads = threads};
   }
   double caller_step() const { return accuracy > 0 ? std::min(step_under_control, seconds) : step; }
 };
@@ -66,6 +67,7 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_option("--package", options.packages, "NAME=FOLDER of package://NAME, for URDF; may be repeated");
   app.add_flag("--study", options.studies, "runs the loops, steps and tolerances there are, and names the cheapest within --budget");
   app.add_option("--budget", options.budget, "largest error of a place in a study, m")->check(number_in(1e-12, 1e6, "a length from 1e-12 to 1e6 m"))->capture_default_str();
+  app.add_option("--threads", options.threads, "of a step, or runs of a study at once; 0: one a processor; results do not depend on them")->check(number_in(0, 1024, "a number of threads from 0 to 1024"))->capture_default_str();
   app.add_flag("--audit", options.audits, "says which effects acted");
   app.add_flag("--vtk", options.writes_vtk, "writes NAME_vtk/: a .vtp each picture, and NAME.pvd for ParaView");
   app.add_option("--frames", options.frames, "pictures a simulated second, at most")->check(number_in(1e-3, 1e6, "a rate from 1e-3 to 1e6 /s"))->capture_default_str();

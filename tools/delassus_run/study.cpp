@@ -1,6 +1,9 @@
 // What accuracy costs for a machine, over the loops that are compiled in.
 #include "study.hpp"
 
+#include "program_threads.hpp"
+
+#include <delassus/adapters/posix.hpp>
 #include <delassus/study/diagram.hpp>
 #include <delassus/study/sweep.hpp>
 #include <delassus/study/tables.hpp>
@@ -104,7 +107,7 @@ void study_of(const Model& model, const Start& start, const Options& options, co
 
   std::printf("\n%s.\nCompared are the loops of this program alone: one solver, two integrators, fixed steps and kept errors.\n", announcement(list, plan).c_str());
   std::fflush(stdout);
-  const Study study = sweep(scene, list, plan, measures, references);
+  const Study study = sweep(scene, list, plan, measures, references, ThreadClock{}, program_threads(options.threads));
   print(front_table(study));
   if (const Table trouble = trouble_table(study); !trouble.rows.empty()) std::puts(""), print(trouble);
   write_csv(base + ".study.csv", runs_table(study));
