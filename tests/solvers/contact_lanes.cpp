@@ -47,12 +47,20 @@ TEST_CASE("contacts in lanes get the impulses that each gets by itself") {
 TEST_CASE("relaxed sweeps and projections of contacts in lanes are those of each") {
   for (const double friction : {0.0, 0.5, 1.5}) {
     Both relaxed({.friction = friction});
-    for (int k = 0; k < 5; ++k) relaxed.sweep(1.3);
+    for (int k = 0; k < 5; ++k) relaxed.sweep({.relaxation = 1.3});
     CHECK(relaxed.difference() < rounding);
     Both projected({.friction = friction});
-    for (int k = 0; k < 5; ++k) projected.sweep(1, true);
+    for (int k = 0; k < 5; ++k) projected.sweep({.projects = true});
     CHECK(projected.difference() < rounding);
     CHECK(Cases(projected.lanes).open > 20);
+    for (const double share : {1.0, 0.5}) {
+      Both descended({.friction = friction});
+      REQUIRE(descended.lanes.colours.spans()[0].pool->table->descend != descended.scalar.colours.spans()[0].pool->table->descend);
+      for (int k = 0; k < 5; ++k) descended.sweep({.relaxation = share, .descends = true});
+      CHECK(descended.difference() < rounding);
+      CHECK(Cases(descended.lanes).open > 20);
+      if (friction > 0) CHECK(Cases(descended.lanes).slipping > 20);
+    }
   }
 }
 
@@ -65,7 +73,7 @@ TEST_CASE("contacts in lanes hear what rows of other pools do while it changes")
       both.scalar.other_lambda[n] = both.lanes.other_lambda[n];
     }
     const std::vector<double> before = both.lanes.lambda;
-    both.sweep(1, k % 3 == 2);
+    both.sweep({.projects = k % 3 == 2, .descends = k % 3 == 1});
     CHECK(before != both.lanes.lambda);
     CHECK(both.difference() < rounding);
     MeasureSums sums[2];
@@ -200,7 +208,7 @@ TEST_CASE("threads that share the pieces of contacts in lanes leave the same bit
       island.save(x);
       sums += island.sweep({.tells_change = true}, x.data(), &along) + along + island.last_change();
       island.extrapolate(x, 0.3);
-      sums += island.sweep({.projects = true}) + island.measure().residual;
+      sums += island.sweep({.projects = true}) + island.sweep({.descends = true}) + island.measure().residual;
     }
     crew.dismiss();
     for (std::thread& thread : threads) thread.join();

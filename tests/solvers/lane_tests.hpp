@@ -6,6 +6,7 @@
 #include <delassus/solvers/inner/colouring.hpp>
 #include <delassus/solvers/inner/lane_loops.hpp>
 #include <delassus/solvers/inner/law_loops.hpp>
+#include <delassus/solvers/island.hpp>
 
 #include "catch.hpp"
 
@@ -137,11 +138,10 @@ struct Both {
   void each(const F& f) {
     f(scalar), f(lanes);
   }
-  void sweep(double relaxation = 1, bool projects = false) {
+  void sweep(const SweepRule& rule = {}) {
     each([&](PoolOfContacts& pool) {
-      Sweep<double> sums{.relaxation = relaxation};
-      for (const Span<double>& span : pool.colours.spans())
-        (projects ? span.pool->table->project_once : span.pool->table->sweep)(span, sums);
+      Sweep<double> sums{.relaxation = rule.relaxation};
+      for (const Span<double>& span : pool.colours.spans()) rule.loop_of(*span.pool->table)(span, sums);
     });
   }
   double difference() const {

@@ -97,4 +97,23 @@ inline LaneVector natural_map_of(const LaneVector& lambda, const LaneVector& u, 
   return choose(is_open, lambda, otherwise);
 }
 
+/// `Coulomb::projection_step`. `W` has lanes of the contacts' own blocks, by columns.
+inline LaneVector projection_step_of(const double* W, const LaneVector& lambda, const LaneVector& u,
+                                     const Lanes& friction) {
+  const auto entry = [W](int row, int column) { return load_lanes(W + (3 * column + row) * lane_count); };
+  const Lanes zero = all_lanes(0), w01 = entry(0, 1), w02 = entry(0, 2);
+  Lanes normal = entry(0, 0), tangential = larger_lanes(entry(1, 1), entry(2, 2)) + size_of(entry(1, 2));
+  const Lanes more = 1 + root_of(square_of_two(w01, w02) / (normal * tangential));
+  normal *= more, tangential *= more;
+  const Lanes z = normal * lambda[0] - u[0] - friction * root_of(square_of_two(u[1], u[2]));
+  const Lanes y1 = lambda[1] - u[1] / tangential, y2 = lambda[2] - u[2] / tangential;
+  const Lanes square = square_of_two(y1, y2), limit = friction * z, size = root_of(square);
+  const LaneMask is_in = (z >= zero) & (normal * normal * square <= limit * limit);
+  const Lanes pushed = friction * tangential * size;
+  const Lanes n = (z + pushed) / (normal + friction * friction * tangential);
+  const Lanes share = size > zero ? friction * n / size : zero;
+  const LaneVector nothing{{zero, zero, zero}}, on_it{{n, share * y1, share * y2}};
+  return choose(is_in, {{z / normal, y1, y2}}, choose(pushed > -z, on_it, nothing));
+}
+
 }  // namespace delassus::inner

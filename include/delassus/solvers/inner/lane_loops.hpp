@@ -27,6 +27,7 @@ struct LaneLoops {
   static LaneTable table_of(const LawTable<double>& alone, ContactLanes& lanes) {
     LaneTable out{alone, &lanes, &alone};
     out.sweep = sweep, out.project_once = project_once, out.measure = measure, out.extrapolate = extrapolate;
+    if (alone.descend) out.descend = descend;
     return out;
   }
 
@@ -40,6 +41,11 @@ struct LaneLoops {
     const Index left = visit(
         span, [&sums](ContactLanes& lanes, const Piece& piece, Index) { project_piece(lanes, piece, sums); });
     if (left > 0) alone(span).project_once(rest(span, left), sums);
+  }
+  static void descend(const Span<double>& span, Sweep<double>& sums) {
+    const Index left = visit(
+        span, [&sums](ContactLanes& lanes, const Piece& piece, Index) { descend_piece(lanes, piece, sums); });
+    if (left > 0) alone(span).descend(rest(span, left), sums);
   }
   static void measure(const Span<double>& span, MeasureSums& sums) {
     const Index left = visit(
@@ -77,6 +83,10 @@ struct LaneLoops {
 
   static void sweep_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums);
   static void project_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums);
+  static void descend_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums);
+  /// λ ← next(group, λ, u), contact by contact.
+  template <class Next>
+  static void step_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums, const Next& next_of);
   static void measure_piece(ContactLanes& lanes, const Piece& piece, MeasureSums& sums);
   static void extrapolate_piece(ContactLanes& lanes, const Piece& piece, double* before, double beta);
 };
@@ -89,21 +99,34 @@ inline void LaneLoops::sweep_piece(ContactLanes& lanes, const Piece& piece, Swee
     pass.run<true>();
   if (sums.x) sums.x += 3 * std::ptrdiff_t(piece.items);
 }
-inline void LaneLoops::project_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums) {
+template <class Next>
+void LaneLoops::step_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums, const Next& next_of) {
   double* const lambda = lanes.pool().lambda;
   SweepLanes all;
   lanes.hear_others(piece);
   for (Index k = 0, g = piece.group; k < piece.items; k += lane_count, ++g) {
     const ContactLanes::Group c = lanes.group(g);
     const LaneVector here = gather(lambda, c.own), u = plus_product(free_velocity(c, lambda), c.square, here);
-    const Lanes s = load_lanes(c.square + 9 * lane_count);
-    const LaneVector map = natural_map_of(here, u, c.friction(), s),
-                     next{{here[0] - map[0] / s, here[1] - map[1] / s, here[2] - map[2] / s}};
+    const LaneVector next = next_of(c, here, u);
     scatter(next, lambda, c.own, piece.items - k);
     all.add(sums, c.weight(), minus(next, here), next, PlacesInPiece(k, piece.items).at);
   }
   all.finish(sums);
   if (sums.x) sums.x += 3 * std::ptrdiff_t(piece.items);
+}
+inline void LaneLoops::project_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums) {
+  step_piece(lanes, piece, sums, [](const ContactLanes::Group& c, const LaneVector& here, const LaneVector& u) {
+    const Lanes s = load_lanes(c.square + 9 * lane_count);
+    const LaneVector map = natural_map_of(here, u, c.friction(), s);
+    return LaneVector{{here[0] - map[0] / s, here[1] - map[1] / s, here[2] - map[2] / s}};
+  });
+}
+inline void LaneLoops::descend_piece(ContactLanes& lanes, const Piece& piece, Sweep<double>& sums) {
+  const Lanes share = all_lanes(sums.relaxation);
+  step_piece(lanes, piece, sums, [&share](const ContactLanes::Group& c, const LaneVector& here, const LaneVector& u) {
+    const LaneVector change = minus(projection_step_of(c.square, here, u, c.friction()), here);
+    return LaneVector{{here[0] + share * change[0], here[1] + share * change[1], here[2] + share * change[2]}};
+  });
 }
 inline void LaneLoops::extrapolate_piece(ContactLanes& lanes, const Piece& piece, double* before,
                                          double beta) {

@@ -96,7 +96,7 @@ constexpr bool is_round_cone() {
 /// Whether `Coulomb` itself answers, from its memory and with what it makes of cones: who is around it says nothing of that.
 template <class Law>
 constexpr bool is_answered_by_coulomb() {
-  constexpr unsigned answers = refine::prepare | refine::clamp | refine::natural_map | refine::natural_squares;
+  constexpr unsigned answers = refine::prepare | refine::clamp | refine::natural_map | refine::natural_squares | refine::projection_step;
   if constexpr (std::is_same_v<Law, Coulomb>) return true;
   else if constexpr (requires { typename Law::wraps; } && (declared_refinements<Law> & answers) == 0)
     return is_answered_by_coulomb<typename Law::wraps>();
