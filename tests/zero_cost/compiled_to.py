@@ -43,6 +43,20 @@ def lines_in(program):
     return found
 
 
+def functions_in(program):
+    """Name, without `Serial` among its types -> the instructions' names, of which there are several lists where it is there twice. Padding is left out."""
+    found, name = {}, None
+    for line in run("objdump", "-d", "-C", "--no-show-raw-insn", program).stdout.splitlines():
+        head = re.match(r"^[0-9a-f]+ <(.+)>:$", line)
+        if head:
+            name = head.group(1).replace(" ", "").replace(",delassus::Serial", "")
+            found.setdefault(name, []).append([])
+        word = re.match(r"^\s*[0-9a-f]+:\t(\S+)", line)
+        if word and name and not re.match(r"nop|xchg|data16|cs$", word.group(1)):
+            found[name][-1].append(word.group(1))
+    return {name: sorted(lists) for name, lists in found.items()}
+
+
 def calls_from(program, start, aside=()):
     """Names of library functions that the function whose name begins with `start` can reach by calls, through any function of
     ours but those with one of `aside` in their names."""
@@ -98,6 +112,18 @@ def main():
         if calls:
             wrong.append(f"a sweep of Coulomb contacts calls {', '.join(sorted(calls))}")
         run(program)
+
+        # A loop that names one thread is one that names nothing.
+        silent, named = (functions_in(build(given, "counted_ten_boxes", folder, "-O2", *flags)) for flags in ([], ["-DNAMED=,Serial{}"]))
+        # Which registers g++ takes, and a small inlining here and there, follow the order of names: counts are within a thousandth.
+        different = sorted(silent.keys() ^ named.keys())
+        counts = [sum(len(body) for lists in functions.values() for body in lists) for functions in (silent, named)]
+        if different or not silent or abs(counts[0] - counts[1]) > 1e-3 * counts[0]:
+            wrong.append(f"a loop that names Serial is {counts[1]} instructions, one that does not {counts[0]}; functions of one alone: {different[:3]}")
+        schedulers = [name for name in named if re.search(r"InParallel|InParts|Crew|Threads|tbb|pthread", name)]
+        if schedulers:
+            wrong.append(f"a loop of one thread has code of a scheduler: {schedulers[:3]}")
+        print(len(silent), "functions with and without Serial,", *counts, "instructions")
 
         # Constructors of what a loop holds stay; a tenth of the lines of a part would be more than those.
         lines_of_all = {}

@@ -9,8 +9,12 @@
 
 using namespace delassus;
 
+#ifndef NAMED
+#define NAMED  // `, Serial{}` where compiled_to.py compares
+#endif
+
 int main(int, char** words) {
-  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}} NAMED};
   auto& set = bodies<RigidBodies>(loop.world());
   set.add_fixed(HalfSpace{});
   RigidBodies::Handle top;
