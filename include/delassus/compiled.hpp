@@ -77,7 +77,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 
 // Of laws with R rows, and body sets of one width.
 #define DELASSUS_COMPILED_HEIGHT(KIND, R)                                                                       \
-  KIND void inner::AssembledRows<double>::build_pool<R>(inner::AssembledRows<double>&, int, const CrowdedRow*); \
+  KIND void inner::AssembledRows<double>::build_pool<R, false>(inner::AssembledRows<double>&, int, const CrowdedRow*); \
+  KIND void inner::AssembledRows<double>::build_pool<R, true>(inner::AssembledRows<double>&, int, const CrowdedRow*); \
   KIND struct inner::BlockLoops<R, 3, double>;                                                                  \
   KIND struct inner::BlockLoops<R, 6, double>;                                                                  \
   KIND void inner::apply_inverse<false>(const RigidBodies&, SetBlocks<R, 6, double>&);                          \

@@ -39,12 +39,12 @@ std::vector<std::vector<int>> lists() {
 
 TEST_CASE("sorting gives what std::sort gives") {
   for (const std::vector<int>& list : lists()) {
-    std::vector<int> expected = list, sorted = list, heap = list;
+    std::vector<int> expected = list, sorted = list, without_partition = list;
     std::sort(expected.begin(), expected.end());
     inner::sort(sorted);
     REQUIRE(sorted == expected);
-    inner::heap_sort(heap.data(), heap.size(), inner::Smaller{});
-    REQUIRE(heap == expected);
+    inner::sort_part(without_partition.data(), without_partition.data() + list.size(), 0, inner::Smaller{});
+    REQUIRE(without_partition == expected);
     REQUIRE(inner::is_sorted(sorted.data(), sorted.data() + sorted.size()));
     REQUIRE(inner::is_sorted(list.data(), list.data() + list.size()) == std::is_sorted(list.begin(), list.end()));
     const auto is_larger = [](int a, int b) { return a > b; };

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace delassus {
 
@@ -25,8 +24,9 @@ class BasicBoxTree {
       0.05;         ///< a leaf is wider than its box by this share of the box's largest edge, on each side
   Scalar lead = 4;  ///< and longer by this many steps of its last motion
 
-  /// Boxes that are told apart by their place in the array, all of them moving.
-  void find(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) {
+  /// Boxes that are told apart by their place in the array, all of them moving. `Pairs`: a std::vector, or an Array.
+  template <class Pairs>
+  void find(inner::Slice<const Aabb> boxes, Pairs& pairs) {
     places_.resize(boxes.size());
     for (Index i = 0; i < Index(boxes.size()); ++i)
       places_[i] = {.key = std::uint32_t(i), .is_movable = true};
@@ -34,7 +34,8 @@ class BasicBoxTree {
   }
 
   /// Boxes that are told apart by their keys, wherever they stand in the array.
-  void find(inner::Slice<const Aabb> boxes, inner::Slice<const BoxTag> tags, std::vector<CandidatePair>& pairs) {
+  template <class Pairs>
+  void find(inner::Slice<const Aabb> boxes, inner::Slice<const BoxTag> tags, Pairs& pairs) {
     recognise(tags);
     moved_.clear();
     for (Index i = 0; i < Index(boxes.size()); ++i) follow(leaf_of_[i], boxes[i], tags[i].is_movable);
@@ -179,7 +180,8 @@ class BasicBoxTree {
     kept_.swap(merged_);
   }
 
-  void report(inner::Slice<const Aabb> boxes, std::vector<CandidatePair>& pairs) const {
+  template <class Pairs>
+  void report(inner::Slice<const Aabb> boxes, Pairs& pairs) const {
     const std::size_t first = pairs.size();
     bool is_sorted = true;
     std::uint64_t last = 0;

@@ -1,6 +1,7 @@
 /// Which colliders come near each other: what a broad phase promises.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/geometry/support.hpp>
 
@@ -37,5 +38,20 @@ concept TaggedBroadPhase = BroadPhase<B> && requires(B& b, std::span<const Aabb>
                                                      std::vector<CandidatePair>& pairs) {
   b.find(boxes, tags, pairs);  // one tag a box, unique keys
 };
+
+namespace inner {
+
+/// What a broad phase appends to: the library's own array where it takes one, which is fewer functions of a user's file.
+template <class B>
+struct PairsOf {
+  using type = std::vector<CandidatePair>;
+};
+template <class B>
+  requires requires(B& b, std::span<const Aabb> boxes, std::span<const BoxTag> tags, Array<CandidatePair>& pairs) { b.find(boxes, tags, pairs); }
+struct PairsOf<B> {
+  using type = Array<CandidatePair>;
+};
+
+}  // namespace inner
 
 }  // namespace delassus

@@ -187,7 +187,7 @@ class CollisionEngine {
   Array<inner::Summary> summary_;
   Array<BoxTag> tags_;
   Array<Index> half_spaces_;
-  std::vector<CandidatePair> pairs_;
+  typename inner::PairsOf<Broad>::type pairs_;
   Array<Job> jobs_, merged_;  ///< of this step, by pair
   inner::PairSlots slots_;
   bool knows_who_is_apart_ = false;  ///< the last detection had a filter that knows who pushed

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace delassus {
 
@@ -22,8 +23,10 @@ inline Face posed(Face face, const Pose& pose) {
 
 /// The other order of corners, so that both faces run counter-clockwise about the normal from A to B.
 inline void reverse(Face& face) {
-  std::reverse(face.point.begin(), face.point.begin() + face.count);
-  std::reverse(face.corner.begin(), face.corner.begin() + face.count);
+  for (int i = 0, k = face.count - 1; i < k; ++i, --k) {
+    std::swap(face.point[i], face.point[k]);
+    std::swap(face.corner[i], face.corner[k]);
+  }
 }
 
 inline bool is_cap(const Shape& s, const Face& face) {

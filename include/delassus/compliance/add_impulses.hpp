@@ -3,16 +3,16 @@
 
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/rows/row_arrays.hpp>
 
 #include <cstddef>
-#include <span>
 
 namespace delassus {
 
 /// to += A⁻¹ Hᵀ λ of set number s: block by block through G where A is block-diagonal, else by one solve.
 template <class Set>
-void add_impulses(const Set& set, int s, AllRows<typename Set::Scalar> rows, std::span<typename Set::Velocity> to,
+void add_impulses(const Set& set, int s, AllRows<typename Set::Scalar> rows, inner::Slice<typename Set::Velocity> to,
                   Array<typename Set::Velocity>& scratch) {
   using T = typename Set::Scalar;
   if (!inner::is_coupled(set)) {

@@ -53,16 +53,18 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
 
   Operator() { own_.resize(pools, Rows::set_count); }
 
-  void build(const auto& world, Rows& rows) {
+  template <class World>
+  void build(const World& world, Rows& rows) {
     world.each([&](const auto& set, auto s) __attribute__((always_inline)) { invert(set, rows, s); });
     prepare(world, rows);
-    for_each_index<pools>([&](auto a) __attribute__((always_inline)) { Built::template build_pool<R_of<a>>(own_, a, nullptr); });
+    constexpr bool any_couples = Inverse::is_whole && inner::any_may_couple<World>;
+    for_each_index<pools>([&](auto a) __attribute__((always_inline)) { Built::template build_pool<R_of<a>, any_couples>(own_, a, nullptr); });
   }
 
   /// The same by several workers; `parts` is room for what each makes, `sets` what they keep of the sets of
   /// bodies.
-  template <class Parts, class E>
-  void build(const auto& world, Rows& rows, Parts& parts, auto& sets, const E& execution) {
+  template <class World, class Parts, class E>
+  void build(const World& world, Rows& rows, Parts& parts, auto& sets, const E& execution) {
     world.each([&](const auto& set, auto s) __attribute__((always_inline)) { invert(set, rows, s); });
     show(rows);
     world.each([&](const auto& set, auto s) {
@@ -71,7 +73,8 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
       else
         own_.prepare(set, s);
     });
-    for_each_index<pools>([&](auto a) { parts.template build<R_of<a>>(own_, a, execution); });
+    constexpr bool any_couples = Inverse::is_whole && inner::any_may_couple<World>;
+    for_each_index<pools>([&](auto a) { parts.template build<R_of<a>, any_couples>(own_, a, execution); });
   }
   /// Each island has rows and blocks of its own: several may be solved at once.
   static constexpr bool islands_are_apart = true;
@@ -81,7 +84,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   void build_where(const auto& world, Rows& rows, const CrowdedRow* const* crowded) {
     for (auto& how : own_.coupled) how = inner::HowCoupled::not_at_all;
     prepare(world, rows);
-    for_each_index<pools>([&](auto a) __attribute__((always_inline)) { Built::template build_pool<R_of<a>>(own_, a, crowded[a]); });
+    for_each_index<pools>([&](auto a) __attribute__((always_inline)) { Built::template build_pool<R_of<a>, false>(own_, a, crowded[a]); });
   }
 
   void reset(const Rows&) {}

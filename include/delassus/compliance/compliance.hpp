@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/roles.hpp>
+#include <delassus/fwd.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_system.hpp>
 
@@ -65,6 +66,12 @@ auto response(const Operator& W, const Rows& rows, Index i) {
 /// A set whose A can have entries between blocks, depending on what it holds.
 template <class Set>
 inline constexpr bool may_couple = requires(const Set& set) { set.is_coupled(); };
+
+/// A world with such a set.
+template <class World>
+inline constexpr bool any_may_couple = true;
+template <class... Sets>
+inline constexpr bool any_may_couple<World<Sets...>> = (may_couple<Sets> || ...);
 
 template <class Set>
 bool is_coupled(const Set& set) {

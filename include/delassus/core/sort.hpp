@@ -2,14 +2,19 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 namespace delassus::inner {
 
 // What std::sort and its like are, for pointers and for lists that have data() and size(). A debug build makes some
-// sixty functions of std::sort for each element type and order, and three of this one. Equal elements may change places.
+// sixty functions of std::sort for each element type and order, and one of this one. Equal elements may change places.
 
-/// a < b, by the type's own operator.
+/// a < b, by the type's own operator; of pairs without what std makes of a three-way comparison.
 struct Smaller {
+  template <class A, class B>
+  [[gnu::always_inline]] bool operator()(const std::pair<A, B>& a, const std::pair<A, B>& b) const {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  }
   template <class A, class B>
   [[gnu::always_inline]] bool operator()(const A& a, const B& b) const {
     return a < b;
@@ -43,16 +48,6 @@ template <class T, class Less = Smaller>
   if (count > 1) sift_down(heap, count - 1, 0, x, less);
 }
 
-/// O(n log n) in all cases, in place.
-template <class T, class Less>
-void heap_sort(T* list, std::size_t count, const Less& less) {
-  for (std::size_t start = count / 2; start-- > 0;) {
-    T x = static_cast<T&&>(list[start]);
-    sift_down(list, count, start, x, less);
-  }
-  for (; count > 1; --count) pop_from_heap(list, count, less);
-}
-
 /// Moves what is no larger than some element of [first, last) to the front, what is no smaller behind it, and returns
 /// where the second begins: neither part is empty. Pre: three elements at the least.
 template <class T, class Less>
@@ -75,12 +70,11 @@ template <class T, class Less>
   return low == first ? first + 1 : low;
 }
 
-/// Sorts [first, last) ascending: by partition, small parts by insertion, and by a heap where partition went wrong
-/// `tries` times.
+/// Sorts [first, last) ascending: by partition, and small parts by insertion. Where partition went wrong `tries` times, by
+/// insertion over gaps of … 40, 13, 4 and 1, which takes n^(3/2) at the most.
 template <class T, class Less>
 void sort_part(T* first, T* last, int tries, const Less& less) {
-  while (last - first > 16) {
-    if (tries-- == 0) return heap_sort(first, std::size_t(last - first), less);
+  while (last - first > 16 && tries-- > 0) {
     T* const middle = inner::partition(first, last, less);
     if (middle - first < last - middle) {
       sort_part(first, middle, tries, less);
@@ -90,17 +84,20 @@ void sort_part(T* first, T* last, int tries, const Less& less) {
       last = middle;
     }
   }
-  if (first == last) return;  // of nothing there is no next
-  for (T* next = first + 1; next < last; ++next) {
-    if (!less(*next, next[-1])) continue;
-    T x = static_cast<T&&>(*next);
-    T* hole = next;
-    do {
-      *hole = static_cast<T&&>(hole[-1]);
-      --hole;
-    } while (hole > first && less(x, hole[-1]));
-    *hole = static_cast<T&&>(x);
-  }
+  if (last - first < 2) return;
+  std::ptrdiff_t gap = 1;
+  while (gap < (last - first) / 9) gap = 3 * gap + 1;
+  for (; gap > 0; gap /= 3)
+    for (T* next = first + gap; next < last; ++next) {
+      if (!less(*next, next[-gap])) continue;
+      T x = static_cast<T&&>(*next);
+      T* hole = next;
+      do {
+        *hole = static_cast<T&&>(hole[-gap]);
+        hole -= gap;
+      } while (hole - first >= gap && less(x, hole[-gap]));
+      *hole = static_cast<T&&>(x);
+    }
 }
 
 /// Twice the logarithm of a count: how often its partition may go wrong.

@@ -6,6 +6,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/geometry/inner/hull_faces.hpp>
 #include <delassus/geometry/inner/quickhull.hpp>
 #include <delassus/math/linear.hpp>
@@ -48,10 +49,10 @@ class BasicConvexHull {
     put_in_blocks();
   }
 
-  std::span<const Vector> vertices() const { return vertices_; }  ///< the corners alone, m
+  std::span<const Vector> vertices() const { return {vertices_.data(), vertices_.size()}; }  ///< the corners alone, m
   /// The vertices once more, as many at a time as there are lanes: their x, their y, their z; the last vertex
   /// fills its block.
-  std::span<const Scalar> blocks() const { return blocks_; }
+  std::span<const Scalar> blocks() const { return {blocks_.data(), blocks_.size()}; }
   Index face_count() const { return Index(normals_.size()); }  ///< of polygons, not triangles
   /// Vertex indices of a face, counter-clockwise from outside.
   std::span<const Index> face(Index f) const { return slice(face_loop_, face_start_, f); }
@@ -88,7 +89,7 @@ class BasicConvexHull {
 
  private:
   static std::span<const Index> slice(const Array<Index>& items, const Array<Index>& start, Index i) {
-    return std::span<const Index>(items).subspan(std::size_t(start[i]), std::size_t(start[i + 1] - start[i]));
+    return {items.data() + start[i], std::size_t(start[i + 1] - start[i])};
   }
   static Scalar check_points(std::span<const Vector> points);
   void find_neighbours();
@@ -162,7 +163,7 @@ void BasicConvexHull<Scalar>::find_moments() {
   for (const Vector& v : vertices_) mean += v / Scalar(vertices_.size());
   Matrix second = zero<Matrix>();
   for (Index f = 0; f < face_count(); ++f) {
-    const std::span<const Index> loop = face(f);
+    const inner::Slice<const Index> loop = face(f);
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
       const Vector a = vertices_[loop[0]] - mean, b = vertices_[loop[k]] - mean,
                  c = vertices_[loop[k + 1]] - mean;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/fixed_array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <cstdint>
@@ -117,10 +118,10 @@ inline void cone_face(const Shape& s, const Vec3& d, Face& face) {
 /// sample.
 inline void hull_face(const ConvexHull& h, const Vec3& d, Face& face) {
   Index best = -1;
-  for (const Index f : h.faces_around(support_vertex(h, d)))
+  for (const Index f : Slice<const Index>(h.faces_around(support_vertex(h, d))))
     if (best < 0 || dot(h.normal(f), d) > dot(h.normal(best), d)) best = f;
   if (best < 0) return;
-  const std::span<const Index> loop = h.face(best);
+  const Slice<const Index> loop = h.face(best);
   const std::size_t count = std::min(loop.size(), std::size_t(Face::capacity));
   for (std::size_t k = 0; k < count; ++k) {
     const Index v = loop[k * loop.size() / count];

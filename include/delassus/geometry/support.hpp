@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/cmath.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/geometry/aabb.hpp>
 #include <delassus/geometry/convex_hull.hpp>
 #include <delassus/geometry/shape.hpp>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <concepts>
 #include <limits>
-#include <span>
 
 namespace delassus {
 
@@ -52,7 +52,7 @@ inline Vec3 ellipsoid_support(const Vec3& axes, const Vec3& d) {
 }
 
 inline Index support_vertex(const ConvexHull& h, const Vec3& d) {
-  const std::span<const Vec3> vertices = h.vertices();
+  const Slice<const Vec3> vertices = h.vertices();
   Index best = 0;
   double reach = dot(vertices[0], d);
   for (Index i = 1; i < Index(vertices.size()); ++i) {
@@ -111,7 +111,7 @@ inline double outer_radius(const Shape& s) {
     case ShapeKind::cone:
       return std::max(1.5 * s.size[1], std::hypot(s.size[0], 0.5 * s.size[1]));
     case ShapeKind::ellipsoid:
-      return std::max({s.size[0], s.size[1], s.size[2]});
+      return std::max(std::max(s.size[0], s.size[1]), s.size[2]);
     case ShapeKind::convex_hull:
       return norm(s.hull->centroid()) + s.hull->outer_radius();
     default:
@@ -123,7 +123,7 @@ inline double outer_radius(const Shape& s) {
 inline double length_scale(const Shape& s) {
   switch (s.outline()) {
     case ShapeKind::box:
-      return std::max({s.size[0], s.size[1], s.size[2]});
+      return std::max(std::max(s.size[0], s.size[1]), s.size[2]);
     case ShapeKind::cylinder:
     case ShapeKind::cone:
       return std::max(s.size[0], s.size[1]);
@@ -190,7 +190,7 @@ Box hull_box(const ConvexHull& hull, const Pose& pose) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   TwoLanes least[3], most[3];
   for (int k = 0; k < 3; ++k) least[k] = TwoLanes{infinity, infinity}, most[k] = -least[k];
-  const std::span<const double> blocks = hull.blocks();
+  const Slice<const double> blocks = hull.blocks();
   for (std::size_t i = 0; i < blocks.size(); i += 6) {
     const TwoLanes x = two_lanes_at(&blocks[i]), y = two_lanes_at(&blocks[i + 2]),
                    z = two_lanes_at(&blocks[i + 4]);

@@ -23,8 +23,8 @@ class BasicBlockPattern {
   void analyse(Index blocks, inner::Slice<const std::pair<Index, Index>> pairs) {
     order(blocks, pairs);
     clear(blocks);
-    for (auto [i, j] : pairs) {
-      const Index a = place_[i], b = place_[j];
+    for (const auto& pair : pairs) {
+      const Index a = place_[pair.first], b = place_[pair.second];
       lists_[a < b ? a : b].push_back(a < b ? b : a);
     }
     start_.assign(1, 0);
@@ -62,9 +62,9 @@ class BasicBlockPattern {
   /// each other. Ties go to the lowest number. Plain lists; its cost is that of the fill.
   void order(Index blocks, inner::Slice<const std::pair<Index, Index>> pairs) {
     clear(blocks);
-    for (auto [i, j] : pairs) {
-      lists_[i].push_back(j);
-      lists_[j].push_back(i);
+    for (const auto& pair : pairs) {
+      lists_[pair.first].push_back(pair.second);
+      lists_[pair.second].push_back(pair.first);
     }
     queue_.clear();
     for (Index b = 0; b < blocks; ++b) {

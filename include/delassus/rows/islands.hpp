@@ -8,7 +8,6 @@
 #include <delassus/rows/row_system.hpp>
 
 #include <cstddef>
-#include <span>
 
 namespace delassus {
 
@@ -27,7 +26,7 @@ class Islands {
   Index count() const { return count_; }
 
   /// The items of pool `p` in island `island`, ascending.
-  std::span<const Index> items(int p, Index island) const {
+  inner::Slice<const Index> items(int p, Index island) const {
     const Items& of = pools_[std::size_t(p)];
     return {of.sorted.data() + of.start[island], std::size_t(of.start[island + 1] - of.start[island])};
   }
@@ -70,7 +69,7 @@ class Islands {
   }
 
   static void each_array(auto& self, auto&& f) {
-    f(self.parent_), f(self.island_), f(self.next_), f(self.moves_);
+    f(self.parent_), f(self.island_), f(self.moves_);
     for (auto& of : self.pools_) f(of.lowest), f(of.sorted), f(of.start);
   }
 
@@ -141,20 +140,19 @@ class Islands {
     }
   }
 
-  /// Counting sort of one pool's items by island; stable, so insertion order stays.
+  /// Counting sort of one pool's items by island; stable, so insertion order stays. Islands are filled from their ends.
   void sort(Items& of) {
-    of.start.assign(std::size_t(count_ + 1), 0);
+    of.start.assign_zeros(std::size_t(count_ + 1));
     for (const Index b : of.lowest)
-      if (b >= 0) ++of.start[island_[b] + 1];
+      if (b >= 0) ++of.start[island_[b]];
     for (Index k = 0; k < count_; ++k) of.start[k + 1] += of.start[k];
-    of.sorted.resize(std::size_t(of.start[count_]));
-    next_ = of.start;
-    for (Index i = 0; i < Index(of.lowest.size()); ++i)
-      if (of.lowest[i] >= 0) of.sorted[next_[island_[of.lowest[i]]]++] = i;
+    of.sorted.resize_for_overwrite(std::size_t(of.start[count_]));
+    for (Index i = Index(of.lowest.size()); i-- > 0;)
+      if (of.lowest[i] >= 0) of.sorted[--of.start[island_[of.lowest[i]]]] = i;
   }
 
   Index count_ = 0;
-  Array<Index> parent_, island_, next_;
+  Array<Index> parent_, island_;
   Array<char> moves_;
   OwningArray<Items> pools_;
 };

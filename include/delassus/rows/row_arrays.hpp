@@ -86,7 +86,7 @@ struct RowArrays {
   void reset(Index items) const {
     if (items == 0 && phi->empty()) return;  // a law without items, step after step
     for (int s = 0; s < sets; ++s) {
-      set[s].offset->resize(1);
+      set[s].offset->assign_zeros(1);
       set[s].block->clear();
       set[s].H->clear();
       set[s].G->clear();

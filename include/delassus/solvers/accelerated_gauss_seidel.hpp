@@ -102,7 +102,7 @@ struct BasicAcceleratedGaussSeidel {
   /// What the stages have found, or what they find from loads that are shared; the former where they then find less.
   template <class T, class Space>
   SolveReport finish(auto& monitor, Island<T>& problem, Space& work) const {
-    SolveReport report = monitor.finish();
+    SolveReport report = monitor.finish();  // the only one that is returned, and so never copied
     if (share_loads_up_to <= 0) return report;
     inner::SettleSpace<T>& loads = work.loads;
     if (loads.rounds > 0 && report.status > loads.before.status) {
@@ -113,7 +113,8 @@ struct BasicAcceleratedGaussSeidel {
       report.sweeps = sweeps;
     } else if (report.sweeps < max_iterations &&
                inner::settle_loads(problem, loads, share_loads_up_to, criterion == Criterion::residual && !all_verified ? tolerance : 0, report)) {
-      return solve(problem, work);
+      report = solve(problem, work);
+      return report;
     }
     loads.rounds = loads.sweeps = 0;
     return report;

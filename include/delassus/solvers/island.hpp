@@ -120,7 +120,8 @@ class Island {
     m.last_change = last_change_;
     m.worst_change = worst_change_;
     m.sinking = h_ * std::sqrt(sums.closing);
-    return limits() ? timer_->judge(m, *this) : m;
+    if (limits()) m = timer_->judge(m, *this);
+    return m;
   }
 
   /// λ ← λ + β (λ − before), each brought back into its law's cone; `before` takes the λ that was.

@@ -52,7 +52,7 @@ class IslandProblem : public Island<typename Rows::Scalar> {
       : Island<T>(spans_, 0, island, h) {
     int count = 0;
     for (int p = 0; p < Rows::pool_count; ++p)
-      if (const std::span<const Index> items = islands.items(p, island); !items.empty())
+      if (const inner::Slice<const Index> items = islands.items(p, island); !items.empty())
         spans_[count++] = {&book.view(p), items.data(), Index(items.size())};
     this->take(spans_, count);
     this->length_ = inner::length_of_island(this->begin(), this->end());

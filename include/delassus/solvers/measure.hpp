@@ -76,11 +76,11 @@ struct MeasureSums {
   bool has_vanished() const { return std::max(d, u) < 1e-280; }
 
   /// `epsilon` is that of the scalar in which the rows are.
-  Measure finish(double epsilon) const {
+  [[gnu::always_inline]] Measure finish(double epsilon) const {
     if (!std::isfinite(residual + d + u)) return Measure::of_overflow();
     const double velocity = std::sqrt(std::max(d, u));
     if (has_vanished() && velocity > 0) return Measure::of_nothing();
-    const double mixed = std::sqrt(std::max({d, u, lambda}));
+    const double mixed = std::sqrt(std::max(std::max(d, u), lambda));
     const auto share = [](double part, double whole) { return part == 0 ? 0 : part / whole; };
     return {.residual = share(std::sqrt(residual), velocity),
             .siconos = std::isfinite(mixed) ? share(std::sqrt(siconos), mixed) : mixed,

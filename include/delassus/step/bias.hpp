@@ -67,26 +67,25 @@ template <class T, class S>
   }
   const T *const all_phi = pool.phi->data() + first, *const stiffness = pool.stiffness->data() + first,
           *const damping = pool.damping->data() + first;
-  T* const bias = pool.bias->data() + first;
-  for (int k = 0; k < pool.rows; ++k) {
-    const std::size_t row = first + std::size_t(k);
+  T *const bias = pool.bias->data() + first, *const compliance = pool.compliance->data() + first;
+  for (int k = 0, rows = pool.rows; k < rows; ++k) {
     const RowKind kind = law.kinds[k];
     const double phi = double(all_phi[k]);
     if (kind == RowKind::friction) continue;
     if (inner::is_spring(stiffness[k], damping[k])) {
-      soften(pool, row, h, law.has_mean_springs ? theta : 1.0);
+      soften(pool, first + std::size_t(k), h, law.has_mean_springs ? theta : 1.0);
       if (law.has_mean_springs) u[k] += before * start[k];
     } else if (kind == RowKind::equality) {
       bias[k] = T(stabilisation.equality(phi, theta * h));
       u[k] += before * start[k];
-      (*pool.compliance)[row] = T(joint_compliance_of(stabilisation, h));
+      compliance[k] = T(joint_compliance_of(stabilisation, h));
     } else {
       const double sign = kind == RowKind::lower ? 1 : -1;
       bias[k] = T(sign * lower_bias(stabilisation, sign * phi, h));
-      if constexpr (requires { stabilisation.contact_compliance(h); }) (*pool.compliance)[row] = T(stabilisation.contact_compliance(h));
+      if constexpr (requires { stabilisation.contact_compliance(h); }) compliance[k] = T(stabilisation.contact_compliance(h));
       // Open rows yield too: one that closes within the step meets the same spring, one that does not has λ = 0.
       if constexpr (requires { stabilisation.relative_compliance(h); })
-        (*pool.relative_compliance)[row] = T(stabilisation.relative_compliance(h));
+        (*pool.relative_compliance)[first + std::size_t(k)] = T(stabilisation.relative_compliance(h));
     }
   }
 }
@@ -109,7 +108,7 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
     const Index items = pool.items();
     const int height = pool.rows, sets = pool.sets;
     const bool sees_surfaces = moving && law.place;
-    const T nothing[most_rows] = {};
+    static constexpr T nothing[most_rows] = {};
     T of_start[most_rows];
     for (Index i = 0; i < items; ++i) {
       const std::size_t first = std::size_t(i) * std::size_t(height);

@@ -7,6 +7,7 @@
 #include <delassus/collision/inner/summary.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/anchor.hpp>
@@ -95,7 +96,7 @@ class BasicContactCache {
   Index material_of(Index collider) const { return materials_[collider]; }
   /// Adds them to the points of the step.
   void join_missed() {
-    points.insert(points.end(), missed.begin(), missed.end());
+    for (ContactPoint& p : inner::Slice<ContactPoint>(missed)) points.push_back(static_cast<ContactPoint&&>(p));
     inner::sort_by_name(points);
     inner::part_equal_names(points);
   }
@@ -126,17 +127,20 @@ class BasicContactCache {
       const ContactPoint& p = points[i];
       set_zero(results[i].impulse);
       results[i].starts_cold = false;
-      results[i].record = {.a = anchors_[p.a],
-                           .b = anchors_[p.b],
-                           .point_a = p.point_a,
-                           .point_b = p.point_b,
-                           .normal = p.normal,
-                           .gap = p.gap,
-                           .pair = p.pair,
-                           .feature = p.feature,
-                           .material_a = materials_[p.a],
-                           .material_b = materials_[p.b],
-                           .travel = p.travel};
+      // Member by member: a record that is made and then assigned is copied once more.
+      ContactRecord& record = results[i].record;
+      record.a = anchors_[p.a];
+      record.b = anchors_[p.b];
+      assign(record.point_a, p.point_a);
+      assign(record.point_b, p.point_b);
+      assign(record.normal, p.normal);
+      record.gap = p.gap;
+      record.pair = p.pair;
+      record.feature = p.feature;
+      record.material_a = materials_[p.a];
+      record.material_b = materials_[p.b];
+      set_zero(record.friction_arm);
+      assign(record.travel, p.travel);
     }
   }
 

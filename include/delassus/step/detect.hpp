@@ -52,7 +52,7 @@ Index route_contacts(Laws& laws, const ContactCache& book, const Materials& mate
       is_taken = true;
       auto parameters = pool.law.law.parameters();
       if (!materials.empty())
-        if (const auto pair = materials.between(record.material_a, record.material_b)) pool.law.set_pair(parameters, *pair);
+        if (Material pair; materials.between(record.material_a, record.material_b, pair)) pool.law.set_pair(parameters, pair);
       pool.items.push_back({&record, record.point(), record.gap, contact_frame(record.normal), parameters, r});
     });
     unclaimed += is_taken ? 0 : 1;

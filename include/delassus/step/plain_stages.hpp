@@ -88,7 +88,7 @@ struct PlainStages : StagesWithoutConstraints {
   /// Contact points of the colliders that were gathered.
   static CollisionReport find_contacts(auto& step) {
     auto& book = step.contact_cache;
-    const std::span<const Collider> colliders(book.colliders);
+    const std::span<const Collider> colliders(book.colliders.data(), book.colliders.size());
     if constexpr (inner::asks_who_meets<decltype(step)>) return step.collision().detect(colliders, step.h, book.points, book.who_pushed());
     else return step.collision().detect(colliders, step.h, book.points);
   }
@@ -98,7 +98,7 @@ struct PlainStages : StagesWithoutConstraints {
     if constexpr (inner::asks_who_meets<decltype(step)>) {
       auto& book = step.contact_cache;
       book.take_solved_motion(std::as_const(step).world());
-      step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, book.who_pushed());
+      step.collision().detect_missed(std::span<const Collider>(book.colliders.data(), book.colliders.size()), step.h, book.missed, book.who_pushed());
       inner::leave_what_bounces(step);
       if (book.missed.empty() || !inner::is_worth_solving_again(step)) return false;
       if (++book.solves == inner::most_solves) {
@@ -190,7 +190,7 @@ struct PlainStages : StagesWithoutConstraints {
   static void keep_impulses(auto& step) {
     delassus::keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache);
     forget_lost_islands(step.pools.all(), step.law_set.views(), step.contact_cache, step.islands, step.reports);
-    step.contact_cache.remember();
+    if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts) step.contact_cache.remember();
   }
 
   static void correct(auto& step) {

@@ -5,6 +5,7 @@
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/slice.hpp>
 #include <delassus/rows/anchor.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/solve_report.hpp>
@@ -33,6 +34,12 @@ Index rows_about(const Islands<T>& islands, AllRows<T> rows, const Index* first_
   return count;
 }
 
+/// Whether some contact law has an e.
+template <class Laws>
+inline constexpr bool some_bounce = false;
+template <class... L>
+inline constexpr bool some_bounce<Constraints<L...>> = ((ContactLaw<L> && (refinements_of<L> & refine::restitution) != 0) || ...);
+
 /// e between two materials, of the law that takes them.
 double restitution_between(auto& step, Index a, Index b) {
   double e = 0;
@@ -42,7 +49,7 @@ double restitution_between(auto& step, Index a, Index b) {
       if (!pool.law.takes(a, b)) return;
       auto parameters = pool.law.law.parameters();
       if (!step.material_pairs.empty())
-        if (const auto pair = step.material_pairs.between(a, b)) pool.law.set_pair(parameters, *pair);
+        if (Material pair; step.material_pairs.between(a, b, pair)) pool.law.set_pair(parameters, pair);
       e = std::max(e, double(parameters.restitution));
     }
   });
@@ -52,10 +59,12 @@ double restitution_between(auto& step, Index a, Index b) {
 /// What bounces is left to the next step, which sees with what speed it meets: in this one it would have e times the speed that it
 /// had before it was pushed. Not what would overlap by more than a contact may.
 void leave_what_bounces(auto& step) {
-  auto& book = step.contact_cache;
-  std::erase_if(book.missed, [&](const ContactPoint& p) {
-    return book.overlap_of(p, step.h) <= margin_limit && restitution_between(step, book.material_of(p.a), book.material_of(p.b)) > 0;
-  });
+  if constexpr (some_bounce<typename std::remove_cvref_t<decltype(step)>::Laws>) {
+    auto& book = step.contact_cache;
+    std::erase_if(book.missed, [&](const ContactPoint& p) {
+      return book.overlap_of(p, step.h) <= margin_limit && restitution_between(step, book.material_of(p.a), book.material_of(p.b)) > 0;
+    });
+  }
 }
 
 /// A motion that was not found to the tolerance is not worth a second solve for what overlaps by less than the least margin.
@@ -65,7 +74,7 @@ bool is_worth_solving_again(auto& step) {
   const auto& book = step.contact_cache;
   Index first[World::set_count + 1] = {};
   step.world().each([&](const auto& set, auto s) { first[s + 1] = first[s] + set.blocks(); });
-  for (const ContactPoint& p : book.missed) {
+  for (const ContactPoint& p : Slice<const ContactPoint>(book.missed)) {
     const bool is_large = rows_about(step.islands, step.arrays.all(), first, book.anchor_of(p.a), book.anchor_of(p.b)) > small_island;
     if (is_found && !is_large) return true;
     if (book.overlap_of(p, step.h) > (is_large ? shallow_share : margin_share)) return true;

@@ -128,10 +128,12 @@ void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> col
     if (a.is_movable && b.is_movable) {
       // Nearest points, where they are those that meet, have one place for both.
       const std::size_t known = out.size();
-      worker_.collide(Job{p.job}, now, NoFilter{}, out);
+      worker_.scene.leaves_out = false;
+      worker_.collide(Job{p.job}, now, filter, out);
+      worker_.scene.leaves_out = true;
       if (out.size() > known && dot(hit.a.rotation * hit.normal_in_a, now.normal) > inner::same_normal)
         return true;
-      out.resize(known);
+      while (out.size() > known) out.pop_back();
     }
     PairMemory last;
     last.copy(now);

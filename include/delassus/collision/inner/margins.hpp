@@ -44,7 +44,7 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
   const double share = s.margin >= 0 ? 0.5 * s.margin
                                      : std::min(std::max(0.5 * margin_share * of.scale, of.speed * h),
                                                 margin_limit * of.scale);
-  const double more = 0.5 * s.contact_distance + share + 1e-12 * std::max({sizes[0], sizes[1], sizes[2]});
+  const double more = 0.5 * s.contact_distance + share + 1e-12 * max_entry(sizes);
   for (int k = 0; k < 3; ++k) box.min()[k] -= more, box.max()[k] += more;
   return box;
 }

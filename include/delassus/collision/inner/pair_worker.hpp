@@ -35,6 +35,7 @@ struct PairScene {
   const char* flies_by = nullptr;    ///< the same, see `inner::flies_by`
   double h = 0;                      ///< step, s
   CollisionSettings settings;
+  bool leaves_out = true;  ///< pairs that do not meet, where the filter knows who pushed
 };
 
 /// Whose middle a row holds.
@@ -121,14 +122,13 @@ class PairWorker {
   void collide_in_full(const Collider& a, const Collider& b, const Job& job, const Pose& b_in_a, double scale,
                        double reach, std::uint64_t shapes, RestingPair& now, const Filter& filter,
                        std::vector<ContactPoint>& out) {
-    constexpr bool looks_ahead = KnowsWhoPushed<Filter>;
+    const bool looks_ahead = may_leave_out<Filter>();
     bool will_meet = false;
     PairMemory last;
     last.copy(now);
     now.reset(job.pair);
     now.owner = last.owner;
-    if constexpr (!looks_ahead)
-      if (last.impact.is_there) now.impact = last.impact;
+    if (!looks_ahead && last.impact.is_there) now.impact = last.impact;
     ++report.queries;
 
     const double farthest = looks_ahead ? farthest_meeting(job, reach) : reach;
@@ -138,10 +138,10 @@ class PairWorker {
     const double margin =
         scene.settings.contact_distance +
         margin_along(a, b, now.normal, a.pose.to_world(r.point_a), scale, scene.h, scene.settings);
-    if constexpr (looks_ahead) {
+    if (looks_ahead) {
       // What pushed, or may be pushed, keeps its contacts within the margin.
       const bool is_near = r.distance <= margin,
-                 is_new = a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
+                 is_new = a.goes_alone && b.goes_alone && !has_pushed(filter, job.pair);
       will_meet = is_new && r.distance > scene.settings.contact_distance;
       if (r.distance - scene.settings.contact_distance > touch_share * scale) {
         if (!is_near || is_new) {
@@ -164,10 +164,22 @@ class PairWorker {
     if (will_meet) now.impact = impact_of(a, b, now, out);
     share_area(now.area, a.pose, now.count, out);
     sort_last(now.count, out);
-    if constexpr (looks_ahead) hold_cores(a, b, job, out);  // their names are the last
+    if (looks_ahead) hold_cores(a, b, job, out);  // their names are the last
     now.keep(shapes, b_in_a, r.normal, margin);
   }
 
+  /// Whether pairs that do not meet are left out.
+  template <class Filter>
+  [[gnu::always_inline]] bool may_leave_out() const {
+    return KnowsWhoPushed<Filter> && scene.leaves_out;
+  }
+  template <class Filter>
+  [[gnu::always_inline]] static bool has_pushed(const Filter& filter, std::uint64_t pair) {
+    if constexpr (KnowsWhoPushed<Filter>)
+      return filter.pushed(pair);
+    else
+      return false;
+  }
   /// How far apart two bodies can be that meet within the step, m.
   double farthest_meeting(const Job& job, double reach) const {
     return std::max(reach,
@@ -253,8 +265,9 @@ void PairWorker<Kernel>::collide(const Job& job, RestingPair& pair, const Filter
   const double reach = scene.settings.contact_distance +
                        widest_margin(of_a.speed + of_b.speed, scale, scene.h, scene.settings);
   constexpr bool is_native = std::is_same_v<Kernel, GjkEpa>;
+  const bool looks_ahead = may_leave_out<Filter>();
   const bool is_round = is_native && pair.is_plain && is_round_pair(a.shape, b.shape);
-  if (is_round && are_balls_far(a, b, KnowsWhoPushed<Filter> ? farthest_meeting(job, reach) : reach, pair)) {
+  if (is_round && are_balls_far(a, b, looks_ahead ? farthest_meeting(job, reach) : reach, pair)) {
     ++report.queries;
     return;
   }
@@ -265,7 +278,7 @@ void PairWorker<Kernel>::collide(const Job& job, RestingPair& pair, const Filter
   RememberedImpact impact;
   if (pair.impact.is_there) impact = pair.impact;
   const std::size_t first = out.size();
-  if constexpr (KnowsWhoPushed<Filter>) pair.impact.is_there = false;
+  if (looks_ahead) pair.impact.is_there = false;
   Vec3 n;
   if (!pair.repeat(shapes, b_in_a, reach, scale, repeated_, n)) {
     collide_in_full(a, b, job, b_in_a, scale, reach, shapes, pair, filter, out);
@@ -278,7 +291,8 @@ void PairWorker<Kernel>::collide(const Job& job, RestingPair& pair, const Filter
     share_area(pair.area, a.pose, pair.count, out);
   }
   if constexpr (KnowsWhoPushed<Filter>)
-    if (impact.is_there && filter.pushed(job.pair) && !has_turned(a, scene.h) && !has_turned(b, scene.h))
+    if (looks_ahead && impact.is_there && filter.pushed(job.pair) && !has_turned(a, scene.h) &&
+        !has_turned(b, scene.h))
       finish_impact(a, b, job, impact, pair, first, out);
 }
 
@@ -288,7 +302,7 @@ bool PairWorker<Kernel>::collide_in_one_point(const Collider& a, const Collider&
                                               const Pose& b_in_a, double scale, double reach,
                                               RestingPair& now, const Filter& filter,
                                               std::vector<ContactPoint>& out) {
-  constexpr bool looks_ahead = KnowsWhoPushed<Filter>;
+  const bool looks_ahead = may_leave_out<Filter>();
   const double farthest = looks_ahead ? farthest_meeting(job, reach) : reach;
   SignedPair r;
   if (!one_point(a.shape, b.shape, b_in_a, farthest, scale, r)) return false;
@@ -298,8 +312,8 @@ bool PairWorker<Kernel>::collide_in_one_point(const Collider& a, const Collider&
     const double margin = scene.settings.contact_distance +
                           margin_along(a, b, n, a.pose.to_world(r.point_a), scale, scene.h, scene.settings);
     touches = !(r.distance > margin);
-    if constexpr (looks_ahead) {
-      const bool is_new = a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
+    if (looks_ahead) {
+      const bool is_new = a.goes_alone && b.goes_alone && !has_pushed(filter, job.pair);
       if (r.distance - scene.settings.contact_distance > touch_share * scale && (!touches || is_new)) {
         const Apart apart{job, r.distance - scene.settings.contact_distance - meeting_share * scale, n};
         if (may_close(a, b, n, apart.distance, scene.h) &&

@@ -5,7 +5,6 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/fixed_array.hpp>
 
-#include <algorithm>
 
 namespace delassus::inner {
 
@@ -65,7 +64,8 @@ void begin_with_short_edges(std::same_as<Simplex> auto& s) {
     const double length2 = squared_norm(s.p[(i + 1) % 3].w - s.p[(i + 2) % 3].w);
     if (length2 > longest) longest = length2, first = i;
   }
-  std::rotate(s.p.begin(), s.p.begin() + first, s.p.begin() + 3);
+  const auto old = s.p;
+  for (int i = 0; i < 3; ++i) s.p[i] = old[(first + i) % 3];
 }
 
 /// Nearest point of the triangle (p₀, p₁, p₂) by its Voronoi regions. Source: [Ericson2005], §5.1.5.

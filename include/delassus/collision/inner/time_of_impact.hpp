@@ -33,7 +33,7 @@ inline double core_of_motion(const Shape& s) {
   switch (s.kind) {
     case ShapeKind::box:
     case ShapeKind::ellipsoid:
-      return 0.5 * std::min({s.size[0], s.size[1], s.size[2]});
+      return 0.5 * std::min(std::min(s.size[0], s.size[1]), s.size[2]);
     case ShapeKind::cylinder:
       return 0.5 * std::min(s.size[0], s.size[1]);
     case ShapeKind::cone:

@@ -48,10 +48,11 @@ class AssembledRows {
   }
 
   /// The rows of pool a, `height` an item, whose items in `crowded` have no blocks, and of W_ii only their own compliance.
-  template <int height>
+  /// `couples`: some set may have an A that couples its blocks.
+  template <int height, bool couples>
   static void build_pool(AssembledRows& W, int a, const CrowdedRow* crowded);
   /// The same of items first … last − 1, in order, into `to`, whose rows of the pool are begun.
-  template <int height>
+  template <int height, bool couples>
   static void build_rows(AssembledRows& W, BlockMatrix<T>& to, int a, Index first, Index last, const CrowdedRow* crowded);
   /// Whether a set that pool a acts on has an A that couples its blocks.
   bool is_coupled(int a) const {
@@ -125,23 +126,23 @@ class AssembledRows {
 };
 
 template <class T>
-template <int height>
+template <int height, bool couples>
 void AssembledRows<T>::build_pool(AssembledRows& W, int a, const CrowdedRow* crowded) {
-  if (W.matrix.begin_rows(W.views.data(), a)) build_rows<height>(W, W.matrix, a, 0, W.views[std::size_t(a)].items, crowded);
+  if (W.matrix.begin_rows(W.views.data(), a)) build_rows<height, couples>(W, W.matrix, a, 0, W.views[std::size_t(a)].items, crowded);
 }
 
 template <class T>
-template <int height>
+template <int height, bool couples>
 void AssembledRows<T>::build_rows(AssembledRows& W, BlockMatrix<T>& to, int a, Index first, Index last, const CrowdedRow* crowded) {
   const RowView<T>& mine = W.views[std::size_t(a)];
-  const HowCoupled* const coupled = W.coupled.data();
-  const bool any_coupled = W.is_coupled(a);
+  const bool any_coupled = couples && W.is_coupled(a);
   for (Index i = first; i < last; ++i) {
     to.template begin_row<height>(a, i);
     if (!crowded || !crowded[i].is_crowded) {
-      if (any_coupled) W.template add_coupled<height>(to, a, i);
+      if constexpr (couples)
+        if (any_coupled) W.template add_coupled<height>(to, a, i);
       for (int s = 0; s < mine.sets; ++s)
-        if (coupled[s] == HowCoupled::not_at_all) W.template add_row<height>(to, a, s, i);
+        if (!any_coupled || W.coupled[std::size_t(s)] == HowCoupled::not_at_all) W.template add_row<height>(to, a, s, i);
     }
     to.end_row(mine, a, i);
   }

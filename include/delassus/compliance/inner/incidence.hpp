@@ -33,14 +33,14 @@ class Incidence {
       const Index entries = set.offset[pools[p].items];
       if (entries == 0) continue;  // nobody asks `at`
       List& list = lists_[std::size_t(s * count + p)];
-      list.start.assign(std::size_t(blocks) + 1, 0);
-      for (Index e = 0; e < entries; ++e) ++list.start[std::size_t(set.block[e]) + 1];
+      list.start.assign_zeros(std::size_t(blocks) + 1);
+      for (Index e = 0; e < entries; ++e) ++list.start[std::size_t(set.block[e])];
       for (Index b = 0; b < blocks; ++b) list.start[std::size_t(b) + 1] += list.start[std::size_t(b)];
-      list.next = list.start;
       list.entries.resize(std::size_t(entries));
-      for (Index i = 0; i < pools[p].items; ++i)
-        for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e)
-          list.entries[std::size_t(list.next[std::size_t(set.block[e])]++)] = {i, e};
+      // From the ends of the blocks, and the last first: so they stand in order.
+      for (Index i = pools[p].items; i-- > 0;)
+        for (Index e = set.offset[i + 1]; e-- > set.offset[i];)
+          list.entries[std::size_t(--list.start[std::size_t(set.block[e])])] = {i, e};
     }
   }
 
@@ -52,7 +52,7 @@ class Incidence {
 
  private:
   struct List {
-    Array<Index> start, next;
+    Array<Index> start;
     Array<Entry> entries;
   };
   int pools_ = 0;

@@ -17,11 +17,11 @@ template <class T>
 class RowsOfWInParts {
  public:
   /// The rows of pool a, `height` an item. W becomes what one worker builds.
-  template <int height, class E>
+  template <int height, bool couples, class E>
   void build(AssembledRows<T>& W, int a, const E& execution) {
     const Index items = W.views[std::size_t(a)].items,
                 tasks = tasks_of(items, W.is_coupled(a) ? least_coupled : least_items, execution.workers());
-    if (tasks == 1) return AssembledRows<T>::template build_pool<height>(W, a, nullptr);
+    if (tasks == 1) return AssembledRows<T>::template build_pool<height, couples>(W, a, nullptr);
     W.matrix.begin_rows(W.views.data(), a);
     const int pools = int(W.views.size());
     parts_.resize(std::size_t(tasks));
@@ -30,8 +30,8 @@ class RowsOfWInParts {
       part.items = range_of(items, task, tasks);
       part.matrix.resize(pools);
       part.matrix.begin_rows(W.views.data(), a);
-      AssembledRows<T>::template build_rows<height>(W, part.matrix, a, part.items.first, part.items.last,
-                                                    nullptr);
+      AssembledRows<T>::template build_rows<height, couples>(W, part.matrix, a, part.items.first,
+                                                             part.items.last, nullptr);
     });
     for (int b = 0; b < pools; ++b) make_room(W, a, b, height, tasks);
     execution.run(tasks, [&](Index task, Index) { append(parts_[std::size_t(task)], W, a, height); });

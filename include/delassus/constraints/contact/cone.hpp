@@ -35,7 +35,7 @@ template <class T>
 Vec<3, T> project_on_cone(const Vec<3, T>& x, T friction) {
   if (inner::is_in_cone(x, friction)) return x;
   const T tangential = inner::length(x[1], x[2]);
-  if (friction * tangential <= -x[0]) return Vec<3, T>::Zero();
+  if (friction * tangential <= -x[0]) return zero<Vec<3, T>>();
   const T normal = (x[0] + friction * tangential) / (T(1) + friction * friction);
   const T scale = friction * normal / tangential;
   return {normal, scale * x[1], scale * x[2]};
@@ -45,8 +45,8 @@ Vec<3, T> project_on_cone(const Vec<3, T>& x, T friction) {
 template <class T>
 Mat<3, 3, T> project_on_cone_slope(const Vec<3, T>& x, T friction) {
   const T tangential = inner::length(x[1], x[2]);
-  if (friction * tangential <= -x[0]) return Mat<3, 3, T>::Zero();
-  if (tangential <= friction * x[0]) return Mat<3, 3, T>::Identity();
+  if (friction * tangential <= -x[0]) return zero<Mat<3, 3, T>>();
+  if (tangential <= friction * x[0]) return diagonal_of<3>(T(1));
   const T over = T(1) / (T(1) + friction * friction), normal = (x[0] + friction * tangential) * over;
   const Vec<2, T> t = x.template tail<2>() / tangential;
   const T along = friction * over, across = friction * normal / tangential;

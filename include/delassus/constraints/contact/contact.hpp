@@ -73,9 +73,7 @@ struct Contact {
     (void)world;
     const Vec3 half = 0.5 * item.record->travel;
     constexpr int along = inner::rows_along<rows>;
-    Mat<along, 3> axes;
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < along; ++j) axes(j, k) = item.frame(j, k);
+    const auto& axes = axes_along(item.frame);
     auto a = row.end(item.record->a, item.point - half);
     const bool is_of_patch = along > 1 && !is_zero(item.record->friction_arm);
     a.along(axes, -1);
@@ -100,6 +98,18 @@ struct Contact {
   double restitution(const Item& item) const { return item.parameters.restitution; }
 
  private:
+  /// The first rows of a frame, as many as see the velocity of a point.
+  static decltype(auto) axes_along(const Mat3& frame) {
+    constexpr int along = inner::rows_along<rows>;
+    if constexpr (along == 3) {
+      return (frame);
+    } else {
+      Mat<along, 3> axes;
+      for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < along; ++j) axes(j, k) = frame(j, k);
+      return axes;
+    }
+  }
   /// From the velocity of a point to that of one beside it by r: t · (ω × r) = (r × t) · ω.
   static void shift(auto& end, const Item& item, double sign) {
     for (int k = 1; k < inner::rows_along<rows>; ++k)

@@ -79,7 +79,7 @@ struct Coulomb {
   /// λ from b, the velocity without this contact, and what `prepare` made of W.
   template <class T>
   static Vec<3, T> impulse(const Parameters& p, const Vec<3, T>& b, Memory<T>& memory) {
-    if (b[0] >= -inner::negligible_approach<T>) return Vec<3, T>::Zero();
+    if (b[0] >= -inner::negligible_approach<T>) return zero<Vec<3, T>>();
     const T mu = T(p.friction);
     const Vec<3, T> stick = -(memory.inverse * b);
     const T limit = mu * stick[0];
@@ -96,15 +96,15 @@ struct Coulomb {
   template <class T>
   Mat<3, 3, T> tangent(const Parameters& p, Local<3, T>& c) const {
     Vec<3, T>& x = c.lambda;
-    Mat<3, 3, T> slope = Mat<3, 3, T>::Zero();
+    auto slope = zero<Mat<3, 3, T>>();
     for (int k = 0; k < 3; ++k) {
       slope(k, k) = T(1) / c.W(k, k);
       x[k] -= slope(k, k) * c.d[k];
     }
     const T mu = T(p.friction), limit = mu * x[0], size = inner::length(x[1], x[2]);
     if (!(x[0] > T(0))) {
-      x.setZero();
-      slope.setZero();
+      set_zero(x);
+      set_zero(slope);
       return slope;
     }
     if (size <= limit) return slope;
@@ -158,7 +158,7 @@ struct Coulomb {
     const T square = y1 * y1 + y2 * y2, limit = mu * z;
     if (z >= T(0) && normal * normal * square <= limit * limit) return {z / normal, y1, y2};
     const T size = std::sqrt(square), pushed = mu * tangential * size;
-    if (!(pushed > -z)) return Vec<3, T>::Zero();
+    if (!(pushed > -z)) return zero<Vec<3, T>>();
     const T n = (z + pushed) / (normal + mu * mu * tangential), share = size > T(0) ? mu * n / size : T(0);
     return {n, share * y1, share * y2};
   }

@@ -8,7 +8,6 @@
 #include <delassus/core/known_materials.hpp>
 
 #include <algorithm>
-#include <optional>
 
 namespace delassus {
 
@@ -42,7 +41,7 @@ class Materials {
     check(material, "material pair");
     DELASSUS_EXPECT(std::min(a, b) >= 0 && std::max(a, b) <= count(),
                     "material pair: no material has this number; add it first");
-    const auto [low, high] = std::minmax(a, b);
+    const Index low = std::min(a, b), high = std::max(a, b);
     for (Pair& p : pairs_)
       if (p.a == low && p.b == high) {
         p.material = material;
@@ -51,21 +50,24 @@ class Materials {
     pairs_.push_back({low, high, material});
   }
 
-  /// What holds between two materials, or nothing when the law's own parameters do.
-  std::optional<Material> between(Index a, Index b) const {
-    const auto [low, high] = std::minmax(a, b);
+  /// What holds between two materials; false, and nothing is written, where the law's own parameters do.
+  bool between(Index a, Index b, Material& both) const {
+    const Index low = std::min(a, b), high = std::max(a, b);
     for (const Pair& p : pairs_)
-      if (p.a == low && p.b == high) return p.material;
-    if (low <= 0 || high > count()) return {};
+      if (p.a == low && p.b == high) {
+        both = p.material;
+        return true;
+      }
+    if (low <= 0 || high > count()) return false;
     const Material &x = materials_[low - 1], &y = materials_[high - 1];
-    Material both{std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution), x.stiffness, x.damping};
+    both = {std::sqrt(x.friction * y.friction), std::max(x.restitution, y.restitution), x.stiffness, x.damping};
     if (x.stiffness > 0 && y.stiffness > 0) {
       both.stiffness = in_series(x.stiffness, y.stiffness);
       both.damping = in_series(x.damping, y.damping);
     } else if (y.stiffness > 0) {
       both.stiffness = y.stiffness, both.damping = y.damping;
     }
-    return both;
+    return true;
   }
 
   /// Without materials and pairs the laws' own numbers hold.

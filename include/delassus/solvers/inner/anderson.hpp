@@ -34,7 +34,10 @@ template <int n>
 void solve_gram(const double (&gram)[n][n], double (&g)[n], int count) {
   double G[n][n], largest = 0;
   for (int k = 0; k < count; ++k) largest = std::max(largest, gram[k][k]);
-  if (!(largest > 0)) return std::fill(g, g + count, 0.0);
+  if (!(largest > 0)) {
+    for (int k = 0; k < count; ++k) g[k] = 0;
+    return;
+  }
   for (int k = 0; k < count; ++k)
     for (int j = 0; j < count; ++j) G[k][j] = gram[k][j] + (k == j ? 1e-10 * largest : 0);
   for (int k = 0; k < count; ++k)

@@ -96,7 +96,7 @@ class LeastImpulses {
     gather();
     b = x;
     multiply(x, false, r, true);
-    std::fill(x.begin(), x.end(), 0.0);
+    x.assign_zeros(x.size());
     multiply(r, true, p, false);
     double square = sum_of_products(r, r);
     const double goal = 1e-20 * square;
@@ -198,7 +198,7 @@ class LeastImpulses {
   /// x in the range of Bᵀ W B with its product b.
   bool find_in_range(int products) {
     auto& [solved, target, free, x, b, r, p, q] = work_;
-    std::fill(x.begin(), x.end(), 0.0);
+    x.assign_zeros(x.size());
     r = b;
     p = b;
     double square = sum_of_products(r, r);

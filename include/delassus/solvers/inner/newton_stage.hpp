@@ -96,7 +96,8 @@ class NewtonStage {
       }
       if (monitor_.sweeps() < gathers_after_ || !problem_.may_attempt(gathering)) return false;
     }
-    if (!std::exchange(is_gathered_, true)) {
+    if (!is_gathered_) {
+      is_gathered_ = true;
       problem_.attempted(false);  // that far: what is gathered and not begun is of no use either
       if (space_.body.gather(problem_)) {
         cost_ = space_.body.cost_in_sweeps();

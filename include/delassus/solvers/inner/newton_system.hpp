@@ -283,7 +283,7 @@ class NewtonSystem {
   Index& number(int set, Index block) { return number_[std::size_t(block) * std::size_t(sets_) + std::size_t(set)]; }
 
   void number_blocks(const Island<T>& island) {
-    for (const auto& [s, b] : blocks_) number(s, b) = -1;
+    for (const auto& block : blocks_) number(block.first, block.second) = -1;
     blocks_.clear();
     for (const Span<T>& span : island) {
       sets_ = span.pool->sets;
@@ -296,7 +296,7 @@ class NewtonSystem {
             if (const std::size_t room = (std::size_t(b) + 1) * std::size_t(sets_); number_.size() < room) number_.resize(room, -1);
             if (number(s, b) >= 0) continue;
             number(s, b) = 0;
-            blocks_.emplace_back(s, b);
+            blocks_.push_back({s, b});
           }
         }
     }
@@ -322,7 +322,8 @@ class NewtonSystem {
         copy_side(set, R, e, &H_[side.at], &G_[side.at]);
         const Index last = Index(sides_.size()) - 1;
         for (Index t = c.first; t < last; ++t)
-          if (sides_[t].block != side.block) pairs_.push_back(std::minmax({sides_[t].block, side.block}));
+          if (sides_[t].block != side.block)
+            pairs_.push_back({std::min(sides_[t].block, side.block), std::max(sides_[t].block, side.block)});
         add_to_balance(last, c);
       }
     }

@@ -61,6 +61,7 @@ template <class T>
 bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tolerance, SolveReport& report) {
   constexpr int most_rounds = 3, most_products = 200;
   constexpr double least_way = 1e-4;  // of |λ|; what is nearer is not solved again
+  if (problem.row_count() < 9) return false;  // three contacts with friction have nine
   const Closed closed = closed_items(problem);
   if (closed.contacts < 3 || closed.contacts > most || closed.rows > 6 * most) return false;
   if (closed.others == 0 && !some_may_slip(problem)) return false;
@@ -84,7 +85,7 @@ bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tol
   for (int round = 0; round < 4; ++round)
     if (!least.shrink(most_products)) break;
   const Measure after = problem.measure();
-  if (after.residual <= std::max({2 * report.measure.residual, after.floor, tolerance}))
+  if (after.residual <= std::max(std::max(2 * report.measure.residual, after.floor), tolerance))
     report.measure = after;
   else
     problem.load(work.least.solved), report.are_loads_decided = false;
