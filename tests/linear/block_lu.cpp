@@ -82,6 +82,44 @@ TEST_CASE("the block LU solves what a dense factorization solves") {
     }
 }
 
+// As the first test, with blocks that have 1 to 6 rows of their own, and all right sides of A⁻¹ at once; what stands
+// behind the rows of a block is the identity's, and is never read.
+TEST_CASE("blocks of fewer rows are solved for many right sides at once") {
+  for (const int pairs : {0, 20, 60, 400}) {
+    CAPTURE(pairs);
+    constexpr int w = 6, blocks = 20;
+    RandomBlocks<w> full(blocks, pairs, unsigned(pairs) + 7, 10);
+    std::vector<Index> first{0}, kept;
+    for (Index i = 0; i < blocks; ++i) {
+      const int rows = 1 + i * 5 % w;
+      first.push_back(first.back() + rows);
+      for (int r = 0; r < w; ++r) {
+        if (r < rows) {
+          kept.push_back(w * i + r);
+          continue;
+        }
+        const Index k = w * i + r;
+        full.dense.row(k).setZero(), full.dense.col(k).setZero();
+        full.dense(k, k) = 1;
+      }
+    }
+    // Off the pattern `dense` is zero, and `at` has no entry.
+    for (Index i = 0; i < blocks; ++i)
+      for (Index j = 0; j < blocks; ++j)
+        if (const Mat<w, w> block = full.dense.block<w, w>(w * i, w * j); !block.isZero(0)) full.sparse.at(i, j) = block;
+    const int n = int(kept.size());
+    REQUIRE(n == first.back());
+    Eigen::MatrixXd small(n, n);
+    for (int r = 0; r < n; ++r)
+      for (int c = 0; c < n; ++c) small(r, c) = full.dense(kept[std::size_t(r)], kept[std::size_t(c)]);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> X = Eigen::MatrixXd::Identity(n, n);
+    REQUIRE(full.sparse.factor_own_rows(first));
+    full.sparse.solve(X.data(), n, first);
+    const Eigen::MatrixXd expected = small.inverse();
+    REQUIRE((X - expected).norm() <= 1e-13 * expected.norm());
+  }
+}
+
 TEST_CASE("rows are exchanged inside a block") {
   BlockLu<3, double> A;
   A.analyse(1, {});
@@ -114,6 +152,25 @@ TEST_CASE("a chain and a star are eliminated without fill") {
   REQUIRE(pattern.entries() == 49);
   pattern.analyse(50, star);
   REQUIRE(pattern.entries() == 49);
+}
+
+// The joints of a machine, each with those that hold one of its two bodies. A graph whose cliques hang in a tree has an
+// order without fill, and the joint of fewest neighbours is always one of its ends. In a chain one neighbour is left
+// then, 1 + 1 · 2 products of blocks; where two joints hang on each body two are, 1 + 2 · 3.
+TEST_CASE("the factorization of chains and trees of joints grows linearly") {
+  for (const Index n : {10, 100, 300, 1000})
+    for (const int children : {1, 2}) {
+      CAPTURE(n, children);
+      std::vector<std::pair<Index, Index>> pairs;
+      for (Index i = 1; i < n; ++i) {
+        const Index parent = (i - 1) / children;
+        pairs.emplace_back(parent, i);
+        for (Index other = i + 1; other < n && (other - 1) / children == parent; ++other) pairs.emplace_back(i, other);
+      }
+      BlockLu<6, double> A;
+      A.analyse(n, pairs);
+      REQUIRE(A.products() <= (children == 1 ? 3. : 7.) * n);
+    }
 }
 
 }  // namespace block_lu_tests

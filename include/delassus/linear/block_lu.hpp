@@ -4,9 +4,11 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/linear/block_pattern.hpp>
+#include <delassus/math/long_vectors.hpp>
 #include <delassus/math/pivoted_lu.hpp>
 #include <delassus/math/small_products.hpp>
 
+#include <cstddef>
 #include <utility>
 
 namespace delassus {
@@ -76,6 +78,29 @@ class BlockLu {
     return true;
   }
 
+  /// The same where block i has first[i + 1] − first[i] rows of its own: the rows and columns of A behind
+  /// those are the identity's.
+  bool factor_own_rows(inner::Slice<const Index> first) {
+    for (Index j = 0; j < Index(diagonal_.size()); ++j) {
+      const int k = rows(first, j);
+      if (!pivot_[j].factor(diagonal_[j], k)) return false;
+      for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
+        pivot_[j].solve(upper_[e], k, rows(first, pattern_.row(e)));
+      for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e) {
+        const Index i = pattern_.row(e);
+        const int r = rows(first, i);
+        take_product(lower_[e], upper_[e], diagonal_[i], r, k, r);
+        for (Index f = e + 1; f < pattern_.start(j + 1); ++f) {
+          const Index at = pattern_.find(pattern_.row(f), i);
+          const int s = rows(first, pattern_.row(f));
+          take_product(lower_[f], upper_[e], lower_[at], s, k, r);
+          take_product(lower_[e], upper_[f], upper_[at], r, k, s);
+        }
+      }
+    }
+    return true;
+  }
+
   /// Whether det A < 0.
   bool is_negative() const {
     bool is = false;
@@ -103,10 +128,58 @@ class BlockLu {
     for (Index i = 0; i < n; ++i) assign(x[i], work_[pattern_.place(i)]);
   }
 
+  /// X ← A⁻¹ X for many columns at once, which lie beside each other: row r of block i is
+  /// X[(first[i] + r) columns] …, r < first[i + 1] − first[i]. The rows and columns of A behind those are the
+  /// identity's.
+  void solve(T* X, Index columns, inner::Slice<const Index> first) const {
+    const Index n = Index(diagonal_.size());
+    const auto row = [&](Index i, int r) { return X + std::ptrdiff_t(first[i] + r) * columns; };
+    for (Index j = 0; j < n; ++j) {
+      const Index from = block_[j];
+      const int used = rows(first, j);
+      if (are_zero(row(from, 0), std::ptrdiff_t(used) * columns)) continue;
+      pivot_[j].solve_rows([&](int k) { return row(from, k); }, columns, used);
+      for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
+        take_rows(lower_[e], used, rows(first, pattern_.row(e)), row(from, 0),
+                  row(block_[pattern_.row(e)], 0), columns);
+    }
+    for (Index j = n; j-- > 0;)
+      for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e)
+        take_rows(upper_[e], rows(first, pattern_.row(e)), rows(first, j), row(block_[pattern_.row(e)], 0),
+                  row(block_[j], 0), columns);
+  }
+
  private:
+  static bool are_zero(const T* x, std::ptrdiff_t n) {
+    for (std::ptrdiff_t i = 0; i < n; ++i)
+      if (x[i] != T(0)) return false;
+    return true;
+  }
+  /// That the block at place j has of its own.
+  int rows(inner::Slice<const Index> first, Index j) const {
+    return int(first[block_[j] + 1] - first[block_[j]]);
+  }
+  /// r rows less B times k rows, each of so many columns.
+  static void take_rows(const Block& B, int k, int r, const T* from, T* to, Index columns) {
+    for (int c = 0; c < k; ++c)
+      for (int i = 0; i < r; ++i)
+        if (const T b = B(i, c); b != T(0))
+          add_multiple<T>(-b, from + std::ptrdiff_t(c) * columns, to + std::ptrdiff_t(i) * columns, columns);
+  }
+  /// C −= A B, r × k times k × c.
+  static void take_product(const Block& A, const Block& B, Block& C, int r, int k, int c) {
+    if (r + k + c == 3 * w) return add_product(A, B, C, T(-1));
+    for (int j = 0; j < c; ++j)
+      for (int n = 0; n < k; ++n) {
+        const T b = B(n, j);
+        for (int i = 0; i < r; ++i) C(i, j) -= A(i, n) * b;
+      }
+  }
+
   BlockPattern pattern_;
   Array<Block> diagonal_, lower_, upper_;
   Array<PivotedLu<w, T>> pivot_;
+  Array<Index> block_;  ///< at a place of the order
   mutable Array<Vec<w, T>> work_;
 };
 
@@ -116,6 +189,8 @@ void BlockLu<w, T>::analyse(Index blocks, inner::Slice<const std::pair<Index, In
   diagonal_.resize(blocks);
   pivot_.resize(blocks);
   work_.resize(blocks);
+  block_.resize(blocks);
+  for (Index b = 0; b < blocks; ++b) block_[pattern_.place(b)] = b;
 }
 
 }  // namespace delassus

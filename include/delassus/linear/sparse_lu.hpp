@@ -4,6 +4,7 @@
 #include <delassus/linear/block_lu.hpp>
 #include <delassus/linear/multifrontal_lu.hpp>
 
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,8 +33,24 @@ class SparseLu {
   Block& at(Index i, Index j) { return has_fronts_ ? fronts_.at(i, j) : plain_.at(i, j); }
   /// False when a pivot block is singular or not finite.
   bool factor() { return has_fronts_ ? fronts_.factor() : plain_.factor(); }
+  /// The same where block i has first[i + 1] − first[i] rows of its own, behind which A is the identity.
+  bool factor(inner::Slice<const Index> first) { return has_fronts_ ? fronts_.factor() : plain_.factor_own_rows(first); }
   /// x ← A⁻¹ x.
   void solve(std::span<Vec<w, T>> x) const { has_fronts_ ? fronts_.solve(x) : plain_.solve(x); }
+  /// The same of many columns, as in `BlockLu`; fronts solve one after the other, in `x`.
+  void solve(T* X, Index columns, inner::Slice<const Index> first, inner::Slice<Vec<w, T>> x) const {
+    if (!has_fronts_) return plain_.solve(X, columns, first);
+    for (Index c = 0; c < columns; ++c) {
+      const auto each = [&](const auto& f) {
+        for (std::size_t i = 0; i < x.size(); ++i)
+          for (int r = 0; r < int(first[i + 1] - first[i]); ++r) f(x[i][r], X[std::ptrdiff_t(first[i] + r) * columns + c]);
+      };
+      for (Vec<w, T>& entry : x) set_all(entry, T(0));
+      each([](T& own, T theirs) { own = theirs; });
+      fronts_.solve({x.data(), x.size()});
+      each([](T own, T& theirs) { theirs = own; });
+    }
+  }
 
  private:
   /// Products of blocks for each block in `BlockLu` from which on fronts take less time: measured with 3 × 3

@@ -17,25 +17,22 @@ template <int w, class T>
 class PivotedLu {
  public:
   /// False when a pivot is zero or not finite.
-  bool factor(const Mat<w, w, T>& A) {
-    assign(lu_, A);
-    for (int k = 0; k < w; ++k) {
-      int pivot = k;
-      for (int i = k + 1; i < w; ++i)
-        if (std::abs(lu_(i, k)) > std::abs(lu_(pivot, k))) pivot = i;
-      const T size = std::abs(lu_(pivot, k));
-      if (!(size > T(0)) || !std::isfinite(size)) return false;
-      swap_[k] = pivot;
-      if (pivot != k)
-        for (int j = 0; j < w; ++j) std::swap(lu_(k, j), lu_(pivot, j));
-      over_[k] = T(1) / lu_(k, k);
-      for (int i = k + 1; i < w; ++i) lu_(i, k) *= over_[k];
-      for (int j = k + 1; j < w; ++j) {
-        const T u = lu_(k, j);
-        for (int i = k + 1; i < w; ++i) lu_(i, j) -= lu_(i, k) * u;
+  bool factor(const Mat<w, w, T>& A) { return eliminate(A, w); }
+  /// Of the first `used` rows and columns, behind which A is the identity; `solve` and `solve_rows` are told so too.
+  bool factor(const Mat<w, w, T>& A, int used) { return eliminate(A, used); }
+
+  /// X ← A⁻¹ X, the first `columns`.
+  void solve(Mat<w, w, T>& X, int used, int columns) const {
+    for (int c = 0; c < columns; ++c) {
+      T* const x = X.data() + w * c;
+      for (int k = 0; k < used; ++k) std::swap(x[k], x[swap_[k]]);
+      for (int k = 0; k < used; ++k)
+        for (int i = k + 1; i < used; ++i) x[i] -= lu_(i, k) * x[k];
+      for (int k = used; k-- > 0;) {
+        x[k] *= over_[k];
+        for (int i = 0; i < k; ++i) x[i] -= lu_(i, k) * x[k];
       }
     }
-    return true;
   }
 
   /// x ← A⁻¹ x, column by column.
@@ -63,14 +60,15 @@ class PivotedLu {
     }
   }
 
-  /// X ← X A⁻ᵀ for a matrix X of `height` rows: column(k), k < w, points at its columns.
-  void solve_rows(const auto& column, Index height) const {
-    for (int k = 0; k < w; ++k)
+  /// X ← X A⁻ᵀ for a matrix X of `height` rows: column(k), k < used, points at its columns. Behind `used` A is
+  /// the identity.
+  void solve_rows(const auto& column, Index height, int used = w) const {
+    for (int k = 0; k < used; ++k)
       if (swap_[k] != k)
         for (Index r = 0; r < height; ++r) std::swap(column(k)[r], column(swap_[k])[r]);
-    for (int k = 0; k < w; ++k)
-      for (int i = k + 1; i < w; ++i) add_multiple<T>(-lu_(i, k), column(k), column(i), height);
-    for (int k = w; k-- > 0;) {
+    for (int k = 0; k < used; ++k)
+      for (int i = k + 1; i < used; ++i) add_multiple<T>(-lu_(i, k), column(k), column(i), height);
+    for (int k = used; k-- > 0;) {
       T* const x = column(k);
       for (Index r = 0; r < height; ++r) x[r] *= over_[k];
       for (int i = 0; i < k; ++i) add_multiple<T>(-lu_(i, k), x, column(i), height);
@@ -85,6 +83,28 @@ class PivotedLu {
   }
 
  private:
+  [[gnu::always_inline]] bool eliminate(const Mat<w, w, T>& A, int used) {
+    assign(lu_, A);
+    for (int k = 0; k < used; ++k) {
+      int pivot = k;
+      for (int i = k + 1; i < used; ++i)
+        if (std::abs(lu_(i, k)) > std::abs(lu_(pivot, k))) pivot = i;
+      const T size = std::abs(lu_(pivot, k));
+      if (!(size > T(0)) || !std::isfinite(size)) return false;
+      swap_[k] = pivot;
+      if (pivot != k)
+        for (int j = 0; j < used; ++j) std::swap(lu_(k, j), lu_(pivot, j));
+      over_[k] = T(1) / lu_(k, k);
+      for (int i = k + 1; i < used; ++i) lu_(i, k) *= over_[k];
+      for (int j = k + 1; j < used; ++j) {
+        const T u = lu_(k, j);
+        for (int i = k + 1; i < used; ++i) lu_(i, j) -= lu_(i, k) * u;
+      }
+    }
+    for (int k = used; k < w; ++k) swap_[k] = k, over_[k] = T(1);
+    return true;
+  }
+
   Mat<w, w, T> lu_;
   FixedArray<T, w> over_;  ///< 1 / U_kk
   FixedArray<int, w> swap_;

@@ -79,6 +79,7 @@ struct DirectGaussSeidel {
 
  private:
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
+  static constexpr double before_sweeps = 1e-6, to_rounding = 1e-13;  ///< of what `settle` leaves
 
   template <class T, class Node>
   static const Span<T>& span_of(const Island<T>& problem, const Node& node) {
@@ -114,10 +115,11 @@ struct DirectGaussSeidel {
   }
   /// λ_b ← λ_b − W_bb⁻¹ (d + W λ)_b, repeated while that halves the velocity of the joints' rows: what ε and
   /// rounding left goes. A repetition that makes it worse is taken back. False when rows contradict each
-  /// other: a thousandth stays.
+  /// other: a thousandth stays. It ends below `enough` of the largest velocity so far.
   template <class T, class System>
-  static bool settle(Island<T>& problem, System& joints) {
+  static bool settle(Island<T>& problem, System& joints, double enough, double& largest) {
     const double first = load(problem, joints);
+    largest = std::max(largest, first);
     double size = first;
     for (int repetition = 0; repetition < 8 && size > 0; ++repetition) {
       joints.solve();
@@ -128,7 +130,7 @@ struct DirectGaussSeidel {
         push(problem, joints, -1);
         break;
       }
-      const bool goes_on = next < 0.5 * size;
+      const bool goes_on = next < 0.5 * size && next > enough * largest;
       size = next;
       if (!goes_on) break;
     }
@@ -200,12 +202,13 @@ SolveReport DirectGaussSeidel::solve(Island<T>& problem, Space& work) const {
   problem.notify(0, report.measure);
   report.ended_by = "factorization";
   bool is_contradiction = false;
+  double largest = 0;
   for (const double epsilon : {fine, coarse}) {
     const T nothing[most_rows] = {};
     for (Index k = 0; k < joints.bilateral(); ++k) problem.assign(span_of(problem, joints.node(k)), joints.node(k).item, nothing);
     ++report.factorizations;
     if (!joints.factor(epsilon)) continue;
-    if (settle(problem, joints)) break;
+    if (settle(problem, joints, joints.bilateral() < joints.count() ? before_sweeps : to_rounding, largest)) break;
     is_contradiction = is_contradiction || contradicts(problem, work);
   }
   report.measure = problem.measure();
@@ -213,7 +216,7 @@ SolveReport DirectGaussSeidel::solve(Island<T>& problem, Space& work) const {
   double share = 1;
   for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
     const Status swept = sweep_others(problem, work, report, share);
-    settle(problem, joints);
+    settle(problem, joints, to_rounding, largest);
     if (round == 0 && (swept == Status::infeasible || swept == Status::max_iterations)) {
       problem.save(work.after);
       if (inner::Contradiction<T>(problem).is_proved(work.before)) {

@@ -123,9 +123,9 @@ class DirectSystem {
         if (hub_[b] >= 0)
           join_hub(A, e, hub_[b]);
         else
-          each_bilateral(b, [&](const Side& f) { A.at(e.node, f.node) += e.H * f.G; });
+          each_bilateral(b, [&](const Side& f) { add_rows(e, f, A.at(e.node, f.node)); });
       });
-    return A.factor();
+    return A.factor(first_row_);
   }
 
   /// The right side ← −u, where something answers; velocity(node, u) sets u. Returns √Σ u²/W_kk, the size of it.
@@ -154,12 +154,19 @@ class DirectSystem {
   void keep() { step_ = x_; }
   const Row& step(Index k) const { return step_[k]; }
 
-  /// What impulse c of constraint e's side does to the right side: −H G on neighbours, G on a hub.
-  void disturb(const Side& e, int c) {
+  /// Many right sides beside each other, `columns` in a row: their rows, and the first of bilateral constraint k.
+  Index rows() const { return first_row_.back(); }
+  Index first_row(Index k) const { return first_row_[k]; }
+  void solve(double* X, Index columns) { matrix_->solve(X, columns, first_row_, x_); }
+  /// What impulse c of constraint e's side does to a right side, the column at `to`: −H G on neighbours, G on a hub.
+  void disturb(const Side& e, int c, double* to, Index columns) const {
+    const auto at = [&](Index block, int r) -> double& { return to[std::ptrdiff_t(first_row_[block] + r) * columns]; };
     if (hub_[e.block] >= 0) {
-      for (int k = 0; k < width; ++k) x_[hub_[e.block] + k / w][k % w] += e.G(k, c);
+      for (int k = 0; k < width; ++k) at(hub_[e.block] + k / w, k % w) += e.G(k, c);
     } else {
-      each_bilateral(e.block, [&](const Side& f) { x_[f.node] -= f.H * column(e.G, c); });
+      each_bilateral(e.block, [&](const Side& f) {
+        for (int r = 0; r < nodes_[f.node].rows; ++r) at(f.node, r) -= row_times_column(f.H, r, e.G, c);
+      });
     }
   }
 
@@ -211,6 +218,8 @@ class DirectSystem {
     hub_.assign(blocks_.size(), -1);
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       if (held_[b] > most) hub_[b] = size_, size_ += parts;
+    first_row_.assign(1, 0);
+    for (Index k = 0; k < size_; ++k) first_row_.push_back(first_row_.back() + (k < bilateral_ ? nodes_[k].rows : w));
   }
   void list_pairs() {
     pairs_.clear();
@@ -222,6 +231,11 @@ class DirectSystem {
             if (e.node < f.node) pairs_.emplace_back(e.node, f.node);
           });
       });
+  }
+  /// A block += H G of two sides.
+  void add_rows(const Side& e, const Side& f, Mat<w, w>& to) const {
+    for (int c = 0; c < nodes_[f.node].rows; ++c)
+      for (int r = 0; r < nodes_[e.node].rows; ++r) to(r, c) += row_times_column(e.H, r, f.G, c);
   }
   static void join_hub(auto& A, const Side& e, Index hub) {
     for (int k = 0; k < width; ++k) {
@@ -236,7 +250,7 @@ class DirectSystem {
   Array<std::pair<int, Index>> blocks_;  ///< (set, block)
   Array<Node> nodes_;
   Array<Side> sides_;
-  Array<Index> start_, order_, next_, held_, hub_;
+  Array<Index> start_, order_, next_, held_, hub_, first_row_;
   Array<std::pair<Index, Index>> pairs_;
   IslandMatrices<SparseLu<w, double>> matrices_;
   SparseLu<w, double>* matrix_ = nullptr;

@@ -3,6 +3,7 @@
 
 #include <delassus/core/array.hpp>
 #include <delassus/math/linear.hpp>
+#include <delassus/math/long_vectors.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
 #include <delassus/solvers/inner/rows_alone.hpp>
@@ -17,24 +18,21 @@ namespace delassus::inner {
 /// sweeps change λ: their island, with S in the place of W.
 template <class T, class System>
 class SchurComplement {
-  static constexpr int w = System::w;
-
  public:
   /// Takes the constraints of `system` behind its bilateral ones, with the velocities that `whole` has for
   /// them.
   Island<T> build(System& system, const Island<T>& whole) {
     const Index first = system.bilateral();
-    size_ = w * (system.count() - first);
-    S_.assign(std::size_t(size_) * size_, 0);
+    list_rows(system, first);
+    S_.assign(std::size_t(size_) * std::size_t(size_), 0);
     u_.assign(size_, 0);
     add_own(system, first);
-    for (Index j = first; j < system.count(); ++j) {
-      take_from(system, first, j);
+    for (Index from = 0; from < size_; from += most_columns) take(system, first, from, std::min(from + most_columns, size_));
+    for (Index j = first; j < system.count(); ++j)
       for (int k = 0; k < system.node(j).rows; ++k) {
-        double& own = column(w * (j - first) + k)[w * (j - first) + k];
+        double& own = column(row_[j - first] + k)[row_[j - first] + k];
         own = std::max(own, least * system.node(j).scale[k]);
       }
-    }
     return show(whole);
   }
 
@@ -68,7 +66,7 @@ class SchurComplement {
           for (int k = 0; k < R; ++k)
             diagonal[std::ptrdiff_t(R * R) * i + k + R * c] = T(column(at + c)[at + k]);
         }
-        at += w;
+        at += R;
       }
       pool.pool = int(n);
       pool.diagonal = pool.own_diagonal = diagonal;
@@ -105,12 +103,29 @@ class SchurComplement {
   /// of the solver take the error of that out again.
   static constexpr double least = 1e-6;
 
+  /// Columns that are solved for together: of a thousand hinges they are 5 MB.
+  static constexpr Index most_columns = 128;
+
+  /// Where the rows of each constraint begin and which blocks they act on.
+  void list_rows(const System& system, Index first) {
+    row_.clear();
+    wanted_.assign(system.blocks(), -1);
+    blocks_ = size_ = 0;
+    for (Index j = first; j < system.count(); ++j) {
+      const auto& node = system.node(j);
+      row_.push_back(size_);
+      size_ += node.rows;
+      for (Index e = node.first; e < node.last; ++e)
+        if (const Index b = system.side(e).block; system.is_held(b) && wanted_[b] < 0) wanted_[b] = blocks_++;
+    }
+  }
+
   /// W_cc.
   void add_own(const System& system, Index first) {
     for (Index j = first; j < system.count(); ++j) {
       const auto& node = system.node(j);
-      for (int k = 0; k < node.rows; ++k)
-        column(w * (j - first) + k)[w * (j - first) + k] += node.compliance[k];
+      const Index at = row_[j - first];
+      for (int k = 0; k < node.rows; ++k) column(at + k)[at + k] += node.compliance[k];
       for (Index e = node.first; e < node.last; ++e) add_velocity(system, first, j, e);
     }
   }
@@ -123,52 +138,55 @@ class SchurComplement {
         if (to.block != from.block) continue;
         for (int c = 0; c < system.node(j).rows; ++c)
           for (int r = 0; r < system.node(k).rows; ++r)
-            column(w * (j - first) + c)[w * (k - first) + r] += row_times_column(to.H, r, from.G, c);
+            column(row_[j - first] + c)[row_[k - first] + r] += row_times_column(to.H, r, from.G, c);
       }
   }
-  /// The columns of constraint j: what its impulses make the joints do, and what that does to all others.
-  void take_from(System& system, Index first, Index j) {
-    const auto& node = system.node(j);
-    bool is_held = false;
-    for (Index e = node.first; e < node.last; ++e) is_held |= system.is_held(system.side(e).block);
-    if (!is_held) return;
-    for (int c = 0; c < node.rows; ++c) {
-      system.clear();
-      for (Index e = node.first; e < node.last; ++e) system.disturb(system.side(e), c);
-      system.solve();
-      velocity_.assign(system.blocks(), zero<typename System::Twist>());
-      for (Index k = 0; k < system.bilateral(); ++k)
-        for (Index e = system.node(k).first; e < system.node(k).last; ++e)
-          add_columns(system.side(e).G, system.answer(k), system.node(k).rows,
-                      velocity_[system.side(e).block]);
-      double* s = column(w * (j - first) + c);
-      for (Index k = first; k < system.count(); ++k)
-        for (Index e = system.node(k).first; e < system.node(k).last; ++e) {
-          auto u = zero<Vec<w>>();
-          add_product(system.side(e).H, velocity_[system.side(e).block], u);
-          for (int r = 0; r < system.node(k).rows; ++r) s[w * (k - first) + r] += u[r];
-        }
-    }
-  }
 
-  /// v += G x, of the columns of G that a constraint has.
-  static void add_columns(const Mat<System::width, w>& G, const Vec<w>& x, int rows,
-                          typename System::Twist& v) {
-    for (int c = 0; c < rows; ++c) {
-      const double by = x[c];
-      if (by == 0) continue;
-      DELASSUS_UNROLL
-      for (int k = 0; k < System::width; ++k) v.data()[k] += G.data()[k + System::width * c] * by;
-    }
+  /// The columns from … end − 1: what their impulses make the joints do, and what that does to all others.
+  void take(System& system, Index first, Index from, Index end) {
+    const Index columns = end - from;
+    X_.assign(std::size_t(system.rows()) * std::size_t(columns), 0);
+    for (Index j = first; j < system.count(); ++j)
+      for (int c = 0; c < system.node(j).rows; ++c) {
+        const Index to = row_[j - first] + c - from;
+        if (to < 0 || to >= columns) continue;
+        for (Index e = system.node(j).first; e < system.node(j).last; ++e) system.disturb(system.side(e), c, X_.data() + to, columns);
+      }
+    system.solve(X_.data(), columns);
+    constexpr int width = System::width;
+    velocity_.assign(std::size_t(blocks_) * std::size_t(width * columns), 0);
+    const auto velocity = [&](Index block, int v) { return &velocity_[std::size_t(block * width + v) * std::size_t(columns)]; };
+    for (Index k = 0; k < system.bilateral(); ++k)
+      for (Index e = system.node(k).first; e < system.node(k).last; ++e) {
+        const auto& side = system.side(e);
+        const Index to = wanted_[side.block];
+        for (int r = 0; to >= 0 && r < system.node(k).rows; ++r)
+          for (int v = 0; v < width; ++v)
+            if (const double g = side.G(v, r); g != 0)
+              add_multiple(g, &X_[std::size_t(system.first_row(k) + r) * std::size_t(columns)], velocity(to, v), columns);
+      }
+    for (Index j = first; j < system.count(); ++j)
+      for (int r = 0; r < system.node(j).rows; ++r) {
+        change_.assign(columns, 0);
+        for (Index e = system.node(j).first; e < system.node(j).last; ++e) {
+          const auto& side = system.side(e);
+          for (int v = 0; wanted_[side.block] >= 0 && v < width; ++v)
+            if (const double h = side.H(r, v); h != 0) add_multiple(h, velocity(wanted_[side.block], v), change_.data(), columns);
+        }
+        for (Index c = 0; c < columns; ++c) column(from + c)[row_[j - first] + r] += change_[c];
+      }
   }
 
   Index size_ = 0;
-  Array<double> S_, u_;  ///< by columns; w entries a constraint
+  Index blocks_ = 0;     ///< that are wanted
+  Array<double> S_, u_;  ///< S by columns
+  Array<Index> row_;     ///< the first of a constraint
+  Array<Index> wanted_;  ///< the number of a block that joints hold and others act on, or −1
   Array<PoolView<T>> pools_;
   Array<Span<T>> spans_;
   Array<Index> first_, place_;  ///< the first place of a pool; of an item its first row in S
   Array<T> diagonal_;
-  Array<typename System::Twist> velocity_;
+  Array<double> X_, velocity_, change_;  ///< one row behind the other
 };
 
 }  // namespace delassus::inner
