@@ -67,8 +67,8 @@ Picture picture(auto& loop, double length = 0) {
 
 struct Run {
   Film film;
-  long calls = 0;  ///< detections and solves: 3 a trial, and one each time that joints are closed
-  long steps = 0, rejections = 0, at_floor = 0;
+  long calls = 0;  ///< detections and solves: 3 a trial, 2 where its order is measured, and one each time that joints are closed
+  long steps = 0, rejections = 0, at_floor = 0, measurements = 0;
 };
 
 /// `outputs` times `output` s. make(policies...) makes the loop; lead policies come with the scene.
@@ -78,10 +78,10 @@ Run controlled(const auto& make, int outputs, double output, const ErrorControll
   for (int k = 0; k < outputs; ++k) {
     loop.step(output);
     const ErrorReport& r = error_report(loop);
-    run.steps += r.steps, run.rejections += r.rejections, run.at_floor += r.at_floor;
+    run.steps += r.steps, run.rejections += r.rejections, run.at_floor += r.at_floor, run.measurements += r.measurements;
     run.film.push_back(picture(loop));
   }
-  run.calls = 3 * (run.steps + run.rejections) + (has_joints ? 3 * (run.steps + run.rejections) + run.steps : 0);
+  run.calls = 3 * (run.steps + run.rejections) + 2 * run.measurements + (has_joints ? 3 * (run.steps + run.rejections) + run.steps : 0);
   return run;
 }
 Run fixed(const auto& make, int outputs, double output, long parts) {

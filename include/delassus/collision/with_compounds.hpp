@@ -5,6 +5,7 @@
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/native_engine.hpp>
+#include <delassus/core/archive.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
@@ -12,6 +13,7 @@
 #include <delassus/geometry/compound.hpp>
 
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -86,7 +88,8 @@ struct WithCompounds {
   }
 
   void memory(auto& archive) {
-    archive(compounds_, names_, next_name_);
+    if constexpr (!inner::leaves_shapes<std::remove_cvref_t<decltype(archive)>>) archive(compounds_);
+    archive(names_, next_name_);
     inner::remember(backend, archive);
   }
 

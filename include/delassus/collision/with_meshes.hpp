@@ -4,6 +4,7 @@
 #include <delassus/collision/inner/surface_pairs.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/native_engine.hpp>
+#include <delassus/core/archive.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/if_it_has.hpp>
 #include <delassus/core/roles.hpp>
@@ -101,7 +102,8 @@ struct WithMeshes {
   }
 
   void memory(auto& archive) {
-    archive(meshes_, fields_, kinds_, pairs_);
+    if constexpr (!inner::leaves_shapes<std::remove_cvref_t<decltype(archive)>>) archive(meshes_, fields_, kinds_);
+    archive(pairs_);
     inner::remember(backend, archive);
   }
 

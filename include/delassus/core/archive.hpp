@@ -17,6 +17,10 @@
 namespace delassus {
 namespace inner {
 
+/// An archive says so by `static constexpr bool leaves_shapes = true;`: it takes what a step changes, and no shape and no mesh.
+template <class Archive>
+inline constexpr bool leaves_shapes = requires { requires Archive::leaves_shapes; };
+
 /// Calls one(x) for the parts of x that can be copied byte by byte, and size(container) before the elements of a container.
 /// An owner with memory(archive) is asked; what holds a pointer and has no memory(archive) must not be named.
 void walk(auto& archive, auto& x) {

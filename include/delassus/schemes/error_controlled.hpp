@@ -20,11 +20,13 @@ namespace delassus {
 /// step and the gap at which it does counts with (1 + e) gap/L. `error_report(loop)` says what happened.
 ///
 /// A listener with `lead(world, t, h)` is called before each inner step of h s from t, tried ones too, and says by `move_to` where
-/// kinematic bodies are at its end. It then leads all of them: what the host told them is taken for the end of an inner step.
+/// kinematic bodies are at its end. It then leads all of them: what the host told them is taken for the end of an inner step. Other
+/// schemes ask it once, before each step of the host.
 struct ErrorControlled {
   using plays = role::Scheme;
   static constexpr bool takes_whole_steps = true;  ///< read by the checks: suits integrators that make a whole step at once
   static constexpr bool divides_step = true;       ///< read by the checks, which refuse an activity beside it
+  static constexpr bool leads_parts = true;     ///< read by the step: asks listeners that lead itself
   template <class P>
   using State = inner::ControlledSteps<P>;
 

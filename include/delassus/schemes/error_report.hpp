@@ -31,6 +31,7 @@ struct EffectSteps {
 struct ErrorReport {
   long steps = 0;       ///< inner steps that were accepted, each of two halves
   long rejections = 0;  ///< trials that were not
+  long measurements = 0;  ///< trials that took two quarters more, to measure the order of an arc in contact
   long at_floor = 0;    ///< steps of `min_step` that were accepted with a larger error than asked
   double error = 0;     ///< the largest estimate of an accepted step, in the unit of `accuracy`
   double least_step = 0, last_step = 0;  ///< s

@@ -1,6 +1,7 @@
 /// A step from begin to advance, on one page.
 #pragma once
 
+#include <delassus/step/inner/lead.hpp>
 #include <delassus/step/move_freely.hpp>
 #include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/notify.hpp>
@@ -18,7 +19,7 @@ using StagesOf = typename std::remove_reference_t<Step>::Stages;
 /// its own work calls them one by one on `loop.data()`.
 namespace stage {
 
-void begin(auto& step, double h) { StagesOf<decltype(step)>::begin(step, h), inner::notify<Begin>(step); }
+void begin(auto& step, double h) { inner::lead(step, h), StagesOf<decltype(step)>::begin(step, h), inner::notify<Begin>(step); }
 void detect(auto& step) { StagesOf<decltype(step)>::detect(step), inner::notify<Detect>(step); }
 void linearize(auto& step) { StagesOf<decltype(step)>::linearize(step), inner::notify<Linearize>(step); }
 void free_motion(auto& step) { StagesOf<decltype(step)>::free_motion(step), inner::notify<FreeMotion>(step); }

@@ -1,6 +1,7 @@
 /// The shapes of the bodies of a set, with hulls of their own.
 #pragma once
 
+#include <delassus/core/archive.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
@@ -8,6 +9,7 @@
 #include <delassus/geometry/shape.hpp>
 
 #include <cstddef>
+#include <type_traits>
 
 namespace delassus::inner {
 
@@ -48,7 +50,9 @@ class BasicShapes {
     return shape;
   }
 
-  void memory(auto& archive) { archive(shape_, hulls_, hull_, free_); }
+  void memory(auto& archive) {
+    if constexpr (!leaves_shapes<std::remove_cvref_t<decltype(archive)>>) archive(shape_, hulls_, hull_, free_);
+  }
 
  private:
   Array<Shape> shape_;  ///< without their hulls

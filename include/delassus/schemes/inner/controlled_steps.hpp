@@ -5,6 +5,7 @@
 #include <delassus/core/expect.hpp>
 #include <delassus/rows/theta.hpp>
 #include <delassus/schemes/error_report.hpp>
+#include <delassus/schemes/inner/arc_order.hpp>
 #include <delassus/schemes/inner/close_joints.hpp>
 #include <delassus/schemes/inner/end_state.hpp>
 #include <delassus/schemes/inner/impulses_of_parts.hpp>
@@ -29,6 +30,7 @@ class ControlledSteps {
   using World = typename P::World;
   using Laws = typename P::Laws;
   static constexpr int order = order_of<typename P::Integrator>();
+  static constexpr bool has_arcs = order > 1 && Laws::pool_count > 0 && !MovesAtOnce<typename P::Integrator>;
 
  public:
   const ErrorReport& report() const { return report_; }
@@ -62,7 +64,9 @@ class ControlledSteps {
 
   /// What outlives a step of the host; a repeated inner step keeps its hands off it.
   void memory(auto& archive) {
-    if (!is_trying_) archive(control_, before_);
+    if (is_trying_) return;
+    archive(control_, before_);
+    if constexpr (has_arcs) archive(arc_);
   }
 
  private:
@@ -88,12 +92,15 @@ class ControlledSteps {
     const bool is_whole_lost = step.summary.quarantined > 0;
     end_of_whole_.take(step.world());
     copy_.bring_back(step);
+    const bool measures = make_quarters(step, now);
 
     step.summary.quarantined = 0;
     trial_ = impulses_;
     move(step, now / 2, last_h_, false);
     close_joints(step, of_first_.take(step, lengths_, now / 2));
     trial_.add(step);
+    if constexpr (has_arcs)
+      if (measures) arc_.take_half(step, lengths_, asked.horizon);
     move(step, now / 2, now / 2, is_last);
     close_joints(step, of_second_.take(step, lengths_, now / 2));
     trial_.add(step);
@@ -101,13 +108,17 @@ class ControlledSteps {
     const PushChange change = change_of(before_, {&of_first_, &of_second_, &of_whole_}, 2);
     const bool pushes = !(of_first_.are_none() && of_second_.are_none() && of_whole_.are_none());
     const bool is_smooth = !pushes && all_move_by_block(step.world());
-    const int p = is_smooth ? order : 1;
+    const bool is_arc = pushes && !change.is_any && !change.is_shift && all_move_by_block(step.world());
+    int known = is_smooth ? order : 0;
     EndError error = end_of_whole_.error(step.world(), lengths_, change.is_impact ? now : asked.horizon);
+    if constexpr (has_arcs)
+      if (is_arc) error = arc_.error(step, end_of_whole_, lengths_, asked.horizon, measures, error), known = arc_.order();
+    const int p = std::max(known, 1);
     double estimate = is_smooth ? error.sum / (std::ldexp(1.0, p) - 1) : error.sum;
     if (change.is_any) estimate = std::max(estimate, change.gap);
     if (is_whole_lost || step.summary.quarantined > 0 || !std::isfinite(estimate)) estimate = std::numeric_limits<double>::infinity();
     const double allowed = asked.per_second && !change.is_impact ? asked.accuracy * now : asked.accuracy;
-    const double k = change.is_any ? 1 : asked.per_second || pushes ? p : p + 1;
+    const double k = change.is_any ? 1 : asked.per_second || (pushes && known == 0) ? p : p + 1;
     const double E = estimate / allowed;
     const bool is_at_floor = now <= asked.min_step * 1.0001;
     if (!(E <= 1) && !is_at_floor) {
@@ -124,12 +135,26 @@ class ControlledSteps {
     is_kept_ = false;
     note(step, error, estimate, now, E <= 1 ? 0 : 1, change, pushes);
     control_.accept(t_ + now, now, E, k, change.is_any);
+    if constexpr (has_arcs)
+      if (pushes) arc_.accept(is_arc);
     std::swap(impulses_, trial_);
     std::swap(before_, of_second_);
     last_h_ = now / 2;
     return true;
   }
 
+  /// Where the order of an arc is to be measured: the first half in two.
+  bool make_quarters(auto& step, double now) {
+    if constexpr (has_arcs) {
+      if (!arc_.is_due()) return false;
+      move(step, now / 4, last_h_, false);
+      move(step, now / 4, now / 4, false);
+      arc_.take_quarters(step.world());
+      copy_.bring_back(step);
+      ++report_.measurements;
+    }
+    return has_arcs;
+  }
   /// Where nothing pushes. The rows have served: what they were solved for is noted in `pushing`.
   void close_joints(auto& step, const PushingRows& pushing) {
     if (order > 1 && pushing.are_none()) close_joints_.run(step);
@@ -163,6 +188,7 @@ class ControlledSteps {
           Stages::solve(step);
           Stages::correct(step);
         } while (Stages::find_missed(step));
+        if constexpr (has_arcs) arc_.look(step);
       }
       Stages::advance(step);
     }
@@ -261,6 +287,7 @@ class ControlledSteps {
   PushingRows before_, of_whole_, of_first_, of_second_;
   ImpulsesOfParts<Laws> impulses_, trial_;
   CloseJoints<P> close_joints_;
+  [[no_unique_address]] std::conditional_t<has_arcs, ArcOrder<World>, Absent> arc_;
   typename World::template PerSet<VelocitiesOf> loads_;
   StepSizeControl control_;
   ErrorReport report_;

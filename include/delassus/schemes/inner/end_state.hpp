@@ -87,6 +87,27 @@ class EndState {
     return most;
   }
 
+  /// Of where the bodies are now from here: of places, and of velocities; zero for bodies that do not move.
+  template <class Differences>
+  void difference(const World& world, Differences& places, Differences& velocities) const {
+    world.each([&](const auto& set, auto s) {
+      using Velocity = typename std::remove_cvref_t<decltype(set)>::Velocity;
+      const auto& ends = std::get<s>(ends_);
+      auto &x = std::get<s>(places), &v = std::get<s>(velocities);
+      x.resize(std::size_t(set.blocks())), v.resize(std::size_t(set.blocks()));
+      for (auto& y : x) set_zero(y);
+      for (auto& y : v) set_zero(y);
+      for (const Index b : set.active()) {
+        if (!set.moves(b)) continue;
+        const Pose now = pose_of(set, b);
+        const auto way = converted<T>(Vec3(now.position - ends[b].pose.position));
+        if constexpr (std::remove_cvref_t<decltype(set)>::width == 6) x[b] = twist<T>(way, converted<T>(turn_between(ends[b].pose.rotation, now.rotation)));
+        else x[b] = way;
+        v[b] = Velocity(set.velocity()[b] - ends[b].velocity);
+      }
+    });
+  }
+
   /// Moves all bodies on from here through where they are now, by `share` of the way.
   void extrapolate(World& world, double share) const {
     world.each([&](auto& set, auto s) {

@@ -8,24 +8,44 @@
 #include <delassus/core/if_it_has.hpp>
 #include <delassus/step/step_report.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 namespace delassus::inner {
 
+/// An archive of what a step changes, which shapes and meshes are not.
+template <class Archive>
+struct ArchiveOfStep {
+  static constexpr bool reads = Archive::reads;
+  static constexpr bool leaves_shapes = true;
+  Archive& whole;
+
+  template <class... X>
+  void operator()(X&... x) {
+    (inner::walk(*this, x), ...);
+  }
+  void bytes(auto* at, std::size_t count) { whole.bytes(at, count); }
+  void size(auto& list) { whole.size(list); }
+};
+
 /// All that `AnimationLoop::memory` names, but for the state of the scheme, which says itself what of it is repeated, and for
-/// materials, which no step changes. Room is made once.
+/// materials, shapes and meshes, which no step changes. Room is made once.
 class StepCopy {
  public:
   void keep(auto& step) {
     kept_.data.clear();
-    walk(step, kept_);
+    ArchiveOfStep<ArchiveWriter> of_step{kept_};
+    walk(step, of_step);
     last_report_ = step.summary;
   }
   void bring_back(auto& step) const {
     ArchiveReader reader(kept_.data);
-    walk(step, reader);
+    ArchiveOfStep<ArchiveReader> of_step{reader};
+    walk(step, of_step);
     step.summary = last_report_;
   }
+
+  std::size_t bytes() const { return kept_.data.size(); }
 
  private:
   static void walk(auto& step, auto& archive) {
