@@ -79,7 +79,7 @@ struct DirectGaussSeidel {
 
  private:
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
-  static constexpr double before_sweeps = 1e-6, to_rounding = 1e-13;  ///< of what `settle` leaves
+  static constexpr double before_sweeps = 1e-11, to_rounding = 1e-13;  ///< of what `settle` leaves
 
   template <class T, class Node>
   static const Span<T>& span_of(const Island<T>& problem, const Node& node) {

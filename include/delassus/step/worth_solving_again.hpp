@@ -4,6 +4,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/rows/anchor.hpp>
