@@ -52,7 +52,9 @@ delassus_tree_test(tree/docs ${Python3_EXECUTABLE} ${scripts}/check_docs.py ${PR
 delassus_tree_test(tree/docs_self_test ${Python3_EXECUTABLE} ${scripts}/check_docs.py --self-test)
 delassus_tree_test(tree/words ${Python3_EXECUTABLE} ${scripts}/check_words.py ${PROJECT_SOURCE_DIR})
 delassus_tree_test(tree/words_self_test ${Python3_EXECUTABLE} ${scripts}/check_words.py --self-test)
-if(DELASSUS_TEST_ALL)
+find_program(DELASSUS_DOXYGEN doxygen)
+mark_as_advanced(DELASSUS_DOXYGEN)
+if(DELASSUS_TEST_ALL OR DELASSUS_DOXYGEN)
   delassus_tree_test(tree/site ${Python3_EXECUTABLE} ${scripts}/build_site.py --out ${PROJECT_BINARY_DIR}/site)
 endif()
 

@@ -11,6 +11,7 @@
 
 namespace delassus {
 
+/// How `load_mjcf` reads a file.
 struct MjcfOptions {
   bool strict = false;  ///< refuses what would be left out, where it is named otherwise in `Model::skipped`
   /// Folders in which included files, models, meshes and height fields are looked for besides that of the

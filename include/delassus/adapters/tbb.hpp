@@ -30,6 +30,7 @@ class Threads : public InParallel {
   Threads(const Threads&) = default;
   Threads& operator=(const Threads&) = default;
 
+  /// How many threads work at once, at least 1.
   Index workers() const { return Index(arena_->max_concurrency()); }
   template <class F>
   void run(Index tasks, F&& f) const {

@@ -55,6 +55,7 @@ struct Seamless {
     report.points = Index(contacts.size());
     return report;
   }
+  /// Adds to `contacts` the pairs that were left out and meet within h seconds by the velocities at the end of the solve.
   template <class Filter>
   void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
     requires inner::DetectsMissed<Backend, Filter>

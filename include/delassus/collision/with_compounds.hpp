@@ -78,6 +78,7 @@ struct WithCompounds {
     give_to_bodies(colliders, contacts);
     return report;
   }
+  /// Adds to `contacts` the pairs that were left out and meet within h seconds by the velocities at the end of the solve.
   template <class Filter>
   void detect_missed(std::span<const Collider> colliders, double h, std::vector<ContactPoint>& contacts, const Filter& filter)
     requires inner::DetectsMissed<Backend, PartFilter<Filter>>

@@ -23,7 +23,7 @@ template <class T>
 struct Bounces {
   OwningArray<Array<T>> added;     ///< to the bias, m/s
   OwningArray<Array<T>> returned;  ///< to the bodies, of what they lost as they landed, J; empty: nothing in this pool
-  RowPasts pasts;
+  RowPasts pasts;                  ///< rows of the last step
   OwningArray<Array<T>> velocities[2];  ///< of the bodies by set, at the start of the last step and of the one before; NaN: not there
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
   Array<Index> blocks;      ///< of each island; empty: nobody asked

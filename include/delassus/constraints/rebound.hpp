@@ -23,8 +23,8 @@ struct Closing {
   double acceleration;  ///< a ≤ 0
   double height;        ///< from which it leaves at the start of the step, as if it had flown from there: x where u moves it
   double least;         ///< with less than this speed it does not part
-  double h;
-  bool may_land;
+  double h;             ///< of the step, s
+  bool may_land;        ///< it may reach the surface within the step
   Together others = Together::undecided;  ///< what other rows of the body do
 };
 

@@ -16,7 +16,7 @@
 
 namespace delassus {
 
-/// Pictures one after the other: `add` writes <path>_vtk/000000.vtp and so on, and <path>.pvd names them with their times, whole after
+/// Pictures one after the other: `add` writes `path`_vtk/000000.vtp and so on, and `path`.pvd names them with their times, whole after
 /// each. ParaView opens the .pvd. What stood there before is written over.
 ///
 /// A .vtp has the surfaces of bodies as polygons, joints and edges as lines, contacts as points. `body` of a cell is the place of its body

@@ -35,6 +35,7 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
   /// Takes the policies over. Throws InvalidArgument where a number of one of them is invalid.
   explicit AnimationLoop(Args... policies);
 
+  /// The loop goes on where the other one was; the other may only be destroyed or assigned to.
   AnimationLoop(AnimationLoop&&) = default;
   AnimationLoop& operator=(AnimationLoop&&) = default;
   /// A copy that is not meant: it would step, and the loop itself would not.

@@ -17,7 +17,7 @@ struct CollisionsFirst {
   /// Contacts that pushed before the free motion cannot push again in a second solve.
   template <class Base>
   struct stages : Base {
-    static constexpr bool looks_ahead = false;
+    static constexpr bool looks_ahead = false;  ///< no pair is left out that may meet
   };
 
   void run(auto& step) const {

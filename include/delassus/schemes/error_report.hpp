@@ -23,7 +23,8 @@ constexpr const char* name(ErrorEffect effect) {
 
 /// The inner steps whose largest error one effect made.
 struct EffectSteps {
-  long steps = 0, rejections = 0;  ///< accepted, and tried in vain
+  long steps = 0;         ///< accepted
+  long rejections = 0;    ///< tried in vain
   double least_step = 0;           ///< s, of the accepted ones; 0 where there is none
 };
 
@@ -34,8 +35,10 @@ struct ErrorReport {
   long measurements = 0;  ///< trials that took two quarters more, to measure the order of an arc in contact
   long at_floor = 0;    ///< steps of `min_step` that were accepted with a larger error than asked
   double error = 0;     ///< the largest estimate of an accepted step, in the unit of `accuracy`
-  double least_step = 0, last_step = 0;  ///< s
-  Index set = -1, block = -1;            ///< the body with that largest error
+  double least_step = 0;  ///< of the accepted ones, s
+  double last_step = 0;   ///< s
+  Index set = -1;         ///< of the body with that largest error; -1: none
+  Index block = -1;       ///< its place in that set
   ErrorEffect effect = ErrorEffect::motion;  ///< what made it
   std::array<EffectSteps, 4> by_effect{};    ///< in the order of `ErrorEffect`
 };

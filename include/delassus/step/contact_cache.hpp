@@ -78,10 +78,10 @@ class BasicContactCache {
   /// What detection asks: whether a pair pushed when it was last solved.
   struct Pushed {
     const BasicContactMemory<Scalar>& memory;
-    bool lets(std::uint64_t) const { return true; }
-    bool pushed(std::uint64_t pair) const { return memory.pushed(pair); }
+    bool lets(std::uint64_t) const { return true; }  ///< all pairs are asked for
+    bool pushed(std::uint64_t pair) const { return memory.pushed(pair); }  ///< in the last solve
   };
-  Pushed who_pushed() const { return {memory_}; }
+  Pushed who_pushed() const { return {memory_}; }  ///< the filter of a detection
 
   int solves = 0;                    ///< of the step, but the first
   StepReport report_of_detect;       ///< as the first solve found it
@@ -92,8 +92,8 @@ class BasicContactCache {
     const double closing = dot(p.normal, a.velocity_at(p.point() - 0.5 * p.travel) - b.velocity_at(p.point() + 0.5 * p.travel));
     return (h * closing - p.gap) / inner::pair_scale(a.shape, b.shape);
   }
-  const Anchor& anchor_of(Index collider) const { return anchors_[collider]; }
-  Index material_of(Index collider) const { return materials_[collider]; }
+  const Anchor& anchor_of(Index collider) const { return anchors_[collider]; }  ///< its body
+  Index material_of(Index collider) const { return materials_[collider]; }  ///< its number in the table of materials
   /// Adds them to the points of the step.
   void join_missed() {
     for (ContactPoint& p : inner::Slice<ContactPoint>(missed)) points.push_back(static_cast<ContactPoint&&>(p));

@@ -59,7 +59,8 @@ struct AuditedBody {
 /// The inner steps of a run under `ErrorControlled` whose error one effect made.
 struct StepCause {
   ErrorEffect effect = ErrorEffect::motion;  ///< its kind
-  long steps = 0, rejections = 0;  ///< accepted, and tried in vain
+  long steps = 0;                  ///< accepted
+  long rejections = 0;             ///< tried in vain
   double least_step = 0;           ///< s, of the accepted ones
   double error = 0;  ///< the largest that was accepted in a step of the host which it ruled, in the unit of the accuracy
   std::string body;  ///< whose error that was

@@ -26,7 +26,7 @@ namespace delassus {
 template <class MakeLoop, class P, Execution E = Serial>
 class Batch {
  public:
-  using Loop = std::invoke_result_t<const MakeLoop&, const P&>;
+  using Loop = std::invoke_result_t<const MakeLoop&, const P&>;  ///< of each world
   static_assert(!std::is_reference_v<Loop>, "delassus: make_loop of a Batch must return a new loop, not a reference to one");
 
   /// Makes all loops, on several threads at once, and keeps the state of each for `reset`. Throws InvalidArgument when there are no
@@ -42,9 +42,9 @@ class Batch {
     });
   }
 
-  Index size() const { return Index(worlds_.size()); }
-  Loop& loop(Index i) { return world(i).loop; }
-  const Loop& loop(Index i) const { return world(i).loop; }
+  Index size() const { return Index(worlds_.size()); }  ///< worlds
+  Loop& loop(Index i) { return world(i).loop; }  ///< of world i
+  const Loop& loop(Index i) const { return world(i).loop; }  ///< the same
   /// What world i was made from.
   const P& parameters(Index i) const { return parameters_[place(i)]; }
   /// Of its last step, whether it failed or not.

@@ -61,7 +61,7 @@ std::size_t append_row(std::vector<double>& values, const Row& row) {
 template <class MakeLoop, class P>
 class Ensemble {
  public:
-  using Loop = std::invoke_result_t<const MakeLoop&, const P&>;
+  using Loop = std::invoke_result_t<const MakeLoop&, const P&>;  ///< of each run
   static_assert(!std::is_reference_v<Loop>, "delassus: make_loop of an Ensemble must return a new loop, not a reference to one");
 
   /// Throws InvalidArgument when there are no parameters.

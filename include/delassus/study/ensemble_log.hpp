@@ -33,7 +33,7 @@ class EnsembleLog {
     log_.begin(inner::field_text(comment) + (plan.every > 0 ? " of each row" : "") + ", hash");
   }
 
-  bool is_kept() const { return log_.is_kept(); }
+  bool is_kept() const { return log_.is_kept(); }  ///< in a file
 
   /// A finished run by its number and its parameters; null where there is none.
   const EnsembleRun* find(long number, std::string_view parameters) const {

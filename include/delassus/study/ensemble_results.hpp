@@ -53,7 +53,7 @@ struct EnsembleRun {
   std::size_t width = 1;   ///< numbers of a row
   std::vector<double> values{};  ///< row after row; of a failed run those before it failed
 
-  bool is_sound() const { return failure.empty(); }
+  bool is_sound() const { return failure.empty(); }  ///< it came to its end
   std::size_t rows() const { return values.size() / width; }
   /// What was observed, in the order of `EnsemblePlan::observations`.
   std::span<const double> row(std::size_t row) const {

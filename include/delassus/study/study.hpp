@@ -92,7 +92,8 @@ struct StudyRun {
   double least_cost = 0;  ///< s, the smallest of the repeats
   double sweeps = 0;      ///< of all steps: the count that no machine changes
   long steps = 0;  ///< of the loop, up to where it was stopped
-  long inner_steps = 0, repeated = 0;  ///< that an accuracy took, and trials that it refused
+  long inner_steps = 0;  ///< that an accuracy took
+  long repeated = 0;     ///< trials that it refused
   long capped_steps = 0;       ///< that did not converge
   std::vector<double> errors;  ///< by measure
 

@@ -51,7 +51,8 @@ struct Penalty {
 
   /// Of one contact: its materials may have others.
   struct Parameters : Law::Parameters {
-    double stiffness, damping;  ///< N/m, N·s/m
+    double stiffness;  ///< k, N/m
+    double damping;    ///< c, N·s/m
   };
 
   void check() const {

@@ -17,7 +17,7 @@ namespace delassus {
 template <int rows_, unsigned turns_ = 0>
 struct Bilateral {
   static constexpr int rows = rows_;
-  static constexpr unsigned turns = turns_;
+  static constexpr unsigned turns = turns_;  ///< bit k: row k is in rad/s
   static constexpr bool bilateral = true;
   static constexpr auto refines = refine::prepare | refine::tangent | refine::natural_map;
 

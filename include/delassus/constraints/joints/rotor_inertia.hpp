@@ -43,8 +43,10 @@ struct RotorStages {
   template <class P>
   struct State {};
 
+  /// What the rows add to a step.
   template <class Base>
   struct stages : Base {
+    /// Writes compliance, bias and free velocity of each rotor.
     static void make_bias(auto& step) {
       Base::make_bias(step);
       const inner::BodyVelocities v(std::as_const(step).world());
@@ -85,7 +87,7 @@ struct RotorStages {
 /// implicit, of first order with one solve a step and of second order under `NewtonMidpoint`.
 template <class Coordinate = inner::Absent>
 struct RotorInertia : Bilateral<1, Coordinate::winds ? 1u : 0u> {
-  using Base = Bilateral<1, Coordinate::winds ? 1u : 0u>;
+  using Base = Bilateral<1, Coordinate::winds ? 1u : 0u>;  ///< the law of its row
   using overrides = Overrides<RotorStages>;
   static constexpr bool resists = true;  ///< read by `RotorStages` and by `NewtonMidpoint`: `inertia` of the item resists changes of the rate
 

@@ -33,7 +33,7 @@ struct SerialJoint : Bilateral<6 - slides - hinges, inner::moments_after(3 - sli
   static_assert(slides >= 0 && slides <= 3 && hinges >= 0 && hinges <= 3 && slides + hinges < 6,
                 "delassus: SerialJoint<slides, hinges> has up to three of each, and not six together");
   static constexpr int rows = 6 - slides - hinges;
-  using Base = Bilateral<rows, inner::moments_after(3 - slides, rows)>;
+  using Base = Bilateral<rows, inner::moments_after(3 - slides, rows)>;  ///< the law of its rows
 
   /// Both ends need a frame.
   struct Item {

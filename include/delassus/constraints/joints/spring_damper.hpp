@@ -16,8 +16,8 @@ namespace delassus {
 /// speed besides, and is no equality: steppers do not take it.
 template <class Coordinate = inner::Absent>
 struct SpringDamper : Bilateral<1, Coordinate::winds ? 1u : 0u>, OnAxis<Coordinate> {
-  using Base = Bilateral<1, Coordinate::winds ? 1u : 0u>;
-  static constexpr unsigned turns = Base::turns;
+  using Base = Bilateral<1, Coordinate::winds ? 1u : 0u>;  ///< the law of its row
+  static constexpr unsigned turns = Base::turns;  ///< bit 0: the row is in rad/s
 
   /// One axis, where it is at rest, and how stiff it is.
   struct Item {

@@ -21,13 +21,14 @@ namespace delassus {
 /// the same, and the tendon goes when a body of the part is removed. A part that names no body and has none
 /// is not there.
 struct TendonPart {
-  Anchor a{}, b{};                 ///< the ends of the axis, whose z axes it is; of a length the two points
+  Anchor a{};                      ///< the end of the axis, whose z axis it is; of a length one point
+  Anchor b{};                      ///< the other
   double coefficient = 0;          ///< of the coordinate in the length
   AxisKind kind = AxisKind::turn;  ///< which coordinate it is
   double position = 0;             ///< the coordinate at the start of the last step, rad over all turns or m
 
-  bool is_used() const { return coefficient != 0; }
-  bool is_given() const { return is_used() || a.owner != 0 || b.owner != 0; }
+  bool is_used() const { return coefficient != 0; }  ///< it adds to the length
+  bool is_given() const { return is_used() || a.owner != 0 || b.owner != 0; }  ///< it is there
 };
 
 namespace inner {
@@ -113,14 +114,14 @@ struct Tendon : Bilateral<1, 1u>, inner::OfParts<n> {
 /// lower ≤ l ≤ upper for the length of a tendon, see `Limit`.
 template <int n>
 struct TendonLimit : inner::Stops, inner::OfParts<n> {
-  static constexpr unsigned turns = ~0u;
+  static constexpr unsigned turns = ~0u;  ///< rows may be in rad/s
   static constexpr auto refines =
       inner::Stops::refines | refine::check | refine::follow | refine::restitution;
   using overrides = Overrides<NewtonImpact>;
 
   /// The coordinates and their stops.
   struct Item {
-    std::array<TendonPart, std::size_t(n)> parts{};
+    std::array<TendonPart, std::size_t(n)> parts{};  ///< the coordinates
     double lower = -std::numeric_limits<double>::infinity();  ///< rad or m
     double upper = std::numeric_limits<double>::infinity();   ///< rad or m, at least `lower`
     double restitution = 0;                                   ///< e in [0, 1]
@@ -158,11 +159,11 @@ struct TendonLimit : inner::Stops, inner::OfParts<n> {
 /// them that of a `Motor`, which with speed 0 is dry friction.
 template <int n>
 struct TendonMotor : Bounded, inner::OfParts<n> {
-  static constexpr unsigned turns = ~0u;
+  static constexpr unsigned turns = ~0u;  ///< rows may be in rad/s
 
   /// The coordinates, where their sum shall be, and how hard it is drawn there.
   struct Item {
-    std::array<TendonPart, std::size_t(n)> parts{};
+    std::array<TendonPart, std::size_t(n)> parts{};  ///< the coordinates
     double target = 0;                                           ///< of the length, rad or m
     double stiffness = 0;                                        ///< k ≥ 0
     double damping = 0;                                          ///< c ≥ 0
