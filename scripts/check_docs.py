@@ -8,6 +8,9 @@
 A page shows an example by a code block after the line `<!-- from examples/x.cpp -->`. The example's leading comments
 speak to its tests and are left out. A part of a program stands after `<!-- part of docs/snippets/x.cpp -->`: a run of its
 lines, but for the common indent. Every other block of C++ is a mistake, but for those in docs/decisions.
+
+A table of a how-to has a column `evidence`, or a line after it that names a test: `Test: `tests/loop/x.cpp`.` A file of tests that
+a page of docs/ names is there.
 """
 import re
 import sys
@@ -19,6 +22,8 @@ SHOWN = re.compile(r"(<!-- from (\S+) -->\n```(?:cpp|xml)\n)(.*?)(```)", re.DOTA
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 PART = re.compile(r"<!-- part of (\S+) -->\n```cpp\n(.*?)```", re.DOTALL)
 BLOCK = re.compile(r"([^\n]*)\n```(?:cpp|c\+\+)\n(.*?)```", re.DOTALL)
+TABLE = re.compile(r"^(\|[^\n]*)\n\|[-:| ]+\n(?:\|[^\n]*\n)*\n*([^\n]*)", re.MULTILINE)
+TEST = re.compile(r"`((?:tests|tools)/[\w/]+\.(?:cpp|py|cmake))`")
 CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 
 
@@ -62,6 +67,13 @@ def complaints(root):
             for before, shown in BLOCK.findall("\n" + text):
                 if not re.match(r"<!-- (from|part of) \S+ -->$", before):
                     yield f"{name}: no program is named above the block that begins with {shown.splitlines()[0].strip()!r}"
+        if "how_to" in name.parts:
+            for head, after in TABLE.findall(text):
+                if "evidence" not in head and not re.match(r"Tests?: `|Evidence: ", after):
+                    yield f"{name}: the table {head!r} names no test; write `Test: ` and its file after it"
+        for test in TEST.findall(text):
+            if name.parts[0] == "docs" and "decisions" not in name.parts and not (root / test).exists():
+                yield f"{name}: there is no {test}"
         for word in re.findall(r"^[A-Z]+_[A-Z_]+$", text, re.MULTILINE):
             yield f"{name}: {word} stands for a text that is not there yet"
         for target in LINK.findall(CODE.sub("", text)):
@@ -90,14 +102,21 @@ def self_test():
         ("<!-- part of examples/b.cpp -->\n```cpp\nint x;\n```\n", "does not exist"),
         ("# A\n\nA_CAPTION\n", "not there yet"),
         ("text\n```cpp\nint x;\n```\n", "no program is named"),
+        ("`tests/gone.cpp`\n", "there is no", "docs/how_to/a.md"),
+        ("| a |\n|---|\n| b |\n\ntext\n", "names no test", "docs/how_to/a.md"),
+        ("| a |\n|---|\n| b |\n", "names no test", "docs/how_to/a.md"),
+        ("| a |\n|---|\n| b |\n\nTest: `tests/a.cpp`.\n", None, "docs/how_to/a.md"),
+        ("| a | evidence |\n|---|---|\n| b | HC-01 |\n", None, "docs/how_to/a.md"),
     ]
     failures = 0
-    for text, word in cases:
+    for text, word, *page in cases:
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)
-            (root / "examples").mkdir()
+            for room in ("examples", "tests", "docs/how_to"):
+                (root / room).mkdir(parents=True)
+            (root / "tests/a.cpp").touch()
             (root / "examples/a.cpp").write_text(example)
-            (root / "README.md").write_text(text)
+            (root / (page or ["README.md"])[0]).write_text(text)
             told = list(complaints(root))
         if bool(told) != (word is not None) or (word and word not in told[0]):
             failures += 1
