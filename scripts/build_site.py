@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Builds the site: the pages of docs/ in their order, and the API from the public headers.
 
-    scripts/build_site.py                  writes out/docs/index.html; exit code 1 at a warning of Doxygen, a dead link inside of the site, or a
-                                     public name without a comment
+    scripts/build_site.py                  writes out/docs/index.html; exit code 1 at a warning of Doxygen, a page that it does not
+                                           understand, a dead link inside of the site, or a public name without a comment
     scripts/build_site.py --out DIR        the same into another folder
     scripts/build_site.py --undocumented   lists the public names without a comment, writes no site
 
@@ -56,10 +56,11 @@ def prepared(page, out):
         nonlocal is_first
         name = label(page) if is_first else label(page, slug(match.group(2)))
         is_first = False
-        return f"{match.group(1)} {match.group(2)} {{#{name}}}"
+        return f"{match.group(1)} {match.group(2).replace('`', '')} {{#{name}}}"  # Doxygen shows the tags of code in a heading
 
     def link(match):
         picture, text, target, place = match.groups()
+        text = " ".join(text.split())  # a reference that goes on in the next line ends what Doxygen understands of a page
         if re.match(r"[a-z]+:", target):
             return match.group(0)
         file = (page.parent / target).resolve() if target else page
@@ -128,6 +129,14 @@ def undocumented():
             yield line
 
 
+def left_as_written(out):
+    """Pages of which Doxygen has not understood a part: its commands, or tags that it has made itself, stand in the text."""
+    for page in sorted(out.glob("*.html")):
+        text = re.sub(r'<(pre|code|tt)\b.*?</\1>|<div class="(?:line|fragment)">.*?</div>', "", page.read_text(encoding="utf-8", errors="replace"), flags=re.DOTALL)
+        if found := re.search(r"[@\\](?:section|subsection|ref|code|anchor|page)\b|&lt;/?(?:tt|b|em|td|tr|table)\b", text):
+            yield f"{page.name}: {found.group(0)} stands in the text"
+
+
 def dead_links(out):
     """Links of the site's pages to files or places that are not there."""
     names = {}
@@ -163,7 +172,7 @@ def main():
         shutil.rmtree(a.out)
     os.makedirs(a.out, exist_ok=True)
     mistakes = [*doxygen(a.out), *missing]
-    mistakes += dead_links(a.out)
+    mistakes += [*dead_links(a.out), *left_as_written(a.out)]
     print("\n".join([*mistakes, f"build_site: {len(mistakes)} mistakes; open {a.out / 'index.html'}"]))
     return 1 if mistakes else 0
 
