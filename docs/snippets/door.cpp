@@ -19,7 +19,7 @@ int main() {
   const Anchor post = world_anchor({0, 0, 1}), leaf = anchor_at(rigid, door, {0, 0, 1});
   const auto hinge = loop.add(Hinge::Item{post, leaf});
   loop.add(Drive<Turn>::Item{.a = post, .b = leaf, .stiffness = 0, .damping = 2});  // damps the turn, N·m·s/rad
-  loop.add(Limit<Turn>::Item{.a = post, .b = leaf, .lower = -0.01, .upper = 1.5});  // its lower stop leaves the latch alone
+  loop.add(Limit<Turn>::Item{.a = post, .b = leaf, .lower = -0.01, .upper = 1.5});  // a stop at 0 would share the latch's moment
   const auto latch = loop.add(Latch::Item{{post, leaf}, infinity, 15});  // no bound of its force, 15 N·m
 
   const double h = 1e-3;
