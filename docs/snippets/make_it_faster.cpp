@@ -1,5 +1,5 @@
 // Counts and times of a step, to see what to make faster.
-// prints: 40 contacts, 120 rows, 1 islands, [0-9]+ sweeps
+// prints: converged: 40 contacts, 120 rows, 1 islands, [0-9]+ sweeps
 #include <delassus/delassus.hpp>
 
 #include <cstdio>
@@ -14,6 +14,7 @@ int main() {
 
   StepReport report;
   for (int i = 0; i < 100; ++i) report = loop.step(5e-3);
-  std::printf("%d contacts, %d rows, %d islands, %d sweeps\n", report.contacts, report.rows, report.islands, report.sweeps);
+  std::printf("%s: %d contacts, %d rows, %d islands, %d sweeps\n", name(report.status), report.contacts, report.rows,
+              report.islands, report.sweeps);
   loop.get<Stopwatch>().print();
 }
