@@ -14,7 +14,7 @@ int main() {
 
   StepReport report;
   for (int i = 0; i < 100; ++i) report = loop.step(5e-3);
-  std::printf("%s: %d contacts, %d rows, %d islands, %d sweeps\n", name(report.status), report.contacts, report.rows,
-              report.islands, report.sweeps);
+  std::printf("%s: %d contacts, %d rows, %d islands, %d sweeps\n", name(report.status), report.contacts,
+              report.rows, report.islands, report.sweeps);
   loop.get<Stopwatch>().print();
 }
