@@ -4,6 +4,7 @@
 #include <delassus/collision/certificate.hpp>
 #include <delassus/collision/gjk_epa.hpp>
 #include <delassus/collision/inner/straighten.hpp>
+#include <delassus/collision/inner/two_boxes.hpp>
 
 namespace delassus {
 
@@ -32,9 +33,10 @@ concept GivesLeastDepth = requires {
   requires Kernel::gives_least_depth;
 };
 
-/// True when an answer that holds deserves a second opinion all the same. Of bodies apart, when the normal proves less than
-/// 1 − 1e-6 of the `claimed` distance, which is a lean of 0.08°, or the gap is below 1e-5 of the scale, where tolerances of
-/// others end. Of an overlap always, since the way out that portals find may be the least of its neighbourhood only.
+/// True when an answer that holds deserves a second opinion all the same. Of bodies apart, when the normal
+/// proves less than 1 − 1e-6 of the `claimed` distance, which is a lean of 0.08°, or the gap is below 1e-5 of
+/// the scale, where tolerances of others end. Of an overlap always, since the way out that portals find may
+/// be the least of its neighbourhood only.
 inline bool is_doubtful(double scale, double claimed, const SignedPair& r) {
   return r.status == PairStatus::near && !(r.distance >= std::max(1e-5 * scale, (1 - 1e-6) * claimed));
 }
@@ -67,8 +69,13 @@ CertifiedPair better_pair(Kernel& kernel, const Shape& a, const Shape& b, const 
 template <NarrowKernel Kernel>
 CertifiedPair certified_pair(Kernel& kernel, const Shape& a, const Shape& b, const Pose& b_in_a,
                              double margin, double scale, const Vec3& guess) {
-  CertifiedPair r = inner::better_pair(kernel, a, b, b_in_a, margin, scale, guess);
   constexpr bool is_native = inner::GivesLeastDepth<Kernel>;
+  CertifiedPair r{};
+  if (is_native && a.kind == ShapeKind::box && b.kind == ShapeKind::box &&
+      inner::two_boxes(a, b, b_in_a, margin, r.pair))
+    return r;
+  const CertifiedPair better = inner::better_pair(kernel, a, b, b_in_a, margin, scale, guess);
+  r.pair = better.pair, r.is_rejected = better.is_rejected;
   if (r.pair.status != PairStatus::near || (is_native && has_closed_form(a, b))) return r;
   inner::Straighten{a, b, b_in_a, scale}(r.pair, is_native);
   return r;

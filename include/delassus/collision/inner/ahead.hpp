@@ -4,6 +4,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/name_points.hpp>
+#include <delassus/collision/inner/stay_apart.hpp>
 #include <delassus/collision/inner/summary.hpp>
 #include <delassus/collision/inner/time_of_impact.hpp>
 #include <delassus/collision/pair_memory.hpp>

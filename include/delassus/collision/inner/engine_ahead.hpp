@@ -121,8 +121,8 @@ void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> col
     if (!inner::may_close(a, b, p.normal, p.distance, h)) return false;
     const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale),
                  near = worker_.meeting_distance(scale);
-    if (!inner::may_come_near(a, b, h, near)) return false;
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, near);
+    if (!inner::may_come_near(a, b, h, near) || inner::stay_apart(a, b, p.normal, h, near)) return false;
+    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, near, transposed_times(a.pose.rotation, p.normal));
     if (!hit.is_found) return false;
     RestingPair& now = memory_of(p.job.pair);
     if (a.is_movable && b.is_movable) {

@@ -346,8 +346,9 @@ bool PairWorker<Kernel>::look_ahead(const Collider& a, const Collider& b, const 
                                     bool is_near, const PairMemory& last, RestingPair& now,
                                     std::vector<ContactPoint>& out) {
   const double target = meeting_distance(scale);
-  if (may_close(a, b, apart.normal, apart.distance, scene.h) && may_come_near(a, b, scene.h, target)) {
-    const Impact hit = time_of_impact(a, b, scene.h, scale, target);
+  if (may_close(a, b, apart.normal, apart.distance, scene.h) && may_come_near(a, b, scene.h, target) &&
+      !stay_apart(a, b, apart.normal, scene.h, target)) {
+    const Impact hit = time_of_impact(a, b, scene.h, scale, target, transposed_times(a.pose.rotation, apart.normal));
     if (hit.is_now) return false;
     if (hit.is_found) {
       const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > same_normal;

@@ -207,7 +207,8 @@ class SurfacePairs {
     if (!may_close(pair.a, pair.b, apart.normal, apart.distance, pair.h)) return {};
     const Triangle t = surface.triangle(apart.triangle);
     const Shape& s = pair.b.shape;
-    return time_of_impact(pair.a, pair.b, pair.h, touch_of(pair), [&](const Pose& b_in_a, const Vec3& guess) {
+    if (stay_apart(t, pair.a, pair.b, apart.normal, pair.h, touch_of(pair))) return {};
+    return time_of_impact(pair.a, pair.b, pair.h, touch_of(pair), transposed_times(pair.a.pose.rotation, apart.normal), [&](const Pose& b_in_a, const Vec3& guess) {
       return distance_to(t, s, b_in_a, guess);
     });
   }
@@ -243,7 +244,7 @@ class SurfacePairs {
     surface.visit([&](const Bounds& box) { return box.meets(near); }, [&](Index t) {
       const Triangle triangle = surface.triangle(t);
       if (is_zero(triangle.normal) || !(triangle.height(pair.b_in_a.position) >= 0)) return;
-      const Impact hit = time_of_impact(pair.a, core, pair.h, 1e-3 * radius, [&](const Pose& b_in_a, const Vec3&) {
+      const Impact hit = time_of_impact(pair.a, core, pair.h, 1e-3 * radius, zero<Vec3>(), [&](const Pose& b_in_a, const Vec3&) {
         return triangle_and_sphere(triangle, radius, b_in_a.position);
       });
       if ((hit.is_found || hit.is_now) && !((first.is_found || first.is_now) && first.time <= hit.time)) first = hit;
