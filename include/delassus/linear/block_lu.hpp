@@ -89,12 +89,12 @@ class BlockLu {
       for (Index e = pattern_.start(j); e < pattern_.start(j + 1); ++e) {
         const Index i = pattern_.row(e);
         const int r = rows(first, i);
-        take_product(lower_[e], upper_[e], diagonal_[i], r, k, r);
+        take_product(lower_[e], upper_[e], diagonal_[i], k, r);
         for (Index f = e + 1; f < pattern_.start(j + 1); ++f) {
           const Index at = pattern_.find(pattern_.row(f), i);
           const int s = rows(first, pattern_.row(f));
-          take_product(lower_[f], upper_[e], lower_[at], s, k, r);
-          take_product(lower_[e], upper_[f], upper_[at], r, k, s);
+          take_product(lower_[f], upper_[e], lower_[at], k, r);
+          take_product(lower_[e], upper_[f], upper_[at], k, s);
         }
       }
     }
@@ -166,14 +166,17 @@ class BlockLu {
         if (const T b = B(i, c); b != T(0))
           add_multiple<T>(-b, from + std::ptrdiff_t(c) * columns, to + std::ptrdiff_t(i) * columns, columns);
   }
-  /// C −= A B, r × k times k × c.
-  static void take_product(const Block& A, const Block& B, Block& C, int r, int k, int c) {
-    if (r + k + c == 3 * w) return add_product(A, B, C, T(-1));
-    for (int j = 0; j < c; ++j)
+  /// C −= A B, of any rows times k × c: the rows of A behind its own are zero.
+  static void take_product(const Block& A, const Block& B, Block& C, int k, int c) {
+    if (k + c == 2 * w) return add_product(A, B, C, T(-1));
+    for (int j = 0; j < c; ++j) {
+      T* const to = C.data() + w * j;
       for (int n = 0; n < k; ++n) {
         const T b = B(n, j);
-        for (int i = 0; i < r; ++i) C(i, j) -= A(i, n) * b;
+        DELASSUS_UNROLL
+        for (int i = 0; i < w; ++i) to[i] -= A.data()[i + w * n] * b;
       }
+    }
   }
 
   BlockPattern pattern_;

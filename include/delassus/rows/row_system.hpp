@@ -32,8 +32,8 @@ struct RowSystem<T, Widths<w...>, R...> {
   template <int s>
   static constexpr int width_of = std::array<int, sizeof...(w) + 1>{w..., 0}[s];
 
-  /// The most velocities per block, and rows per item.
-  static constexpr int widest = std::max({0, w...}), highest = std::max({0, R...});
+  /// The most velocities per block, and rows per item; the least of the latter.
+  static constexpr int widest = std::max({0, w...}), highest = std::max({0, R...}), lowest = std::min({highest, R...});
 
   inner::Pack<PoolRows<R, T, w...>...> pools;
 

@@ -8,10 +8,11 @@
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/solvers/inner/compromise.hpp>
 #include <delassus/solvers/inner/contradiction.hpp>
-#include <delassus/solvers/inner/direct_system.hpp>
+#include <delassus/solvers/inner/joint_system.hpp>
 #include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/inner/schur_complement.hpp>
 #include <delassus/solvers/inner/sweeps_then_newton.hpp>
+#include <delassus/solvers/inner/velocities_by_body.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
@@ -24,10 +25,12 @@ namespace inner {
 template <class T, int highest, int widest>
 struct DirectSpace {
   static_assert(widest > 0,
-                "delassus: the direct path needs the bodies of a problem, and this one, as a FrictionProblem, has W alone; "
+                "delassus: the direct path needs the bodies of a problem, and this one, as a "
+                "FrictionProblem, has W alone; "
                 "solve it by AcceleratedGaussSeidel");
-  DirectSystem<highest, std::max(1, widest)> joints;
+  JointSystem<highest, std::max(1, widest)> joints;
   SchurComplement<T, DirectSystem<highest, std::max(1, widest)>> others;
+  VelocitiesByBody<T> velocities;
   Array<T> before, after;
   SweepsThenNewton::Space<T> contacts;
   void reset(Index rows) {
@@ -38,35 +41,39 @@ struct DirectSpace {
 
 }  // namespace inner
 
-/// The constraints b of an island whose rows are all equalities are met exactly, W_bb δ = −(d + W λ)_b. `inner::DirectSystem`
-/// does it in O(n) for chains, trees and loops of n joints, at any ratio of masses. The others c are swept on
+/// The constraints b of an island whose rows are all equalities are met exactly, W_bb δ = −(d + W λ)_b.
+/// `inner::DirectSystem` does it in O(n) for chains, trees and loops of n joints, at any ratio of masses. The
+/// others c are swept on
 ///
 ///   S = W_cc − W_cb W_bb⁻¹ W_bc,   u_c = d_c + W_cb λ_b + W_cc λ_c with λ_b such that the joints hold,
 ///
-/// by `AcceleratedGaussSeidel`. The matrix S is dense. An island with more than `max_swept_rows` rows of them is swept whole,
-/// as is one whose A couples bodies by springs. Where contacts jam and sweeps do not end it, Newton's method acts on S,
-/// `inner::SweepsThenNewton`. Impulses of joints start from zero: Where rows depend on each other they come out the smallest
-/// that do.
+/// by `AcceleratedGaussSeidel`. The matrix S is dense. An island with more than `max_swept_rows` rows of them
+/// is swept whole, as is one whose A couples bodies by springs. Where contacts jam and sweeps do not end it,
+/// Newton's method acts on S, `inner::SweepsThenNewton`. Impulses of joints start from zero: Where rows
+/// depend on each other they come out the smallest that do.
 ///
-/// Joints that contradict each other get a compromise, as springs of 1e-4 of their compliance would give. What the others ask
-/// for is hardly touched where a mechanism only stands at a dead centre. The status is `infeasible` where
-/// `inner::Contradiction` proves it. Contacts and limits that joints leave no way get the compromise of
-/// `AcceleratedGaussSeidel`. Cannot mend what an explicit constraint force does to a heavy chain: see docs/decisions/0009.
+/// Joints that contradict each other get a compromise, as springs of 1e-4 of their compliance would give.
+/// What the others ask for is hardly touched where a mechanism only stands at a dead centre. The status is
+/// `infeasible` where `inner::Contradiction` proves it. Contacts and limits that joints leave no way get the
+/// compromise of `AcceleratedGaussSeidel`. Cannot mend what an explicit constraint force does to a heavy
+/// chain: see docs/decisions/0009.
 struct DirectGaussSeidel {
   using plays = role::Solver;
-  double tolerance = 1e-8;       ///< of the criterion
-  int max_iterations = 4000;     ///< sweeps over contacts and limits
-  int min_iterations = 1;        ///< of the same
-  int max_swept_rows = 900;      ///< 6.5 MB of S at three rows a constraint
-  bool scale_tolerance = false;  ///< tolerance × number of rows
-  bool all_verified = false;     ///< every constraint's share below the tolerance, not the sum
+  double tolerance = 1e-8;                    ///< of the criterion
+  int max_iterations = 4000;                  ///< sweeps over contacts and limits
+  int min_iterations = 1;                     ///< of the same
+  int max_swept_rows = 900;                   ///< 6.5 MB of S at three rows a constraint
+  bool scale_tolerance = false;               ///< tolerance × number of rows
+  bool all_verified = false;                  ///< every constraint's share below the tolerance, not the sum
   Criterion criterion = Criterion::residual;  ///< what the tolerance is compared with
 
   static constexpr Needs needs = Needs::sweeps;
   template <class Rows>
-  using Workspace = inner::DirectSpace<typename Rows::Scalar, std::max(1, Rows::highest), Rows::widest>;
+  using Workspace = inner::DirectSpace<typename Rows::Scalar, inner::rows_of_a_node<Rows>, Rows::widest>;
 
-  SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
+  SolveOptions options() const {
+    return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion};
+  }
   void check() const {
     inner::expect_at_least_zero("DirectGaussSeidel: tolerance", tolerance);
     inner::expect_at_least_zero("DirectGaussSeidel: max_iterations", max_iterations);
@@ -78,12 +85,16 @@ struct DirectGaussSeidel {
   SolveReport solve(Island<T>& problem, Space& work) const;
 
  private:
+  template <class T, class Space>
+  void solve_directly(Island<T>& problem, Space& work, SolveReport& report) const;
+
+  static constexpr int most_rounds = inner::rounds_on_others;
   static constexpr double fine = 1e-10, coarse = 1e-4;  ///< ε, in units of each row's own W_kk
   static constexpr double before_sweeps = 1e-11, to_rounding = 1e-13;  ///< of what `settle` leaves
 
-  template <class T, class Node>
-  static const Span<T>& span_of(const Island<T>& problem, const Node& node) {
-    return problem.begin()[node.pool];
+  template <class T, class Part>
+  static const Span<T>& span_of(const Island<T>& problem, const Part& part) {
+    return problem.begin()[part.pool];
   }
 
   /// The bilateral constraints first; false where there are none, or the direct path cannot act.
@@ -96,7 +107,9 @@ struct DirectGaussSeidel {
       for (const Span<T>& span : problem) {
         const PoolView<T>& pool = *span.pool;
         if (inner::are_equalities(pool.table->kinds, pool.rows) != is_bilateral) continue;
-        for (const Index i : span) can &= joints.take(pool, i, is_bilateral, int(&span - problem.begin()));
+        const int place = int(&span - problem.begin());
+        for (const Index i : span)
+          can &= is_bilateral ? joints.take_joint(pool, i, place) : joints.take(pool, i, false, place);
         if (!is_bilateral) swept += pool.rows * int(span.count);
       }
     if (!can || joints.bilateral() == 0 || swept > max_swept_rows) return false;
@@ -107,10 +120,10 @@ struct DirectGaussSeidel {
   /// The right side ← −(d + W λ)_b.
   template <class T, class System>
   static double load(Island<T>& problem, System& joints) {
-    return joints.load([&](const auto& node, auto& to) {
+    return joints.load([&](const auto& part, auto& to) {
       T u[most_rows];
-      problem.velocity(span_of(problem, node), node.item, u);
-      for (int r = 0; r < node.rows; ++r) to[r] = double(u[r]);
+      problem.velocity(span_of(problem, part), part.item, u);
+      for (int r = 0; r < part.rows; ++r) to[r] = double(u[r]);
     });
   }
   /// λ_b ← λ_b − W_bb⁻¹ (d + W λ)_b, repeated while that halves the velocity of the joints' rows: what ε and
@@ -152,20 +165,20 @@ struct DirectGaussSeidel {
   template <class T, class System>
   static void push(Island<T>& problem, const System& joints, double sign) {
     T next[most_rows];
-    for (Index k = 0; k < joints.bilateral(); ++k) {
-      const auto& node = joints.node(k);
-      const Span<T>& span = span_of(problem, node);
-      const T* lambda = problem.impulse(span, node.item);
-      for (int r = 0; r < node.rows; ++r) next[r] = lambda[r] + T(sign * joints.step(k)[r]);
-      problem.assign(span, node.item, next);
+    for (const auto& part : joints.parts()) {
+      const Span<T>& span = span_of(problem, part);
+      const T* lambda = problem.impulse(span, part.item);
+      for (int r = 0; r < part.rows; ++r) next[r] = lambda[r] + T(sign * part.step[r]);
+      problem.assign(span, part.item, next);
     }
   }
 
   /// The others with S in place of W, from the λ they have, to that share of the tolerance; W is told in the
   /// end.
   template <class T, class Space>
-  Status sweep_others(Island<T>& problem, Space& work, SolveReport& report, double share) const {
-    Island<T> rest = work.others.build(work.joints, problem);
+  Status sweep_others(Island<T>& problem, Space& work, SolveReport& report, int round, double share) const {
+    Island<T> rest = work.others.build(work.joints, problem, round);
+    if (rest.row_count() == 0) return Status::converged;
     problem.save(work.before);
     const inner::SweepsThenNewton solver{
         inner::sweeps_of(options(), max_iterations - report.sweeps, min_iterations, share)};
@@ -201,40 +214,49 @@ SolveReport DirectGaussSeidel::solve(Island<T>& problem, Space& work) const {
         .solve(problem, work.contacts.newton.sweeps);
   problem.notify(0, report.measure);
   report.ended_by = "factorization";
+  const bool is_matrix = work.velocities.show(problem);
+  solve_directly(problem, work, report);
+  if (is_matrix) work.velocities.put_back(problem);
+  return report;
+}
+
+template <class T, class Space>
+void DirectGaussSeidel::solve_directly(Island<T>& problem, Space& work, SolveReport& report) const {
+  auto& joints = work.joints;
   bool is_contradiction = false;
   double largest = 0;
   for (const double epsilon : {fine, coarse}) {
     const T nothing[most_rows] = {};
-    for (Index k = 0; k < joints.bilateral(); ++k) problem.assign(span_of(problem, joints.node(k)), joints.node(k).item, nothing);
+    for (const auto& part : joints.parts()) problem.assign(span_of(problem, part), part.item, nothing);
     ++report.factorizations;
     if (!joints.factor(epsilon)) continue;
-    if (settle(problem, joints, joints.bilateral() < joints.count() ? before_sweeps : to_rounding, largest)) break;
+    if (settle(problem, joints, joints.bilateral() < joints.count() ? before_sweeps : to_rounding, largest))
+      break;
     is_contradiction = is_contradiction || contradicts(problem, work);
   }
   report.measure = problem.measure();
   // What is met by the others' own scale can miss by the whole island's: each round asks for half as much.
   double share = 1;
-  for (int round = 0; round < 4 && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
-    const Status swept = sweep_others(problem, work, report, share);
+  for (int round = 0; round < most_rounds && joints.bilateral() < joints.count(); ++round, share *= 0.5) {
+    const Status swept = sweep_others(problem, work, report, round, share);
     settle(problem, joints, to_rounding, largest);
     if (round == 0 && (swept == Status::infeasible || swept == Status::max_iterations)) {
       problem.save(work.after);
       if (inner::Contradiction<T>(problem).is_proved(work.before)) {
         auto& space = work.contacts.newton.sweeps;
-        return inner::compromise(problem, report, space.best, space.x);
+        report = inner::compromise(problem, report, space.best, space.x);
+        return;
       }
       problem.load(work.after);
     }
     report.measure = problem.measure();
     report.status = swept;
-    if (swept == Status::infeasible) return report;
+    if (swept == Status::infeasible) return;
     if (options().is_done(report.measure, problem.row_count()) || problem.is_out_of_time()) break;
   }
   problem.notify(report.sweeps + report.factorizations, report.measure);
-  report.status = is_contradiction
-                      ? Status::infeasible
-                      : options().verdict(report.measure, problem.row_count());
-  return report;
+  report.status =
+      is_contradiction ? Status::infeasible : options().verdict(report.measure, problem.row_count());
 }
 
 #ifdef DELASSUS_COMPILED_DIRECT  // after delassus/compiled.hpp

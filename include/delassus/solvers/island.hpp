@@ -131,6 +131,9 @@ class Island {
       for (Pass pass(*this); pass.next();) pass.span->pool->table->extrapolate(*pass.span, before.data() + pass.row(), T(beta));
   }
 
+  /// From here on passes visit these spans instead: the same items in the same order. They stay where they are as long as the
+  /// island is used.
+  void pass_over(const Span<T>* spans, int count) { take(spans, count); }
   /// From here on passes visit these spans instead, by functions of their own. Both stay where they are as long as the island is
   /// used. Pre: no timer.
   void pass_by(const Span<T>* spans, int count, inner::Passes<T>& passes) {

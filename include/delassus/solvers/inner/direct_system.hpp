@@ -8,6 +8,7 @@
 #include <delassus/rows/row_view.hpp>
 #include <delassus/solvers/inner/island_matrices.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -77,21 +78,20 @@ class DirectSystem {
         const std::ptrdiff_t at = std::ptrdiff_t(r * set.width) * e;
         const T *H = set.H + at, *G = set.G + at;
         bool answers = false;
-        for (int k = 0; k < r * set.width; ++k) answers = answers || G[k] != T(0);
+        for (int k = 0; k < r * set.width && !answers; ++k) answers = G[k] != T(0);
         if (!answers) continue;
         Side& side = sides_.emplace_back();
         side.node = Index(nodes_.size());
         side.block = place_of(s, rows.sets, set.block[e]);
-        set_all(side.H, 0.0), set_all(side.G, 0.0);
-        for (int k = 0; k < set.width; ++k)
-          for (int j = 0; j < r; ++j) side.H(j, k) = double(H[j + r * k]), side.G(k, j) = double(G[k + set.width * j]);
+        fill(side, H, G, r, set.width);
       }
     }
     node.last = Index(sides_.size());
     measure(node);
     for (int k = 0; k < r; ++k) {
       const std::ptrdiff_t row = std::ptrdiff_t(r) * i + k;
-      node.compliance[k] = double(rows.compliance[row]) + double(rows.relative_compliance[row]) * node.scale[k];
+      node.compliance[k] =
+          double(rows.compliance[row]) + double(rows.relative_compliance[row]) * node.scale[k];
       node.scale[k] = std::abs(node.scale[k]) + node.compliance[k];
     }
     nodes_.push_back(node);
@@ -128,7 +128,8 @@ class DirectSystem {
     return A.factor(first_row_);
   }
 
-  /// The right side ← −u, where something answers; velocity(node, u) sets u. Returns √Σ u²/W_kk, the size of it.
+  /// The right side ← −u, where something answers; velocity(node, u) sets u. Returns √Σ u²/W_kk, the size of
+  /// it.
   double load(const auto& velocity) {
     clear();
     double square = 0;
@@ -148,19 +149,19 @@ class DirectSystem {
   }
   void set_right_side(Index k, const Row& r) { x_[k] = r; }
   void solve() { matrix_->solve(x_); }
-  /// δ of bilateral constraint k after `solve`.
+  /// δ of node k after `solve`.
   const Row& answer(Index k) const { return x_[k]; }
-  /// Sets the answers aside, so that the right side can be loaded anew.
-  void keep() { step_ = x_; }
-  const Row& step(Index k) const { return step_[k]; }
-
-  /// Many right sides beside each other, `columns` in a row: their rows, and the first of bilateral constraint k.
+  /// Many right sides beside each other, `columns` in a row: their rows, and the first of bilateral
+  /// constraint k.
   Index rows() const { return first_row_.back(); }
   Index first_row(Index k) const { return first_row_[k]; }
   void solve(double* X, Index columns) { matrix_->solve(X, columns, first_row_, x_); }
-  /// What impulse c of constraint e's side does to a right side, the column at `to`: −H G on neighbours, G on a hub.
+  /// What impulse c of constraint e's side does to a right side, the column at `to`: −H G on neighbours, G on
+  /// a hub.
   void disturb(const Side& e, int c, double* to, Index columns) const {
-    const auto at = [&](Index block, int r) -> double& { return to[std::ptrdiff_t(first_row_[block] + r) * columns]; };
+    const auto at = [&](Index block, int r) -> double& {
+      return to[std::ptrdiff_t(first_row_[block] + r) * columns];
+    };
     if (hub_[e.block] >= 0) {
       for (int k = 0; k < width; ++k) at(hub_[e.block] + k / w, k % w) += e.G(k, c);
     } else {
@@ -177,11 +178,24 @@ class DirectSystem {
   const Side& side(Index e) const { return sides_[e]; }
   bool is_held(Index block) const { return held_[block] > 0; }
 
+ protected:
+  Row& right_side(Index k) { return x_[k]; }
+
+  Node& changed_node(Index k) { return nodes_[k]; }
+  Side& changed_side(Index e) { return sides_[e]; }
+  /// The last bilateral constraint was none. Pre: no other kind was taken.
+  void drop_last() {
+    sides_.resize(nodes_.back().first);
+    nodes_.pop_back();
+    --bilateral_;
+  }
+
  private:
   Index& number(int s, Index b) { return number_[std::size_t(b) * std::size_t(sets_) + std::size_t(s)]; }
   Index place_of(int s, int sets, Index b) {
     sets_ = sets;
-    if (const std::size_t room = (std::size_t(b) + 1) * std::size_t(sets); number_.size() < room) number_.resize(room, -1);
+    if (const std::size_t room = (std::size_t(b) + 1) * std::size_t(sets); number_.size() < room)
+      number_.resize(room, -1);
     Index& place = number(s, b);
     if (place < 0) {
       place = Index(blocks_.size());
@@ -190,12 +204,25 @@ class DirectSystem {
     return place;
   }
 
+  /// H and G as numbers by columns, r rows of H.
+  template <class T>
+  static void fill(Side& side, const T* H, const T* G, int r, int columns) {
+    double *h = side.H.data(), *g = side.G.data();
+    for (int k = 0; k < columns; ++k, h += w, H += r)
+      for (int j = 0; j < w; ++j) h[j] = j < r ? double(H[j]) : 0;
+    std::fill(h, side.H.data() + w * width, 0.0);
+    for (int j = 0; j < r; ++j, g += width, G += columns)
+      for (int k = 0; k < width; ++k) g[k] = k < columns ? double(G[k]) : 0;
+    std::fill(g, side.G.data() + w * width, 0.0);
+  }
+
   /// scale ← the diagonal of Σ H G over the node's own sides.
   void measure(Node& node) const {
     for (Index e = node.first; e < node.last; ++e)
       for (Index f = node.first; f < node.last; ++f)
         if (sides_[e].block == sides_[f].block)
-          for (int k = 0; k < node.rows; ++k) node.scale[k] += row_times_column(sides_[e].H, k, sides_[f].G, k);
+          for (int k = 0; k < node.rows; ++k)
+            node.scale[k] += row_times_column(sides_[e].H, k, sides_[f].G, k);
   }
 
   /// The bilateral sides of block b are order_[start_[b]] … : a counting sort.
@@ -219,7 +246,8 @@ class DirectSystem {
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       if (held_[b] > most) hub_[b] = size_, size_ += parts;
     first_row_.assign(1, 0);
-    for (Index k = 0; k < size_; ++k) first_row_.push_back(first_row_.back() + (k < bilateral_ ? nodes_[k].rows : w));
+    for (Index k = 0; k < size_; ++k)
+      first_row_.push_back(first_row_.back() + (k < bilateral_ ? nodes_[k].rows : w));
   }
   void list_pairs() {
     pairs_.clear();
@@ -232,10 +260,20 @@ class DirectSystem {
           });
       });
   }
-  /// A block += H G of two sides.
+  /// A block += H G of two sides; the rows of H behind its own are zero.
   void add_rows(const Side& e, const Side& f, Mat<w, w>& to) const {
-    for (int c = 0; c < nodes_[f.node].rows; ++c)
-      for (int r = 0; r < nodes_[e.node].rows; ++r) to(r, c) += row_times_column(e.H, r, f.G, c);
+    for (int c = 0; c < nodes_[f.node].rows; ++c) {
+      const double* const g = f.G.data() + width * c;
+      double* const column = to.data() + w * c;
+      double sum[w] = {};
+      DELASSUS_UNROLL
+      for (int v = 0; v < width; ++v) {
+        DELASSUS_UNROLL
+        for (int r = 0; r < w; ++r) sum[r] += e.H.data()[r + w * v] * g[v];
+      }
+      DELASSUS_UNROLL
+      for (int r = 0; r < w; ++r) column[r] += sum[r];
+    }
   }
   static void join_hub(auto& A, const Side& e, Index hub) {
     for (int k = 0; k < width; ++k) {
@@ -254,7 +292,7 @@ class DirectSystem {
   Array<std::pair<Index, Index>> pairs_;
   IslandMatrices<SparseLu<w, double>> matrices_;
   SparseLu<w, double>* matrix_ = nullptr;
-  Array<Row> x_, step_;
+  Array<Row> x_;
 };
 
 }  // namespace delassus::inner

@@ -2,62 +2,118 @@
 #pragma once
 
 #include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/math/long_vectors.hpp>
 #include <delassus/math/small_products.hpp>
 #include <delassus/solvers/inner/direct_system.hpp>
 #include <delassus/solvers/inner/rows_alone.hpp>
 #include <delassus/solvers/island.hpp>
+#include <delassus/solvers/measure.hpp>
 
 #include <algorithm>
 #include <cstddef>
 
 namespace delassus::inner {
 
+inline constexpr int rounds_on_others = 4;  ///< of `SchurComplement::build` at most
+
 /// S = W_cc − W_cb W_bb⁻¹ W_bc over the constraints c that are not bilateral, dense, and u = d + S λ kept as
-/// sweeps change λ: their island, with S in the place of W.
+/// sweeps change λ: their island, with S in the place of W. Those that are far from closing are left out: a
+/// limit in the middle of its range, most of all. Each round asks for them anew, and the last has all.
 template <class T, class System>
 class SchurComplement {
  public:
   /// Takes the constraints of `system` behind its bilateral ones, with the velocities that `whole` has for
-  /// them.
-  Island<T> build(System& system, const Island<T>& whole) {
-    const Index first = system.bilateral();
-    list_rows(system, first);
+  /// them. In rounds after the first, 0, H and A are those of before.
+  Island<T> build(System& system, const Island<T>& whole, int round) {
+    taken_before_.swap(taken_);
+    choose(system, whole, round + 1 == rounds_on_others);
+    if (round > 0 && taken_ == taken_before_) return show(whole);
+    list_rows(system);
     S_.assign(std::size_t(size_) * std::size_t(size_), 0);
     u_.assign(size_, 0);
-    add_own(system, first);
-    for (Index from = 0; from < size_; from += most_columns) take(system, first, from, std::min(from + most_columns, size_));
-    for (Index j = first; j < system.count(); ++j)
-      for (int k = 0; k < system.node(j).rows; ++k) {
-        double& own = column(row_[j - first] + k)[row_[j - first] + k];
-        own = std::max(own, least * system.node(j).scale[k]);
+    add_own(system);
+    const Index asked = Index(asked_.size());
+    for (Index from = 0; from < asked; from += most_columns)
+      take(system, from, std::min(from + most_columns, asked));
+    for (Index t = 0; t < Index(taken_.size()); ++t)
+      for (int k = 0; k < node(system, t).rows; ++k) {
+        double& own = column(row_[t] + k)[row_[t] + k];
+        own = std::max(own, least * node(system, t).scale[k]);
       }
     return show(whole);
   }
 
  private:
-  /// The constraints that were taken, in their order: whole spans of the island, since a law's rows are all
-  /// equalities or none is swept without the others.
-  Island<T> show(const Island<T>& whole) {
-    pools_.clear(), spans_.clear(), first_.clear();
-    std::size_t items = 0, squares = 0;
+  /// Lists the constraints that are taken, in their order, which is that of the island: whole spans of it but
+  /// for what is left out, since a law's rows are all equalities or none is swept without the others.
+  void choose(const System& system, const Island<T>& whole, bool all) {
+    taken_.clear(), items_.clear(), spans_.clear();
+    const MeasureSums nothing{.length = whole.length()};
+    Index j = system.bilateral();
     for (const Span<T>& span : whole) {
       if (are_equalities(Island<T>::kinds(span), span.pool->rows)) continue;
+      const std::size_t before = items_.size();
+      for (const Index i : span) {
+        if (all || !stays_away(system.node(j), span, i, nothing)) {
+          taken_.push_back(j);
+          items_.push_back(i);
+        }
+        ++j;
+      }
+      if (items_.size() > before) spans_.push_back({span.pool, nullptr, Index(items_.size() - before)});
+    }
+  }
+  /// Without impulse, as its law wants it, and so it stays if it closes twice as fast, or no slower than it
+  /// opens. Rows to which nothing answers, as those of a limit out of reach, are not asked.
+  static bool stays_away(const auto& node, const Span<T>& span, Index i, MeasureSums sums) {
+    const PoolView<T>& pool = *span.pool;
+    const T *lambda = Island<T>::impulse(span, i), *bias = pool.bias + std::ptrdiff_t(pool.rows) * i;
+    bool is_asked = false;
+    for (int k = 0; k < pool.rows; ++k) {
+      if (lambda[k] != 0) return false;
+      is_asked = is_asked || node.scale[k] > 0;
+    }
+    if (is_asked) {
+      T u[most_rows];
+      Island<T>::velocity(span, i, u);
+      bool has_sides = false;
+      for (int k = 0; k < pool.rows; ++k) {
+        const RowKind kind = Island<T>::kinds(span)[k];
+        if (kind == RowKind::friction || !(node.scale[k] > 0)) continue;
+        has_sides = true;
+        if (kind == RowKind::equality ||
+            !((kind == RowKind::lower ? u[k] : -u[k]) > std::abs(u[k] - bias[k])))
+          return false;
+      }
+      if (!has_sides) return false;
+    }
+    pool.table->measure({&pool, &i, 1}, sums);
+    return sums.residual == 0;
+  }
+
+  /// The constraints that were taken.
+  Island<T> show(const Island<T>& whole) {
+    pools_.clear(), first_.clear();
+    std::size_t items = 0, squares = 0;
+    for (const Span<T>& span : spans_) {
       first_.push_back(Index(items));
       items += std::size_t(span.pool->items);
       squares += std::size_t(span.pool->rows * span.pool->rows) * std::size_t(span.pool->items);
       pools_.push_back(*span.pool);
-      spans_.push_back(span);
     }
     place_.resize(items);
     diagonal_.resize(squares);
     T* diagonal = diagonal_.data();
+    const Index* listed = items_.data();
     Index at = 0;
     T u[most_rows];
     for (std::size_t n = 0; n < spans_.size(); ++n) {
       PoolView<T>& pool = pools_[n];
       const int R = pool.rows;
+      spans_[n].items = listed;
+      listed += spans_[n].count;
       for (const Index i : spans_[n]) {
         place_[std::size_t(first_[n] + i)] = at;
         Island<T>::velocity(spans_[n], i, u);  // by W
@@ -106,56 +162,63 @@ class SchurComplement {
   /// Columns that are solved for together: of a thousand hinges they are 5 MB.
   static constexpr Index most_columns = 128;
 
+  /// Constraint t of those that were taken.
+  const auto& node(const System& system, Index t) const { return system.node(taken_[t]); }
+
   /// Where the rows of each constraint begin and which blocks they act on.
-  void list_rows(const System& system, Index first) {
+  void list_rows(const System& system) {
     row_.clear();
     wanted_.assign(system.blocks(), -1);
+    newest_.assign(system.blocks(), -1);
+    sides_.clear();
+    asked_.clear();
     blocks_ = size_ = 0;
-    for (Index j = first; j < system.count(); ++j) {
-      const auto& node = system.node(j);
+    for (Index t = 0; t < Index(taken_.size()); ++t) {
       row_.push_back(size_);
-      size_ += node.rows;
-      for (Index e = node.first; e < node.last; ++e)
-        if (const Index b = system.side(e).block; system.is_held(b) && wanted_[b] < 0) wanted_[b] = blocks_++;
+      for (int k = 0; k < node(system, t).rows; ++k)
+        if (node(system, t).scale[k] > 0) asked_.push_back({t, k});
+      size_ += node(system, t).rows;
+      for (Index e = node(system, t).first; e < node(system, t).last; ++e) {
+        const Index b = system.side(e).block;
+        if (system.is_held(b) && wanted_[b] < 0) wanted_[b] = blocks_++;
+        sides_.push_back({e, t, newest_[b]});
+        newest_[b] = Index(sides_.size()) - 1;
+      }
     }
   }
 
-  /// W_cc.
-  void add_own(const System& system, Index first) {
-    for (Index j = first; j < system.count(); ++j) {
-      const auto& node = system.node(j);
-      const Index at = row_[j - first];
-      for (int k = 0; k < node.rows; ++k) column(at + k)[at + k] += node.compliance[k];
-      for (Index e = node.first; e < node.last; ++e) add_velocity(system, first, j, e);
-    }
-  }
-  /// What side e of constraint j does to all sides on its block.
-  void add_velocity(const System& system, Index first, Index j, Index e) {
-    const auto& from = system.side(e);
-    for (Index k = first; k < system.count(); ++k)
-      for (Index f = system.node(k).first; f < system.node(k).last; ++f) {
-        const auto& to = system.side(f);
-        if (to.block != from.block) continue;
-        for (int c = 0; c < system.node(j).rows; ++c)
-          for (int r = 0; r < system.node(k).rows; ++r)
-            column(row_[j - first] + c)[row_[k - first] + r] += row_times_column(to.H, r, from.G, c);
+  /// W_cc: what each side does to all on its block.
+  void add_own(const System& system) {
+    for (Index t = 0; t < Index(taken_.size()); ++t)
+      for (int k = 0; k < node(system, t).rows; ++k)
+        column(row_[t] + k)[row_[t] + k] += node(system, t).compliance[k];
+    for (const ListedSide& from : sides_)
+      for (Index n = newest_[system.side(from.side).block]; n >= 0; n = sides_[n].older) {
+        const ListedSide& to = sides_[n];
+        const int rows = node(system, to.of).rows, columns = node(system, from.of).rows;
+        for (int c = 0; c < columns; ++c)
+          for (int r = 0; r < rows; ++r)
+            column(row_[from.of] + c)[row_[to.of] + r] +=
+                row_times_column(system.side(to.side).H, r, system.side(from.side).G, c);
       }
   }
 
-  /// The columns from … end − 1: what their impulses make the joints do, and what that does to all others.
-  void take(System& system, Index first, Index from, Index end) {
+  /// The rows from … end − 1 of those that are asked as columns: what their impulses make the joints do, and
+  /// what that does to all others.
+  void take(System& system, Index from, Index end) {
     const Index columns = end - from;
     X_.assign(std::size_t(system.rows()) * std::size_t(columns), 0);
-    for (Index j = first; j < system.count(); ++j)
-      for (int c = 0; c < system.node(j).rows; ++c) {
-        const Index to = row_[j - first] + c - from;
-        if (to < 0 || to >= columns) continue;
-        for (Index e = system.node(j).first; e < system.node(j).last; ++e) system.disturb(system.side(e), c, X_.data() + to, columns);
-      }
+    for (Index c = 0; c < columns; ++c) {
+      const auto& [t, k] = asked_[from + c];
+      for (Index e = node(system, t).first; e < node(system, t).last; ++e)
+        system.disturb(system.side(e), k, X_.data() + c, columns);
+    }
     system.solve(X_.data(), columns);
     constexpr int width = System::width;
     velocity_.assign(std::size_t(blocks_) * std::size_t(width * columns), 0);
-    const auto velocity = [&](Index block, int v) { return &velocity_[std::size_t(block * width + v) * std::size_t(columns)]; };
+    const auto velocity = [&](Index block, int v) {
+      return &velocity_[std::size_t(block * width + v) * std::size_t(columns)];
+    };
     for (Index k = 0; k < system.bilateral(); ++k)
       for (Index e = system.node(k).first; e < system.node(k).last; ++e) {
         const auto& side = system.side(e);
@@ -163,24 +226,41 @@ class SchurComplement {
         for (int r = 0; to >= 0 && r < system.node(k).rows; ++r)
           for (int v = 0; v < width; ++v)
             if (const double g = side.G(v, r); g != 0)
-              add_multiple(g, &X_[std::size_t(system.first_row(k) + r) * std::size_t(columns)], velocity(to, v), columns);
+              add_multiple(g, &X_[std::size_t(system.first_row(k) + r) * std::size_t(columns)],
+                           velocity(to, v), columns);
       }
-    for (Index j = first; j < system.count(); ++j)
-      for (int r = 0; r < system.node(j).rows; ++r) {
-        change_.assign(columns, 0);
-        for (Index e = system.node(j).first; e < system.node(j).last; ++e) {
-          const auto& side = system.side(e);
-          for (int v = 0; wanted_[side.block] >= 0 && v < width; ++v)
-            if (const double h = side.H(r, v); h != 0) add_multiple(h, velocity(wanted_[side.block], v), change_.data(), columns);
-        }
-        for (Index c = 0; c < columns; ++c) column(from + c)[row_[j - first] + r] += change_[c];
+    for (const auto& [t, r] : asked_) {
+      change_.assign(columns, 0);
+      for (Index e = node(system, t).first; e < node(system, t).last; ++e) {
+        const auto& side = system.side(e);
+        for (int v = 0; wanted_[side.block] >= 0 && v < width; ++v)
+          if (const double h = side.H(r, v); h != 0)
+            add_multiple(h, velocity(wanted_[side.block], v), change_.data(), columns);
       }
+      for (Index c = 0; c < columns; ++c) column(row_of(asked_[from + c]))[row_[t] + r] += change_[c];
+    }
   }
 
+  /// Row k of constraint t: one that bodies answer to.
+  struct AskedRow {
+    Index t;
+    int k;
+  };
+  Index row_of(const AskedRow& asked) const { return row_[asked.t] + asked.k; }
+
+  /// Side `side` of the system, of constraint `of`, and the one before it on its block, or −1.
+  struct ListedSide {
+    Index side, of, older;
+  };
+
+  Array<Index> taken_, taken_before_, items_;  ///< nodes of the system, and the items that they are
+  Array<ListedSide> sides_;
+  Array<AskedRow> asked_;
+  Array<Index> newest_;  ///< of a block
   Index size_ = 0;
   Index blocks_ = 0;     ///< that are wanted
   Array<double> S_, u_;  ///< S by columns
-  Array<Index> row_;     ///< the first of a constraint
+  Array<Index> row_;     ///< the first of a constraint that was taken
   Array<Index> wanted_;  ///< the number of a block that joints hold and others act on, or −1
   Array<PoolView<T>> pools_;
   Array<Span<T>> spans_;
