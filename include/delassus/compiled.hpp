@@ -81,8 +81,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND void inner::AssembledRows<double>::build_pool<R, true>(inner::AssembledRows<double>&, int, const CrowdedRow*); \
   KIND struct inner::BlockLoops<R, 3, double>;                                                                  \
   KIND struct inner::BlockLoops<R, 6, double>;                                                                  \
-  KIND void inner::apply_inverse<false>(const RigidBodies&, SetBlocks<R, 6, double>&);                          \
-  KIND void inner::apply_inverse<false>(const Particles&, SetBlocks<R, 3, double>&);
+  KIND void inner::apply_inverse<false>(const RigidBodies&, SetBlocks<R, 6, double>&, inner::Range);                         \
+  KIND void inner::apply_inverse<false>(const Particles&, SetBlocks<R, 3, double>&, inner::Range);
 
 #define DELASSUS_COMPILED_ROWS(KIND)                                                                                              \
   DELASSUS_COMPILED_HEIGHT(KIND, 1)                                                                                               \
@@ -111,7 +111,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class Array<char>;                                                                                                         \
   KIND class OwningArray<Array<double>>;                                                                                          \
   KIND class OwningArray<Array<Index>>;                                                                                           \
-  KIND void inner::make_bias(AllLaws<double>, AllRows<double>, const double* const*, const double* const*, const MovingSurfaces<double>&, const Baumgarte&, double, double, bool); \
+  KIND void inner::make_bias(const LawPool<double>&, const RowArrays<double>&, inner::Range, const double* const*, const double* const*, const MovingSurfaces<double>&, const Baumgarte&, double, double, bool); \
   KIND void warm_start(AllLaws<double>, AllRows<double>, ContactCache&, double, double);                                          \
   KIND void keep_impulses(AllLaws<double>, AllRows<double>, ContactCache&);                                                       \
   KIND void forget_lost_islands(AllLaws<double>, inner::Slice<const PoolView<double>>, ContactCache&, const Islands<double>&, inner::Slice<const SolveReport>);

@@ -238,7 +238,8 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
 
   /// One body at a time.
   struct Blocks {
-    BasicRigidBodies& set;  ///< whose bodies these are
+    BasicRigidBodies& set;            ///< whose bodies these are
+    inner::QuarantineRecord* record;  ///< notes who was left where it was
 
     bool moves(Index b) const { return set.moves(b); }
     /// m/s and rad/s, at the start of the step.
@@ -248,13 +249,13 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     /// p += s M v; nothing where the body does not move.
     void add_mass_times_velocity(Index b, Velocity& p, double s) const { set.add_mass_times_velocity(b, p, s); }
     Velocity solve(Index b, const Velocity& p) const { return set.template solve_block<1>(b, p); }
-    void advance(Index b, const Velocity& next, double h, auto share) const { set.advance_block(b, next, h, share); }
+    void advance(Index b, const Velocity& next, double h, auto share) const { set.advance_block(b, next, h, share, *record); }
   };
   /// Opens the set for one pass over its blocks, and forgets who was left before.
   Blocks by_block(SystemScale scale) {
     factor(scale);
     quarantine_ = {};
-    return {*this};
+    return {*this, &quarantine_};
   }
   /// No force acts between bodies: every one moves by itself.
   static constexpr bool is_separable() { return true; }
@@ -286,7 +287,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
     quarantine_ = {};
     for (const Index b : slots_.active()) {
       if (motion_[b] != Motion::dynamic) {
-        advance_block(b, v_next[b], h, T(0));
+        advance_block(b, v_next[b], h, T(0), quarantine_);
         continue;
       }
       if (is_finite(v_next[b])) assign(v_[b], v_next[b]);
@@ -328,15 +329,15 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
   void set_mass(Index b) { state_.set_mass(b, motion_[b] == Motion::dynamic); }
   void advance_with(double h, auto share) {
     quarantine_ = {};
-    for (const Index b : slots_.active()) advance_block(b, v_next[b], h, share);
+    for (const Index b : slots_.active()) advance_block(b, v_next[b], h, share, quarantine_);
   }
   /// q and v of body b from its v_next.
-  void advance_block(Index b, const Velocity& next, double h_, auto share) {
+  void advance_block(Index b, const Velocity& next, double h_, auto share, inner::QuarantineRecord& record) {
     if (motion_[b] == Motion::fixed) return;
     const T h = T(h_);
     const bool is_done =
         motion_[b] == Motion::kinematic ? follow(b, next, h) : state_.drift(b, v_[b], next, h, share);
-    if (!is_done) [[unlikely]] return quarantine_.leave(load_.data(), load_[b]);
+    if (!is_done) [[unlikely]] return record.leave(load_.data(), load_[b]);
     set_all(load_[b], T(0));
   }
   /// A kinematic body goes where it was told, or on with its velocity.

@@ -4,6 +4,7 @@
 #include <delassus/collision/broad_phase.hpp>
 #include <delassus/collision/inner/dynamic_tree.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 
@@ -42,6 +43,30 @@ class BasicBoxTree {
     for (Tree& tree : trees_) tree.balance();
     if (!moved_.empty()) renew_pairs();
     report(boxes, pairs);
+  }
+  /// The same by several workers, with the room that they have for it: `SharedSearch`. Pre: `pairs` is empty.
+  void find(inner::Slice<const Aabb> boxes, inner::Slice<const BoxTag> tags, Array<CandidatePair>& pairs,
+            const auto& by) {
+    recognise(tags);
+    moved_.clear();
+    by.room.found.clear();
+    by.room.places.fill(by.room.found, Index(boxes.size()), 256, by.execution,
+                        [&](inner::Range range, Array<Index>& left) {
+                          for (Index i = range.first; i < range.last; ++i)
+                            if (!stays(leaf_[leaf_of_[i]], boxes[i], tags[i].is_movable)) left.push_back(i);
+                        });
+    for (const Index i : by.room.found) follow(leaf_of_[i], boxes[i], tags[i].is_movable);
+    for (Tree& tree : trees_) tree.balance();
+    if (!moved_.empty()) renew_pairs_in_parts(by);
+    by.room.candidates.fill(pairs, Index(kept_.size()), 1024, by.execution,
+                            [&](inner::Range range, Array<CandidatePair>& list) {
+                              for (Index k = range.first; k < range.last; ++k)
+                                if (const CandidatePair found = places_of(kept_[std::size_t(k)]);
+                                    boxes[found.i].intersects(boxes[found.j]))
+                                  list.push_back(found);
+                            });
+    if (!inner::is_sorted(pairs.data(), pairs.data() + pairs.size()))
+      inner::sort(pairs.data(), pairs.data() + pairs.size());
   }
 
  private:
@@ -134,6 +159,14 @@ class BasicBoxTree {
     if (!leaf.has_moved) mark(leaf);
   }
 
+  /// Whether `follow` would leave its leaf where it is; then its middle is known.
+  bool stays(Leaf& leaf, const Aabb& box, bool is_movable) const {
+    if (box.is_empty() || leaf.is_movable != is_movable || leaf.node < 0) return false;
+    if (!leaf.box.contains(box) || is_slack(leaf.box, box, max_entry(Vec3(box.max() - box.min())))) return false;
+    leaf.middle = (box.min() + box.max()) / 2;
+    return true;
+  }
+
   /// True when the leaf is far larger than its box has use for: the box was fast, or has shrunk.
   bool is_slack(const Aabb& leaf, const Aabb& box, double edge) const {
     const Vec3 spare = (leaf.max() - leaf.min()) - (box.max() - box.min());
@@ -152,18 +185,13 @@ class BasicBoxTree {
   /// Drops the pairs of the leaves that moved and looks them up again. Two that both moved are found by the
   /// lower one.
   void renew_pairs() {
-    erase_if(kept_, [&](std::uint64_t pair) {
-      return leaf_[Index(pair >> 32)].has_moved || leaf_[Index(pair & 0xffffffffu)].has_moved;
-    });
+    erase_if(kept_, [&](std::uint64_t pair) { return has_moved(pair); });
     fresh_.clear();
     for (const Index l : moved_) {
       const Leaf& leaf = leaf_[l];
       if (leaf.node < 0) continue;
       const auto meets = [&](const Aabb& box) { return box.intersects(leaf.box); };
-      const auto add = [&](Index other) {
-        if (other == l || (leaf_[other].has_moved && other < l)) return;
-        fresh_.push_back(std::uint64_t(std::min(l, other)) << 32 | std::uint64_t(std::max(l, other)));
-      };
+      const auto add = [&](Index other) { add_pair(l, other, fresh_); };
       trees_[1].visit(meets, add);
       if (leaf.is_movable) trees_[0].visit(meets, add);
     }
@@ -178,6 +206,55 @@ class BasicBoxTree {
     }
     for (; next < fresh_.size(); ++next) merged_.push_back(fresh_[next]);
     kept_.swap(merged_);
+  }
+
+  bool has_moved(std::uint64_t pair) const {
+    return leaf_[Index(pair >> 32)].has_moved || leaf_[Index(pair & 0xffffffffu)].has_moved;
+  }
+  /// Of leaf l, which moved, and another one.
+  [[gnu::always_inline]] void add_pair(Index l, Index other, Array<std::uint64_t>& to) const {
+    if (other == l || (leaf_[other].has_moved && other < l)) return;
+    to.push_back(std::uint64_t(std::min(l, other)) << 32 | std::uint64_t(std::max(l, other)));
+  }
+  /// `renew_pairs` by several workers: each looks up some leaves, and then each drops and merges some pairs.
+  void renew_pairs_in_parts(const auto& by) {
+    fresh_.clear();
+    by.room.names.fill(fresh_, Index(moved_.size()), 16, by.execution,
+                       [&](inner::Range range, Array<std::uint64_t>& list) {
+                         for (Index k = range.first; k < range.last; ++k) {
+                           const Index l = moved_[std::size_t(k)];
+                           const Leaf& leaf = leaf_[l];
+                           if (leaf.node < 0) continue;
+                           const auto meets = [&](const Aabb& box) { return box.intersects(leaf.box); };
+                           const auto add = [&](Index other) { add_pair(l, other, list); };
+                           trees_[1].visit_at_once(meets, add);
+                           if (leaf.is_movable) trees_[0].visit_at_once(meets, add);
+                         }
+                       });
+    inner::sort(fresh_);
+    merged_.clear();
+    const Index count = Index(kept_.size());
+    by.room.names.fill(merged_, count, 1024, by.execution, [&](inner::Range range, Array<std::uint64_t>& list) {
+      const std::uint64_t *next = fresh_.data(), *end = next + fresh_.size();
+      const auto before = [](std::uint64_t x, std::uint64_t y) { return x < y; };
+      const std::uint64_t* const from = kept_.data();
+      if (range.first > 0) next = inner::lower_bound(next, end, from[range.first], before);
+      if (range.last < count) end = inner::lower_bound(next, end, from[range.last], before);
+      for (Index k = range.first; k < range.last; ++k) {
+        for (; next != end && *next < from[k]; ++next) list.push_back(*next);
+        if (!has_moved(from[k])) list.push_back(from[k]);
+      }
+      for (; next != end; ++next) list.push_back(*next);
+    });
+    kept_.swap(merged_);
+    for (const Index l : moved_) leaf_[l].has_moved = false;
+    moved_.clear();
+  }
+
+  /// Where the boxes of two leaves stand now, the lower place first.
+  CandidatePair places_of(std::uint64_t pair) const {
+    const Index i = place_of_[Index(pair >> 32)], j = place_of_[Index(pair & 0xffffffffu)];
+    return {std::min(i, j), std::max(i, j)};
   }
 
   template <class Pairs>

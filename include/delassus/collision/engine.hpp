@@ -38,9 +38,11 @@ class CollisionEngine {
   template <class Filter = NoFilter>
   CollisionReport detect(std::span<const Collider> colliders, double h, const CollisionSettings& settings,
                          std::vector<ContactPoint>& out, const Filter& filter = {}) {
-    out.clear();
     worker_.report = {};
-    find_pairs(colliders, h, settings, filter);
+    if constexpr (inner::has_execution<Filter>())
+      find_pairs_in_parts(colliders, h, settings, filter);
+    else
+      out.clear(), find_pairs(colliders, h, settings, filter);
     slots_.assign(jobs_);
     worker_.scene = {colliders, summary_.data(), flies_by_.data(), h, settings};
     if constexpr (inner::has_execution<Filter>())
@@ -67,41 +69,70 @@ class CollisionEngine {
   template <class Filter>
   void find_pairs(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
                   const Filter& filter) {
-    boxes_.resize(colliders.size());
-    summary_.resize(colliders.size());
-    half_spaces_.clear();
-    jobs_.clear();
-    knows_who_is_apart_ = inner::KnowsWhoPushed<Filter>;
-    if constexpr (inner::KnowsWhoPushed<Filter>)
-      worker_.apart_pairs.clear(), worker_.cores.clear(), waiting_.clear(),
-          flies_by_.resize(colliders.size());
+    begin_search<Filter>(colliders.size());
     for (Index i = 0; i < Index(colliders.size()); ++i) {
-      DELASSUS_EXPECT(
-          !colliders[i].shape.is_kept(),
-          "a body has a mesh or a compound for its shape; put the WithMeshes{...} or WithCompounds{...} that "
-          "keeps it around this loop's collision backend");
-      summary_[i] = inner::summary_of(colliders[i]);
+      look_at<Filter>(i, colliders[i], h, settings);
       if (is_half_space(colliders[i])) half_spaces_.push_back(i);
-      boxes_[i] = box_of<Filter>(colliders[i], summary_[i], h, settings);
-      if constexpr (inner::KnowsWhoPushed<Filter>) {
-        summary_[i].way = inner::longest_way(summary_[i], h, settings);
-        flies_by_[i] = inner::flies_by(colliders[i], summary_[i].speed, h);
-      }
     }
     if constexpr (TaggedBroadPhase<Broad>) {
       tags_.clear();
       for (const Collider& c : colliders) tags_.push_back({.key = c.key, .is_movable = c.is_movable});
     }
     find_candidates();
-    for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter);
+    for (const CandidatePair& p : pairs_) add_job(colliders, p.i, p.j, filter, jobs_);
     const std::size_t of_bodies = jobs_.size();
     for (const Index plane : half_spaces_) {
       const inner::PlaneReach reach(colliders[plane], h, settings);
       for (Index i = 0; i < Index(colliders.size()); ++i)
-        if (!boxes_[i].is_empty() && reach.may_touch(boxes_[i])) add_job(colliders, plane, i, filter);
+        if (!boxes_[i].is_empty() && reach.may_touch(boxes_[i])) add_job(colliders, plane, i, filter, jobs_);
     }
     inner::sort_and_merge(jobs_, of_bodies, merged_);
-    add_jobs_of_impacts(colliders, filter);
+    const std::size_t known = jobs_.size();
+    slots_.each([&](const RestingPair& m) {
+      if (has_impact(m)) add_job_of_impact(m, known, colliders, filter);
+    });
+    end_search<Filter>(known);
+  }
+  /// The same by the workers that the filter brings.
+  template <class Filter>
+  void find_pairs_in_parts(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
+                           const Filter& filter);
+
+  /// f(plane, reach, i, list) of every half-space and collider, by several workers: what it appends to the lists follows
+  /// in `to`.
+  template <class By, class F>
+  void list_at_planes(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings, const By& by,
+                      Array<Job>& to, const F& f);
+
+  /// Room for so many colliders, and no pair yet.
+  template <class Filter>
+  void begin_search(std::size_t colliders) {
+    boxes_.resize(colliders);
+    summary_.resize(colliders);
+    half_spaces_.clear();
+    jobs_.clear();
+    knows_who_is_apart_ = inner::KnowsWhoPushed<Filter>;
+    if constexpr (inner::KnowsWhoPushed<Filter>)
+      worker_.apart_pairs.clear(), worker_.cores.clear(), waiting_.clear(), flies_by_.resize(colliders);
+  }
+  /// What pairs ask of collider i.
+  template <class Filter>
+  [[gnu::always_inline]] void look_at(Index i, const Collider& c, double h, const CollisionSettings& settings) {
+    DELASSUS_EXPECT(
+        !c.shape.is_kept(),
+        "a body has a mesh or a compound for its shape; put the WithMeshes{...} or WithCompounds{...} that "
+        "keeps it around this loop's collision backend");
+    summary_[i] = inner::summary_of(c);
+    boxes_[i] = box_of<Filter>(c, summary_[i], h, settings);
+    if constexpr (inner::KnowsWhoPushed<Filter>) {
+      summary_[i].way = inner::longest_way(summary_[i], h, settings);
+      flies_by_[i] = inner::flies_by(c, summary_[i].speed, h);
+    }
+  }
+  /// After those of the first `known` jobs there are jobs of impacts.
+  template <class Filter>
+  void end_search(std::size_t known) {
+    if (jobs_.size() > known) inner::sort_and_merge(jobs_, known, merged_);
     if constexpr (inner::KnowsWhoPushed<Filter>)
       worker_.apart_pairs.reserve(jobs_.capacity()), waiting_.reserve(jobs_.capacity());
     worker_.report.pairs = Index(jobs_.size());
@@ -126,36 +157,34 @@ class CollisionEngine {
   }
 
   template <class Filter>
-  void add_job(inner::Slice<const Collider> colliders, Index a, Index b, const Filter& filter) {
+  static void add_job(inner::Slice<const Collider> colliders, Index a, Index b, const Filter& filter,
+                      Array<Job>& to) {
     const Collider &x = colliders[a], &y = colliders[b];
     const std::uint64_t pair = pair_key(x.key, y.key);
     if (!may_meet(x, y) || !filter.lets(pair)) return;
     if (x.key > y.key) std::swap(a, b);
-    jobs_.push_back(Job{{pair, a, b}});
+    to.push_back(Job{{pair, a, b}});
   }
 
+  static bool has_impact(const RestingPair& m) { return !m.is_plain && m.impact.is_there; }
   /// Fast bodies that met in the last step may be far from each other now: what is left of their impact is
-  /// due.
+  /// due. `known`: how many jobs there are without such.
   template <class Filter>
-  void add_jobs_of_impacts(inner::Slice<const Collider> colliders, const Filter& filter) {
-    const std::size_t known = jobs_.size();
+  void add_job_of_impact(const RestingPair& m, std::size_t known, inner::Slice<const Collider> colliders,
+                         const Filter& filter) {
+    if constexpr (inner::KnowsWhoPushed<Filter>)
+      if (!filter.pushed(m.pair)) return;
+    if (job_of(m.pair, known)) return;
     const auto place_of = [&](std::uint32_t key) {
       Index i = 0;
       while (i < Index(colliders.size()) && colliders[i].key != key) ++i;
       return i;
     };
-    slots_.each([&](const RestingPair& m) {
-      if (m.is_plain || !m.impact.is_there) return;
-      if constexpr (inner::KnowsWhoPushed<Filter>)
-        if (!filter.pushed(m.pair)) return;
-      if (job_of(m.pair, known)) return;
-      const Index a = place_of(std::uint32_t(m.pair >> 32)), b = place_of(std::uint32_t(m.pair));
-      const bool are_there = a < Index(colliders.size()) && b < Index(colliders.size());
-      if (are_there && !(boxes_[a].is_empty() && !is_half_space(colliders[a])) &&
-          !(boxes_[b].is_empty() && !is_half_space(colliders[b])))
-        add_job(colliders, a, b, filter);
-    });
-    if (jobs_.size() > known) inner::sort_and_merge(jobs_, known, merged_);
+    const Index a = place_of(std::uint32_t(m.pair >> 32)), b = place_of(std::uint32_t(m.pair));
+    const bool are_there = a < Index(colliders.size()) && b < Index(colliders.size());
+    if (are_there && !(boxes_[a].is_empty() && !is_half_space(colliders[a])) &&
+        !(boxes_[b].is_empty() && !is_half_space(colliders[b])))
+      add_job(colliders, a, b, filter, jobs_);
   }
   /// Among the first `count` jobs; null where there is none.
   Job* job_of(std::uint64_t pair, std::size_t count) {
@@ -170,6 +199,15 @@ class CollisionEngine {
   template <class Filter>
   void find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
                      const Filter& filter);
+  /// The same by the workers that the filter brings.
+  template <class Filter>
+    requires(inner::has_execution<Filter>())
+  void find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,
+                     const Filter& filter);
+  /// Whether collider i goes farther; then its box is made larger.
+  bool outgrows(Index i, const Collider& c, double h, const CollisionSettings& settings);
+  bool comes_near(inner::Slice<const Collider> colliders, const Job& job, double h,
+                  const CollisionSettings& settings) const;
   bool find_who_outgrew(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings);
   /// A pair without contacts is to be asked: at once where it may come near, else when its velocities are
   /// others.
@@ -198,4 +236,6 @@ class CollisionEngine {
 
 }  // namespace delassus
 
+#include <delassus/collision/inner/ahead_in_parts.hpp>
 #include <delassus/collision/inner/engine_ahead.hpp>
+#include <delassus/collision/inner/engine_in_parts.hpp>

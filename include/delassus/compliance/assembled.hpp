@@ -65,7 +65,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   /// bodies.
   template <class World, class Parts, class E>
   void build(const World& world, Rows& rows, Parts& parts, auto& sets, const E& execution) {
-    world.each([&](const auto& set, auto s) __attribute__((always_inline)) { invert(set, rows, s); });
+    world.each([&](const auto& set, auto s) __attribute__((always_inline)) { invert(set, rows, s, inner::SharedRanges{execution}); });
     show(rows);
     world.each([&](const auto& set, auto s) {
       if constexpr (inner::SharedSet<std::remove_cvref_t<decltype(set)>>)
@@ -200,8 +200,8 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   static constexpr bool couples = Inverse::is_whole && inner::may_couple<Set>;
 
   /// G of a set whose blocks A does not couple, and who answers for the others.
-  template <class Set, class S>
-  [[gnu::always_inline]] void invert(const Set& set, Rows& rows, S s) {
+  template <class Set, class S, class Ranges = inner::OneRange>
+  [[gnu::always_inline]] void invert(const Set& set, Rows& rows, S s, const Ranges& ranges = {}) {
     const bool is_coupled = couples<Set> && inner::is_coupled(set);
     own_.coupled[s] = !is_coupled               ? inner::HowCoupled::not_at_all
                       : NodeCompliantSet<Set> ? inner::HowCoupled::nodes
@@ -213,11 +213,11 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
                     "delassus: UncoupledCompliance takes the mass of each node alone, which this set of bodies does not give (Rods "
                     "do not); use AssembledCompliance");
       if constexpr (has_masses) {
-        if (set.is_coupled()) inner::apply_inverse_to_all<true>(set, rows, s);
-        else inner::apply_inverse_to_all(set, rows, s);
+        if (set.is_coupled()) inner::apply_inverse_to_all<true>(set, rows, s, ranges);
+        else inner::apply_inverse_to_all(set, rows, s, ranges);
       }
     } else {
-      inner::apply_inverse_to_all(set, rows, s);
+      inner::apply_inverse_to_all(set, rows, s, ranges);
     }
   }
   [[gnu::always_inline]] void show(Rows& rows) {

@@ -1,6 +1,7 @@
 /// What a solver may ask of a compliance: three functions per constraint, whether W exists as a matrix or not.
 #pragma once
 
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/roles.hpp>
 #include <delassus/fwd.hpp>
 #include <delassus/rows/local.hpp>
@@ -21,20 +22,21 @@ concept Compliance = Plays<C, role::Compliance>;
 
 namespace inner {
 
-/// G_e = A⁻¹ H_eᵀ for every entry of one pool in one block-diagonal set; M⁻¹ H_eᵀ of the masses alone.
+/// G_e = A⁻¹ H_eᵀ for these entries of one pool in one block-diagonal set; M⁻¹ H_eᵀ of the masses alone. Pre: G has room.
 template <bool of_masses, class Set, int R, int w, class T>
-void apply_inverse(const Set& set, SetBlocks<R, w, T>& blocks) {
-  blocks.G.resize_for_overwrite(blocks.H.size());
-  for (std::size_t e = 0; e < blocks.H.size(); ++e) {
+void apply_inverse(const Set& set, SetBlocks<R, w, T>& blocks, Range entries) {
+  for (std::size_t e = std::size_t(entries.first); e < std::size_t(entries.last); ++e) {
     if constexpr (of_masses) assign(blocks.G[e], set.template solve_mass<R>(blocks.block[e], transposed(blocks.H[e])));
     else assign(blocks.G[e], set.template solve_block<R>(blocks.block[e], transposed(blocks.H[e])));
   }
 }
-/// The same of every pool.
-template <bool of_masses = false, class Set, class Rows, class S>
-[[gnu::always_inline]] inline void apply_inverse_to_all(const Set& set, Rows& rows, S s) {
+/// The same of all entries of every pool; `ranges` says who does which.
+template <bool of_masses = false, class Set, class Rows, class S, class Ranges = OneRange>
+[[gnu::always_inline]] inline void apply_inverse_to_all(const Set& set, Rows& rows, S s, const Ranges& ranges = {}) {
   for_each_index<Rows::pool_count>([&](auto p) __attribute__((always_inline)) {
-    apply_inverse<of_masses>(set, inner::part<s>(rows.template pool<p>().sets));
+    auto& blocks = inner::part<s>(rows.template pool<p>().sets);
+    blocks.G.resize_for_overwrite(blocks.H.size());
+    ranges(Index(blocks.H.size()), 256, [&](Range entries) { apply_inverse<of_masses>(set, blocks, entries); });
   });
 }
 

@@ -205,7 +205,8 @@ class Island {
         std::memcpy(at, impulse(span, *span.begin()), R * std::size_t(span.count) * sizeof(T));
         at += R * std::size_t(span.count);
       } else {
-        for (const Index i : span) std::memcpy(at, impulse(span, i), R * sizeof(T)), at += R;
+        for (const Index i : span)
+          for (const T *lambda = impulse(span, i), *const end = lambda + R; lambda != end; ++lambda) *at++ = *lambda;
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/pack.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
@@ -64,6 +65,12 @@ class LawSet<Constraints<Laws...>, T, needs> {
   void prepare(auto& W, auto& rows, double h) {
     show(W, rows);
     for (const PoolView<T>& pool : views_) pool.table->prepare({&pool, nullptr, pool.items}, h);
+  }
+  /// The same where `ranges` says who does which items; `numbers` are 0, 1 … up to that of the last item.
+  void prepare(auto& W, auto& rows, double h, const auto& ranges, const Index* numbers) {
+    show(W, rows);
+    for (const PoolView<T>& pool : views_)
+      ranges(pool.items, 128, [&](inner::Range range) { pool.table->prepare({&pool, numbers + range.first, range.count()}, h); });
   }
   /// The same without what laws keep: for rows of other numbers.
   template <class Operator, class Rows>

@@ -1,6 +1,7 @@
 /// Bias: the stabilisation turns violations into velocities, and d is made.
 #pragma once
 
+#include <delassus/core/ranges.hpp>
 #include <delassus/rows/local.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -99,33 +100,30 @@ void drive(const RowArrays<T>& pool, std::size_t first, double speed, double h) 
   }
 }
 
+/// Of some items of a pool.
 template <class T, class S>
-void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T* const* v, const MovingSurfaces<T>& moving, const S& stabilisation,
-               double h, double theta, bool turns_slip) {
-  for (std::size_t p = 0; p < laws.size(); ++p) {
-    const RowArrays<T>& pool = rows[p];
-    const LawSteps<T>& law = *laws[p].law;
-    const Index items = pool.items();
-    const int height = pool.rows, sets = pool.sets;
-    const bool sees_surfaces = moving && law.place;
-    static constexpr T nothing[most_rows] = {};
-    T of_start[most_rows];
-    for (Index i = 0; i < items; ++i) {
-      const std::size_t first = std::size_t(i) * std::size_t(height);
-      T* const d = pool.d->data() + first;
-      const T *u = nothing, *start = nothing;
-      for (int s = 0; s < sets; ++s, u = d) {
-        pool.set[s].products->rate(pool.set[s], i, v_free[s], u, d);
-        if (theta == 1 && !sees_surfaces) continue;
-        pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
-        start = of_start;
-      }
-      if (sees_surfaces) see_moving_surfaces(moving, law.place(laws[p].pool, i), h, theta, of_start, d);
-      make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta, turns_slip);
-      if (law.speed) drive(pool, first, law.speed(laws[p].pool, i), h);
-      const T* const bias = pool.bias->data() + first;
-      for (int k = 0; k < height; ++k) d[k] += bias[k];
+void make_bias(const LawPool<T>& of, const RowArrays<T>& pool, Range range, const T* const* v_free, const T* const* v, const MovingSurfaces<T>& moving,
+               const S& stabilisation, double h, double theta, bool turns_slip) {
+  const LawSteps<T>& law = *of.law;
+  const int height = pool.rows, sets = pool.sets;
+  const bool sees_surfaces = moving && law.place;
+  static constexpr T nothing[most_rows] = {};
+  T of_start[most_rows];
+  for (Index i = range.first; i < range.last; ++i) {
+    const std::size_t first = std::size_t(i) * std::size_t(height);
+    T* const d = pool.d->data() + first;
+    const T *u = nothing, *start = nothing;
+    for (int s = 0; s < sets; ++s, u = d) {
+      pool.set[s].products->rate(pool.set[s], i, v_free[s], u, d);
+      if (theta == 1 && !sees_surfaces) continue;
+      pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
+      start = of_start;
     }
+    if (sees_surfaces) see_moving_surfaces(moving, law.place(of.pool, i), h, theta, of_start, d);
+    make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta, turns_slip);
+    if (law.speed) drive(pool, first, law.speed(of.pool, i), h);
+    const T* const bias = pool.bias->data() + first;
+    for (int k = 0; k < height; ++k) d[k] += bias[k];
   }
 }
 
@@ -134,12 +132,15 @@ void make_bias(AllLaws<T> laws, AllRows<T> rows, const T* const* v_free, const T
 /// Makes bias, compliance, relative_compliance, and d = H (v_free + (1−θ)/θ v) + bias. Equalities hold for the mean
 /// velocity, as do springs that ask for it and the direction of friction (`inner::rotated_slip`). All other rows hold
 /// for v_next. Friction sees how surfaces move besides (`inner::see_moving_surfaces`). Contacts in the middle of the step see all of
-/// this by their rows, and `turns_slip` is false.
-template <class World, class T, class S>
+/// this by their rows, and `turns_slip` is false. `ranges` says who does which items.
+template <class World, class T, class S, class Ranges = inner::OneRange>
 void make_bias(const World& world, AllLaws<T> laws, AllRows<T> rows, const MovingSurfaces<T>& moving, const S& stabilisation, double h, double theta,
-               bool turns_slip) {
+               bool turns_slip, const Ranges& ranges = {}) {
   const inner::BodyVelocities<World> v(world);
-  inner::make_bias(laws, rows, v.free, v.start, moving, stabilisation, h, theta, turns_slip);
+  for (std::size_t p = 0; p < laws.size(); ++p)
+    ranges(rows[p].items(), 128, [&](inner::Range range) {
+      inner::make_bias(laws[p], rows[p], range, v.free, v.start, moving, stabilisation, h, theta, turns_slip);
+    });
 }
 
 }  // namespace delassus

@@ -7,6 +7,7 @@
 #include <delassus/collision/inner/summary.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/core/sort.hpp>
 #include <delassus/math/twist.hpp>
@@ -43,6 +44,30 @@ class BasicContactCache {
     world.each([&](const auto& set, auto s) {
       for (const Index b : set.active())
         if (set.has_collider(b)) add(set, s, b, collider_moves(set, b));
+    });
+  }
+  /// The same where `ranges` says who describes which.
+  template <class World>
+  void gather(const World& world, const auto& ranges) {
+    anchors_.clear();
+    world.each([&](const auto& set, auto s) {
+      for (const Index b : set.active())
+        if (set.has_collider(b)) anchors_.push_back({.set = s, .block = b});
+    });
+    colliders.resize(anchors_.size());
+    materials_.resize(anchors_.size());
+    Index first = 0;
+    world.each([&](const auto& set, auto s) {
+      Index last = first;
+      while (last < Index(anchors_.size()) && anchors_[last].set == Index(s)) ++last;
+      ranges(last - first, 128, [&](inner::Range range) {
+        for (Index i = first + range.first; i < first + range.last; ++i) {
+          const Index b = anchors_[i].block;
+          colliders[i] = collider_of(set, s, b, collider_moves(set, b));
+          materials_[i] = set.material(b);
+        }
+      });
+      first = last;
     });
   }
   /// Gives them the velocities that they will have in a step of h (s), as far as it is known: what pushed nothing in the last
@@ -104,6 +129,12 @@ class BasicContactCache {
   /// Body b of set s as a collider; one that is not movable meets only those that are.
   template <class Set>
   void add(const Set& set, Index s, Index b, bool is_movable) {
+    colliders.push_back(collider_of(set, s, b, is_movable));
+    anchors_.push_back({.set = s, .block = b});
+    materials_.push_back(set.material(b));
+  }
+  template <class Set>
+  [[gnu::always_inline]] static Collider collider_of(const Set& set, Index s, Index b, bool is_movable) {
     Collider c;
     c.shape = set.shape(b);
     c.pose = set.pose(b);
@@ -115,15 +146,17 @@ class BasicContactCache {
     c.group = set.group(b);
     c.collides_with = set.collides_with(b);
     c.key = collider_key(s, b);
-    colliders.push_back(c);
-    anchors_.push_back({.set = s, .block = b});
-    materials_.push_back(set.material(b));
+    return c;
   }
 
   /// Turns points into records.
   void record() {
     results.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    record({0, Index(points.size())});
+  }
+  /// Of some of them. Pre: there is room for the results.
+  void record(inner::Range range) {
+    for (std::size_t i = std::size_t(range.first); i < std::size_t(range.last); ++i) {
       const ContactPoint& p = points[i];
       set_zero(results[i].impulse);
       results[i].starts_cold = false;
@@ -146,23 +179,34 @@ class BasicContactCache {
 
   /// The impulse that result `i` had last step, by the id of its contact. Else that of the nearest unclaimed one of its
   /// pair, within what both can have moved in a step of h (s) and 2e-2 of the smaller one's size. Zero when there is none.
-  Vec3 remembered(Index i, double h) {
+  Vec3 remembered(Index i, double h) { return remembered(i, h, memory_.search()); }
+  /// The same from several threads at once, see `BasicContactMemory::take`.
+  using Search = typename BasicContactMemory<Scalar>::Search;
+  Vec3 remembered(Index i, double h, Search& by) {
     const ContactRecord& record = results[i].record;
     return memory_.take(record.pair, record.feature, record.point(), [&] {
       const Collider &a = colliders[points[i].a], &b = colliders[points[i].b];
       return 0.02 * inner::pair_scale(a.shape, b.shape) + h * (inner::top_speed(a) + inner::top_speed(b));
-    });
+    }, by);
   }
+  /// The search of the one thread that asks in the order of all items.
+  Search& search() { return memory_.search(); }
+  /// Makes a search of another thread ready.
+  void begin(Search& search) const { search.begin(memory_.capacity()); }
 
   /// Lets friction of patches act where it does.
   void place_friction() { friction_places_.find(points, results, memory_); }
 
   /// Keeps this step's impulses for the next one.
-  void remember() {
+  void remember() { remember(inner::OneRange{}); }
+  /// The same where `ranges` says who keeps which.
+  void remember(const auto& ranges) {
     const auto entries = memory_.renew(results.size());
-    for (std::size_t i = 0; i < results.size(); ++i)
-      entries[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
-                    results[i].starts_cold ? Vec3(zero<Vec3>()) : results[i].impulse};
+    ranges(Index(results.size()), 256, [&](inner::Range range) __attribute__((always_inline)) {
+      for (std::size_t i = std::size_t(range.first); i < std::size_t(range.last); ++i)
+        entries[i] = {results[i].record.pair, results[i].record.feature, false, results[i].record.point(),
+                      results[i].starts_cold ? Vec3(zero<Vec3>()) : results[i].impulse};
+    });
     memory_.sort();
   }
   void memory(auto& archive) { archive(memory_); }

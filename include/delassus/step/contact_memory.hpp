@@ -28,15 +28,34 @@ class BasicContactMemory {
     Vec3 point, impulse;
   };
 
+  /// What makes one look after the other fast. It is of one memory, and of one thread.
+  struct Search {
+    Array<Index> order;                        ///< of one pair, by `axis`
+    Index ordered_begin = 0, ordered_end = 0;  ///< that pair's entries
+    int axis = 0;
+    std::size_t next = 0;  ///< behind the entry that was found last by its name: all of that name before it are taken
+
+    /// For a memory that is new, of at most so many entries.
+    void begin(std::size_t entries) {
+      order.reserve(entries);
+      ordered_begin = ordered_end = 0;
+      next = 0;
+    }
+    void clear() {}
+  };
+
   /// Entries to be filled with the contacts of the step, then `sort`.
   inner::Slice<Entry> renew(std::size_t count) {
     entries_.resize(count);
-    order_.reserve(entries_.capacity());  // now, with more contacts than ever, and not when one has lost its name
+    search_.order.reserve(entries_.capacity());  // now, with more contacts than ever, and not when one has lost its name
     return entries_;
   }
+  std::size_t capacity() const { return entries_.capacity(); }
+  /// Of who asks alone.
+  Search& search() { return search_; }
   void sort() {
-    ordered_begin_ = ordered_end_ = 0;
-    next_ = 0;
+    search_.ordered_begin = search_.ordered_end = 0;
+    search_.next = 0;
     const auto before = [](const Entry& x, const Entry& y) {
       return x.pair != y.pair ? x.pair < y.pair : x.feature < y.feature;
     };
@@ -48,19 +67,24 @@ class BasicContactMemory {
   /// which is asked for there alone. Zero when there is none.
   template <class Reach>
   Vec3 take(std::uint64_t pair, std::uint32_t feature, const Vec3& point, const Reach& reach) {
+    return take(pair, feature, point, reach, search_);
+  }
+  /// The same from several threads at once, each with a search of its own. All that ask for one pair are one thread.
+  template <class Reach>
+  Vec3 take(std::uint64_t pair, std::uint32_t feature, const Vec3& point, const Reach& reach, Search& by) {
     const auto is_before = [](const Entry& e, const std::pair<std::uint64_t, std::uint32_t>& name) {
       return e.pair != name.first ? e.pair < name.first : e.feature < name.second;
     };
     const auto has_name = [&](const Entry& e) { return e.pair == pair && e.feature == feature; };
     // Contacts ask in the order of their names, mostly.
-    if (next_ < entries_.size() && has_name(entries_[next_]) && !entries_[next_].is_taken) return claim(entries_[next_++]);
+    if (by.next < entries_.size() && has_name(entries_[by.next]) && !entries_[by.next].is_taken) return claim(entries_[by.next++]);
     for (auto e = inner::lower_bound(entries_.data(), entries_.data() + entries_.size(), std::pair(pair, feature), is_before);
          e != entries_.end() && has_name(*e); ++e)
       if (!e->is_taken) {
-        next_ = std::size_t(e - entries_.begin()) + 1;
+        by.next = std::size_t(e - entries_.begin()) + 1;
         return claim(*e);
       }
-    Entry* const nearest = find_near(pair, point, reach());
+    Entry* const nearest = find_near(pair, point, reach(), by);
     return nearest ? claim(*nearest) : zero<Vec3>();
   }
 
@@ -85,8 +109,8 @@ class BasicContactMemory {
 
   void memory(auto& archive) {
     archive(entries_);
-    ordered_begin_ = ordered_end_ = 0;
-    next_ = 0;
+    search_.ordered_begin = search_.ordered_end = 0;
+    search_.next = 0;
   }
 
  private:
@@ -96,13 +120,14 @@ class BasicContactMemory {
   }
 
   /// Of what is equally near, the last by name.
-  Entry* find_near(std::uint64_t pair, const Vec3& point, Scalar reach) {
-    order_pair(pair);
-    const auto is_lower = [&](Index i, Scalar x) { return entries_[i].point[axis_] < x; };
+  Entry* find_near(std::uint64_t pair, const Vec3& point, Scalar reach, Search& by) {
+    order_pair(pair, by);
+    const int axis = by.axis;
+    const auto is_lower = [&](Index i, Scalar x) { return entries_[i].point[axis] < x; };
     Index found = -1;
     Scalar nearest = reach * reach;
-    for (auto i = inner::lower_bound(order_.data(), order_.data() + order_.size(), point[axis_] - reach, is_lower);
-         i != order_.end() && entries_[*i].point[axis_] <= point[axis_] + reach; ++i) {
+    for (auto i = inner::lower_bound(by.order.data(), by.order.data() + by.order.size(), point[axis] - reach, is_lower);
+         i != by.order.end() && entries_[*i].point[axis] <= point[axis] + reach; ++i) {
       if (entries_[*i].is_taken) continue;
       const Scalar distance = squared_norm(Vec3(entries_[*i].point - point));
       if (distance < nearest || (distance == nearest && *i > found)) nearest = distance, found = *i;
@@ -111,31 +136,28 @@ class BasicContactMemory {
   }
 
   /// Puts the entries of a pair in order along the axis of their longest extent.
-  void order_pair(std::uint64_t pair) {
-    if (ordered_begin_ < ordered_end_ && entries_[ordered_begin_].pair == pair) return;
+  void order_pair(std::uint64_t pair, Search& by) {
+    if (by.ordered_begin < by.ordered_end && entries_[by.ordered_begin].pair == pair) return;
     const auto is_before = [](const Entry& e, std::uint64_t p) { return e.pair < p; };
-    ordered_begin_ =
+    by.ordered_begin =
         Index(inner::lower_bound(entries_.data(), entries_.data() + entries_.size(), pair, is_before) - entries_.begin());
-    ordered_end_ = ordered_begin_;
-    order_.clear();
-    for (; ordered_end_ < Index(entries_.size()) && entries_[ordered_end_].pair == pair; ++ordered_end_)
-      if (is_finite(entries_[ordered_end_].point)) order_.push_back(ordered_end_);
-    if (order_.empty()) return;
-    Vec3 low = entries_[order_[0]].point, high = low;
-    for (const Index i : order_)
+    by.ordered_end = by.ordered_begin;
+    by.order.clear();
+    for (; by.ordered_end < Index(entries_.size()) && entries_[by.ordered_end].pair == pair; ++by.ordered_end)
+      if (is_finite(entries_[by.ordered_end].point)) by.order.push_back(by.ordered_end);
+    if (by.order.empty()) return;
+    Vec3 low = entries_[by.order[0]].point, high = low;
+    for (const Index i : by.order)
       for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], entries_[i].point[k]), high[k] = std::max(high[k], entries_[i].point[k]);
-    axis_ = largest_entry(Vec3(high - low));
-    inner::sort(order_, [&](Index i, Index j) {
-      const Scalar x = entries_[i].point[axis_], y = entries_[j].point[axis_];
+    by.axis = largest_entry(Vec3(high - low));
+    inner::sort(by.order, [&](Index i, Index j) {
+      const Scalar x = entries_[i].point[by.axis], y = entries_[j].point[by.axis];
       return x != y ? x < y : i < j;
     });
   }
 
   Array<Entry> entries_;
-  Array<Index> order_;                   ///< of one pair, by `axis_`
-  Index ordered_begin_ = 0, ordered_end_ = 0;  ///< that pair's entries
-  int axis_ = 0;
-  std::size_t next_ = 0;  ///< behind the entry that was found last by its name: all of that name before it are taken
+  Search search_;
 };
 
 using ContactMemory = BasicContactMemory<double>;

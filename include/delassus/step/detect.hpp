@@ -6,11 +6,13 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/contact/materials.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/step/contact_cache.hpp>
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -23,6 +25,20 @@ template <class Laws>
 inline constexpr bool some_have_friction = false;
 template <class... L>
 inline constexpr bool some_have_friction<Constraints<L...>> = ((ContactLaw<L> && L::rows > 1) || ...);
+
+}  // namespace inner
+
+namespace inner {
+
+/// The item of a law that takes a record, the r-th.
+template <class Law>
+[[gnu::always_inline]] inline void put_item(const Law& law, const ContactRecord& record, Index r, const Materials& materials,
+                                            typename Law::Item& to) {
+  auto parameters = law.law.parameters();
+  if (!materials.empty())
+    if (Material pair; materials.between(record.material_a, record.material_b, pair)) law.set_pair(parameters, pair);
+  to = {&record, record.point(), record.gap, contact_frame(record.normal), parameters, r};
+}
 
 }  // namespace inner
 
@@ -58,6 +74,27 @@ Index route_contacts(Laws& laws, const ContactCache& book, const Materials& mate
     unclaimed += is_taken ? 0 : 1;
   }
   return unclaimed;
+}
+
+/// The same where `ranges` says who does which records: of a loop with one contact law that takes them all; else one by one.
+template <class Laws>
+Index route_contacts(Laws& laws, const ContactCache& book, const Materials& materials, const auto& ranges) {
+  int pools = 0;
+  each_contact_pool(laws, [&](auto, auto&) { ++pools; });
+  if (pools != 1) return route_contacts(laws, book, materials);
+  std::atomic<bool> are_all_taken{true};
+  each_contact_pool(laws, [&](auto, auto& pool) {
+    const Index count = Index(book.results.size());
+    pool.items.resize(std::size_t(count));
+    ranges(count, 128, [&](inner::Range range) {
+      for (Index r = range.first; r < range.last; ++r) {
+        const ContactRecord& record = book.results[r].record;
+        if (!pool.law.takes(record.material_a, record.material_b)) return are_all_taken.store(false, std::memory_order_relaxed);
+        inner::put_item(pool.law, book.results[r].record, r, materials, pool.items[std::size_t(r)]);
+      }
+    });
+  });
+  return are_all_taken ? 0 : route_contacts(laws, book, materials);
 }
 
 /// The contacts may have moved or been copied with their loop.

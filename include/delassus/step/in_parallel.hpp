@@ -19,7 +19,9 @@
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/correct.hpp>
 #include <delassus/step/free_motion.hpp>
+#include <delassus/step/inner/advance_in_ranges.hpp>
 #include <delassus/step/inner/rows_in_parts.hpp>
+#include <delassus/step/inner/workers_keep.hpp>
 #include <delassus/step/plain_stages.hpp>
 
 #include <cstddef>
@@ -34,26 +36,6 @@ namespace inner {
 
 /// Rows of an island whose sweeps are worth sharing.
 inline constexpr Index large_island = 768;
-
-/// What workers keep.
-template <class P, bool has_rows>
-struct WorkersKeep {};
-template <class P>
-struct WorkersKeep<P, true> {
-  using T = typename P::Rows::Scalar;
-  struct Task {
-    Index rows, island;
-    bool operator<(const Task& o) const { return rows != o.rows ? rows > o.rows : island < o.island; }
-  };
-
-  typename kept_of_sets<typename P::World>::type sets;
-  RowsInParts<T> rows;
-  RowsOfWInParts<T> W;
-  OwningArray<typename P::Solver::template Workspace<typename P::Rows>> solvers;  ///< by worker
-  Array<Task> islands;                                                            ///< the largest first
-  Crew crew;
-  Scratch pairs;  ///< of detection
-};
 
 /// What answers with A⁻¹, see `inverse_of`: workers for a set that they share, where the operator W has no
 /// factors of its own.
@@ -92,10 +74,11 @@ inline constexpr bool solves_islands_apart =
 /// parts of a step run on its workers, whatever their number with the same bits:
 ///
 ///   soft bodies  of finite elements: the elements, the factor of A and what it solves
-///   detection    contacts of the pairs whose boxes touch, by `NativeCollision` and backends of a kernel
-///   rows         of laws with many items: H and φ
-///   W            its rows, where it is a matrix (`AssembledCompliance`, the default)
-///   islands      each is solved by one worker, the largest first; all sweep a large one together where the
+///   detection    boxes, pairs and contacts, by `NativeCollision` and backends of a kernel; what laws make of
+///   them rows         of laws with many items: H and φ, their bias, and what laws keep of W W            its
+///   rows, where it is a matrix (`AssembledCompliance`, the default) motion       of sets whose bodies go
+///   each by itself islands      each is solved by one worker, the largest first; all sweep a large one
+///   together where the
 ///                solver is `Coloured`
 ///
 /// Parts that another policy of the loop replaces run as that policy does them, as do islands under a
@@ -108,6 +91,10 @@ struct InParallel {
 
   template <class Base>
   struct stages : Base {
+    static void begin(auto& step, double h) {
+      workers(step);  // refused before anything is divided by it
+      Base::begin(step, h);
+    }
     static Index workers(auto& step) {
       const Index count = step.execution().workers();
       DELASSUS_EXPECT(count >= 1, "the execution of a loop has " + std::to_string(count) +
@@ -115,6 +102,11 @@ struct InParallel {
       return count;
     }
 
+    static void gather(auto& step) {
+      step.contact_cache.gather(std::as_const(step).world(), inner::SharedRanges{step.execution()});
+      if constexpr (inner::asks_who_meets<decltype(step)>)
+        step.contact_cache.foresee(std::as_const(step).world(), step.h);
+    }
     static CollisionReport find_contacts(auto& step) {
       auto& book = step.contact_cache;
       const auto detect = [&](const auto& filter) {
@@ -130,8 +122,39 @@ struct InParallel {
       else
         return detect(NoFilter{});
     }
+    static void detect_missed(auto& step) {
+      auto& book = step.contact_cache;
+      const auto pushed = book.who_pushed();
+      const inner::InParts with{pushed, step.execution(), kept(step).pairs};
+      if constexpr (inner::DetectsMissed<std::remove_reference_t<decltype(step.collision())>,
+                                         std::remove_cv_t<decltype(with)>>)
+        step.collision().detect_missed(std::span<const Collider>(book.colliders), step.h, book.missed, with);
+      else
+        Base::detect_missed(step);
+    }
+    static Index take_contacts(auto& step) {
+      const inner::SharedRanges ranges{step.execution()};
+      auto& book = step.contact_cache;
+      book.results.resize(book.points.size());
+      ranges(Index(book.points.size()), 128, [&](inner::Range range) { book.record(range); });
+      inner::place_ends(step.collision(), book.results);
+      if constexpr (inner::some_have_friction<typename std::remove_reference_t<decltype(step)>::Laws>)
+        book.place_friction();
+      return route_contacts(step.laws(), book, step.material_pairs, ranges);
+    }
+    static void start_warm(auto& step) {
+      warm_start(step.pools.all(), step.arrays.all(), step.contact_cache, step.h, step.last_h,
+                 kept(step).searches, step.execution());
+    }
+    static void keep_impulses(auto& step) {
+      const inner::SharedRanges ranges{step.execution()};
+      delassus::keep_impulses(step.pools.all(), step.arrays.all(), step.contact_cache, ranges);
+      forget_lost_islands(step.pools.all(), step.law_set.views(), step.contact_cache, step.islands,
+                          step.reports);
+      if constexpr (std::remove_reference_t<decltype(step)>::Laws::has_contacts)
+        step.contact_cache.remember(ranges);
+    }
     static void write_rows(auto& step) {
-      workers(step);  // refused before anything is divided by it
       const auto laws = step.pools.all();
       const auto rows = step.arrays.all();
       for (std::size_t p = 0; p < laws.size(); ++p)
@@ -141,8 +164,24 @@ struct InParallel {
       inner::InverseInParallel inverse{step.W, kept(step).sets, step.execution()};
       step.world().each([&](auto& set, auto s) {
         delassus::free_motion(set, inner::inverse_of<s>(inverse, set, 0), step.integrator(),
-                              inner::part<s>(step.scratch), step.h);
+                              inner::part<s>(step.scratch), step.h, inner::SharedRanges{step.execution()});
       });
+    }
+    static void make_bias(auto& step) { Base::make_bias_by(step, inner::SharedRanges{step.execution()}); }
+    static void build(auto& step) {
+      std::remove_reference_t<decltype(step)>::Stages::build_W(step);
+      Index most = 0;
+      for (const auto& rows : step.arrays.all()) most = rows.items() > most ? rows.items() : most;
+      step.law_set.prepare(step.W, step.rows, step.h, inner::SharedRanges{step.execution()},
+                           kept(step).numbers_to(most));
+    }
+    static void advance(auto& step) {
+      inner::note_broken(step.laws(), step.h);
+      step.world().each([&](auto& set, auto) {
+        inner::advance_in_ranges(set, step.integrator(), step.h, kept(step).moved, step.execution());
+        step.summary.quarantined += set.quarantined();
+      });
+      step.end_clock();
     }
     static void correct(auto& step) {
       inner::InverseInParallel inverse{step.W, kept(step).sets, step.execution()};

@@ -4,6 +4,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/row_past.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/rows/contact_place.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -40,10 +41,13 @@ struct LawSteps {
   double (*restitution)(const void* pool, Index i);
   /// What item i is called from step to step; null: it has no e.
   ItemName (*name)(const void* pool, const WorldView<T>&, Index i);
-  /// λ ← `ratio` · λ of the last step, by contact id or by item; h in s.
-  void (*warm_start)(const void* pool, const RowArrays<T>&, ContactCache&, double ratio, double h);
-  /// Hands the impulses back: to the items of the pool, or to the contacts as world vectors.
-  void (*keep_impulses)(void* pool, const RowArrays<T>&, ContactCache&);
+  /// λ ← `ratio` · λ of the last step, by contact id or by item, of some items; h in s. Who shares the items leaves those of a
+  /// pair of bodies together.
+  void (*warm_start)(const void* pool, const RowArrays<T>&, inner::Range, ContactCache&, ContactCache::Search&, double ratio, double h);
+  /// Hands the impulses of some items back: to the items of the pool, or to the contacts as world vectors.
+  void (*keep_impulses)(void* pool, const RowArrays<T>&, inner::Range, ContactCache&);
+  /// The first item from i on that is of another pair of bodies than the one before it.
+  Index (*next_pair)(const void* pool, Index i, const ContactCache&);
   /// Item i starts the next step from zero.
   void (*forget)(void* pool, Index i, ContactCache&);
 };
@@ -132,19 +136,19 @@ struct LawRows {
     }
   }
 
-  static void warm_start(const void* at, const RowArrays<T>& rows, ContactCache& cache, double ratio, double h) {
+  static void warm_start(const void* at, const RowArrays<T>& rows, Range range, ContactCache& cache, ContactCache::Search& search, double ratio, double h) {
     const Pool<Law>& pool = of(at);
     Vec<R, T>* lambda = blocks(*rows.lambda);
-    for (Index i = 0; i < pool.count(); ++i) {
+    for (Index i = range.first; i < range.last; ++i) {
       if constexpr (ContactLaw<Law>) {
         const auto& item = pool.item(i);
-        const Vec3 impulse = ratio * cache.remembered(item.result, h);
+        const Vec3 impulse = ratio * cache.remembered(item.result, h, search);
         if (is_zero(impulse)) continue;
         const Vec3 own = item.frame * impulse;
         for (int k = 0; k < rows_along<R>; ++k) lambda[i][k] = T(own[k]);
         clamp(pool.law, item, lambda[i], NoMemory{});
       } else {
-        (void)cache, (void)h;
+        (void)cache, (void)search, (void)h;
         const Index place = pool.slots.active()[i];
         if (pool.starts_cold[place]) set_all(lambda[i], T(0));
         else
@@ -152,10 +156,10 @@ struct LawRows {
       }
     }
   }
-  static void keep_impulses(void* at, const RowArrays<T>& rows, ContactCache& cache) {
+  static void keep_impulses(void* at, const RowArrays<T>& rows, Range range, ContactCache& cache) {
     Pool<Law>& pool = of(at);
     const Vec<R, T>* lambda = blocks(*rows.lambda);
-    for (Index i = 0; i < pool.count(); ++i) {
+    for (Index i = range.first; i < range.last; ++i) {
       if constexpr (ContactLaw<Law>) {
         const auto& item = pool.item(i);
         ContactResult& result = cache.results[item.result];
@@ -169,6 +173,14 @@ struct LawRows {
         pool.starts_cold[place] = !is_finite(lambda[i]);
       }
     }
+  }
+  static Index next_pair(const void* at, Index i, [[maybe_unused]] const ContactCache& cache) {
+    if constexpr (ContactLaw<Law>) {
+      const Pool<Law>& pool = of(at);
+      const auto pair = [&](Index k) { return cache.results[pool.item(k).result].record.pair; };
+      while (i > 0 && i < pool.count() && pair(i) == pair(i - 1)) ++i;
+    }
+    return i;
   }
   static void forget(void* at, Index i, ContactCache& cache) {
     Pool<Law>& pool = of(at);
@@ -190,6 +202,7 @@ struct LawRows {
             refines<Law>(refine::restitution) ? name : nullptr,
             warm_start,
             keep_impulses,
+            next_pair,
             forget};
   }
   static const LawSteps<T> table;

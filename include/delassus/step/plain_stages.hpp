@@ -4,6 +4,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/if_it_has.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/rows/theta.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/bias.hpp>
@@ -75,7 +76,7 @@ struct PlainStages : StagesWithoutConstraints {
         step.collision().refresh(std::as_const(step).world(), [&](const auto& f) { step.each_joint(f); });
       inner::show_world(step.collision(), std::as_const(step).world());
       const CollisionReport found = Step::Stages::find_contacts(step);
-      const Index unclaimed = take_contacts(step);
+      const Index unclaimed = Step::Stages::take_contacts(step);
       report_contacts(found, step.contact_cache.points, unclaimed, step.summary);
       if constexpr (inner::asks_who_meets<Step>) step.contact_cache.report_of_detect = step.summary;
     }
@@ -98,7 +99,7 @@ struct PlainStages : StagesWithoutConstraints {
     if constexpr (inner::asks_who_meets<decltype(step)>) {
       auto& book = step.contact_cache;
       book.take_solved_motion(std::as_const(step).world());
-      step.collision().detect_missed(std::span<const Collider>(book.colliders.data(), book.colliders.size()), step.h, book.missed, book.who_pushed());
+      std::remove_reference_t<decltype(step)>::Stages::detect_missed(step);
       inner::leave_what_bounces(step);
       if (book.missed.empty() || !inner::is_worth_solving_again(step)) return false;
       if (++book.solves == inner::most_solves) {
@@ -108,7 +109,7 @@ struct PlainStages : StagesWithoutConstraints {
       book.join_missed();
       book.report_of_detect.sweeps = step.summary.sweeps;
       step.summary = book.report_of_detect;  // what the solve before said is void
-      if (take_contacts(step) > 0) step.summary.status = worse(step.summary.status, Status::unclaimed_contact);
+      if (std::remove_reference_t<decltype(step)>::Stages::take_contacts(step) > 0) step.summary.status = worse(step.summary.status, Status::unclaimed_contact);
       step.summary.contacts = Index(book.points.size());
       step.last_h = step.h;  // the impulses that it starts from are of this step
       return true;
@@ -116,14 +117,22 @@ struct PlainStages : StagesWithoutConstraints {
     return false;
   }
 
+  /// Contacts of who was left out and meets by the motion that was solved for.
+  static void detect_missed(auto& step) {
+    auto& book = step.contact_cache;
+    step.collision().detect_missed(std::span<const Collider>(book.colliders.data(), book.colliders.size()), step.h, book.missed, book.who_pushed());
+  }
+
   static void linearize(auto& step) {
     follow(step.view, step.pools.all());
     std::remove_reference_t<decltype(step)>::Stages::write_rows(step);
-    warm_start(step.pools.all(), step.arrays.all(), step.contact_cache, step.h, step.last_h);
+    std::remove_reference_t<decltype(step)>::Stages::start_warm(step);
     step.summary.rows = row_count(step.arrays.all());
     step.summary.max_joint_violation = std::max(step.summary.max_joint_violation, worst_equality(step.pools.all(), step.arrays.all()));
   }
 
+  /// The impulses that a solve starts from.
+  static void start_warm(auto& step) { warm_start(step.pools.all(), step.arrays.all(), step.contact_cache, step.h, step.last_h); }
   /// H and φ of all laws.
   static void write_rows(auto& step) { delassus::linearize(step.view, step.pools.all(), step.arrays.all()); }
 
@@ -138,14 +147,16 @@ struct PlainStages : StagesWithoutConstraints {
     step.summary.islands = step.islands.count();
   }
 
-  static void make_bias(auto& step) {
+  static void make_bias(auto& step) { make_bias_by(step, inner::OneRange{}); }
+  /// The same where `ranges` says who does which items.
+  static void make_bias_by(auto& step, const auto& ranges) {
     using Integrator = std::remove_cvref_t<decltype(step.integrator())>;
     const auto& world = std::as_const(step).world();
     auto moving = moving_surfaces(world, step.view, step.h);
     constexpr bool sees_start = !inner::has_middle_contacts<typename std::remove_reference_t<decltype(step)>::Policies>;
     moving.turn = moving.turn && sees_start;
     delassus::make_bias(world, step.pools.all(), step.arrays.all(), moving, step.stabilisation(), step.h, theta<Integrator>(),
-                        sees_start && theta<Integrator>() != 1);
+                        sees_start && theta<Integrator>() != 1, ranges);
   }
 
   static void build(auto& step) {
@@ -200,8 +211,6 @@ struct PlainStages : StagesWithoutConstraints {
     inner::note_broken(step.laws(), step.h);
     StagesWithoutConstraints::advance(step);
   }
-
- private:
   /// The points become records and items of the laws; returns how many no law took.
   static Index take_contacts(auto& step) {
     using Step = std::remove_reference_t<decltype(step)>;

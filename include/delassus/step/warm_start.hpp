@@ -2,6 +2,8 @@
 #pragma once
 
 #include <delassus/core/cmath.hpp>
+#include <delassus/core/owning_array.hpp>
+#include <delassus/core/ranges.hpp>
 #include <delassus/core/slice.hpp>
 #include <delassus/rows/islands.hpp>
 #include <delassus/solvers/inner/length_of_island.hpp>
@@ -20,13 +22,45 @@ namespace delassus {
 /// into the cone of the new frame. Arguments h and last_h are this step and the last one, s.
 template <class T>
 void warm_start(AllLaws<T> laws, AllRows<T> rows, ContactCache& cache, double h, double last_h) {
-  for (std::size_t p = 0; p < laws.size(); ++p) laws[p].law->warm_start(laws[p].pool, rows[p], cache, h / last_h, h);
+  for (std::size_t p = 0; p < laws.size(); ++p)
+    laws[p].law->warm_start(laws[p].pool, rows[p], {0, laws[p].law->count(laws[p].pool)}, cache, cache.search(), h / last_h, h);
+}
+
+/// The same by several workers, each with one of the `searches`.
+template <class T, class E>
+void warm_start(AllLaws<T> laws, AllRows<T> rows, ContactCache& cache, double h, double last_h, OwningArray<ContactCache::Search>& searches,
+                const E& execution) {
+  for (std::size_t p = 0; p < laws.size(); ++p) {
+    const LawPool<T>& law = laws[p];
+    const Index count = law.law->count(law.pool), tasks = inner::tasks_of(count, 128, execution.workers());
+    searches.resize(std::size_t(tasks));
+    const auto start = [&](inner::Range range, ContactCache::Search& search) {
+      law.law->warm_start(law.pool, rows[p], range, cache, search, h / last_h, h);
+    };
+    if (tasks == 1) {
+      start({0, count}, cache.search());
+      continue;
+    }
+    execution.run(tasks, [&](Index task, Index) {
+      inner::Range range = inner::range_of(count, task, tasks);
+      range = {law.law->next_pair(law.pool, range.first, cache), law.law->next_pair(law.pool, range.last, cache)};
+      ContactCache::Search& search = searches[std::size_t(task)];
+      cache.begin(search);
+      start(range, search);
+    });
+  }
 }
 
 /// Hands the impulses back: to the items of the pools, and to the contacts as world vectors.
 template <class T>
 void keep_impulses(AllLaws<T> laws, AllRows<T> rows, ContactCache& cache) {
-  for (std::size_t p = 0; p < laws.size(); ++p) laws[p].law->keep_impulses(laws[p].pool, rows[p], cache);
+  for (std::size_t p = 0; p < laws.size(); ++p) laws[p].law->keep_impulses(laws[p].pool, rows[p], {0, laws[p].law->count(laws[p].pool)}, cache);
+}
+/// The same where `ranges` says who does which items.
+template <class T, class Ranges>
+void keep_impulses(AllLaws<T> laws, AllRows<T> rows, ContactCache& cache, const Ranges& ranges) {
+  for (std::size_t p = 0; p < laws.size(); ++p)
+    ranges(laws[p].law->count(laws[p].pool), 256, [&](inner::Range range) { laws[p].law->keep_impulses(laws[p].pool, rows[p], range, cache); });
 }
 
 namespace inner {

@@ -20,6 +20,12 @@ struct QuarantineRecord {
     note(Index(&load - first_load), is_finite(load));
     set_zero(load);
   }
+  /// Adds what another says of blocks that come later.
+  void join(const QuarantineRecord& later) {
+    count += later.count;
+    if (first < 0) first = later.first;
+    if (loaded < 0) loaded = later.loaded;
+  }
   void note(Index block, bool has_finite_load) {
     if (first < 0) first = block;
     if (loaded < 0 && !has_finite_load) loaded = block;

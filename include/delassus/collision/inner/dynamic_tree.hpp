@@ -114,6 +114,24 @@ class BasicDynamicTree {
       stack_.push_back(n.child[0]);
     }
   }
+  /// The same in the same order, from several threads at once: it keeps no stack, and goes back by the parents.
+  template <class Meets, class Visit>
+  void visit_at_once(const Meets& meets, const Visit& visit) const {
+    Index n = root_;
+    while (n >= 0) {
+      const Node& node = node_[n];
+      if (meets(node.box)) {
+        if (node.item < 0) {
+          n = node.child[0];
+          continue;
+        }
+        visit(node.item);
+      }
+      Index above = node.parent;
+      while (above >= 0 && node_[above].child[1] == n) n = above, above = node_[n].parent;
+      n = above >= 0 ? node_[above].child[1] : -1;
+    }
+  }
 
  private:
   struct Node {

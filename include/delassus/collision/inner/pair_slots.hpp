@@ -38,6 +38,10 @@ class PairSlots {
   }
   [[gnu::always_inline]] RestingPair& operator[](Index slot) { return slot_[slot]; }
 
+  /// Of pairs; and the memory of the k-th of them.
+  Index count() const { return Index(known_.size()); }
+  const RestingPair& memory_of(Index k) const { return slot_[known_[std::size_t(k)].slot]; }
+
   /// f(memory) of each pair in the order of pairs.
   template <class F>
   void each(const F& f) {

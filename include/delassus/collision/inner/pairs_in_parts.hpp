@@ -1,12 +1,17 @@
 /// Contacts of listed pairs by several threads.
 #pragma once
 
+#include <delassus/collision/inner/pair_search.hpp>
 #include <delassus/collision/inner/pair_worker.hpp>
 #include <delassus/core/owning_array.hpp>
 #include <delassus/core/ranges.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace delassus::inner {
 
@@ -54,15 +59,26 @@ template <class Kernel>
 struct PartOfPairs {
   PairWorker<Kernel> worker;
   std::vector<ContactPoint> out;
+  std::size_t first = 0;  ///< of its contacts among all
+
+  void clear() {}  // what it holds is cleared where it is begun
 };
 
+/// What workers keep of a detection.
+template <class Kernel>
+struct DetectionInParts {
+  OwningArray<PartOfPairs<Kernel>> pairs;
+  PairSearch search;
+};
+
+/// What was in `out` is written over.
 template <class Kernel, class Filter>
 void collide_in_parts(PairWorker<Kernel>& worker, const Array<ListedPair>& jobs, PairSlots& slots,
                       const Filter& filter, std::vector<ContactPoint>& out) {
   constexpr Index least_pairs = 32;
   const auto& with = parts_of(filter);
   const Index pairs = Index(jobs.size()), tasks = tasks_of(pairs, least_pairs, with.execution.workers());
-  auto& parts = with.scratch.template get<OwningArray<PartOfPairs<Kernel>>>();
+  auto& parts = with.scratch.template get<DetectionInParts<Kernel>>().pairs;
   parts.resize(std::size_t(tasks));
   with.execution.run(tasks, [&](Index task, Index) {
     const Range range = range_of(pairs, task, tasks);
@@ -74,10 +90,17 @@ void collide_in_parts(PairWorker<Kernel>& worker, const Array<ListedPair>& jobs,
       part.worker.collide(job, slots[job.slot], filter, part.out);
     }
   });
-  for (const PartOfPairs<Kernel>& part : parts) {
-    out.insert(out.end(), part.out.begin(), part.out.end());
+  std::size_t count = 0;
+  for (PartOfPairs<Kernel>& part : parts) {
+    part.first = count;
+    count += part.out.size();
     worker.join(part.worker);
   }
+  out.resize(count);
+  with.execution.run(tasks, [&](Index task, Index) {
+    const PartOfPairs<Kernel>& part = parts[std::size_t(task)];
+    std::copy(part.out.begin(), part.out.end(), out.begin() + std::ptrdiff_t(part.first));
+  });
 }
 
 }  // namespace delassus::inner

@@ -93,8 +93,15 @@ class Colouring {
   static void sort_by_neighbours(const Span<T>& span, Index* items, Index count) {
     const BlockRowsView<T>* const own = own_blocks(*span.pool);
     if (!own) return;
+    // By counting; whose neighbours are more than are counted share the first place, and then go by insertion.
+    constexpr Index counted = 32;
     const auto neighbours = [own](Index i) { return own->start[i + 1] - own->start[i]; };
-    for (Index k = 1; k < count; ++k) {
+    Index next[counted + 1] = {}, sorted[items_of_piece];
+    for (Index k = 0; k < count; ++k) ++next[std::min(neighbours(items[k]), counted)];
+    for (Index n = counted, at = 0; n >= 0; --n) at += std::exchange(next[n], at);
+    for (Index k = 0; k < count; ++k) sorted[next[std::min(neighbours(items[k]), counted)]++] = items[k];
+    for (Index k = 0; k < count; ++k) items[k] = sorted[k];
+    for (Index k = 1; k < next[counted]; ++k) {
       const Index i = items[k];
       Index to = k;
       for (; to > 0 && neighbours(items[to - 1]) < neighbours(i); --to) items[to] = items[to - 1];
