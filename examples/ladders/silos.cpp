@@ -65,7 +65,7 @@ Flow drain(Ladder& ladder, const Hopper& hopper, const Parts&... parts) {
   flow.seen = run(ladder, loop, seconds, hopper.h, [&](int step) {
     for (const auto& grain : grains) {
       if (set.position(grain).z() > -3 * d) continue;
-      set.place(grain, place(next++) + Vec3(0, 0, top));
+      set.place(grain, place(next++) + Vec3(0, 0, top), Quat::Identity());
       set.set_velocity(grain, {0, 0, -2});
       out += (step + 1) * hopper.h > 1;
     }

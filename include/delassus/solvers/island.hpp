@@ -270,6 +270,21 @@ class Island {
     for (int k = 0; k < pool.rows; ++k) sum += w[k] * double(x[k]) * double(x[k]);
     return sum;
   }
+  /// Σ w_k λ_k² of all rows, J.
+  double energy() const {
+    double sum = 0;
+    for (const Span<T>& span : *this)
+      for (const Index i : span) sum += energy(span, i, impulse(span, i));
+    return sum;
+  }
+  /// The same of what was saved.
+  double energy(const Array<T>& saved) const {
+    double sum = 0;
+    const T* at = saved.data();
+    for (const Span<T>& span : *this)
+      for (const Index i : span) sum += energy(span, i, at), at += span.pool->rows;
+    return sum;
+  }
   /// |u|² of one item, (m/s)².
   double square_of_velocity(const Span<T>& span, const T* u) const {
     double sum = 0;

@@ -1,6 +1,7 @@
 /// Newton's method in the velocities of the bodies, inside a proximal point iteration on the impulses.
 #pragma once
 
+#include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/roles.hpp>
@@ -11,6 +12,7 @@
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace delassus {
 
@@ -45,7 +47,11 @@ struct ProximalNewton {
                   "solve it by AcceleratedGaussSeidel");
     inner::BodySpace<T, inner::NewtonSystem<T, std::max(1, Rows::widest)>, inner::LawsAsTheyAre<T>> body;  ///< of the Newton steps
     AcceleratedSweeps::Workspace<Rows> sweeps;  ///< room of the sweeps where Newton's method does not act
-    void reset(Index rows) { sweeps.reset(rows); }
+    Array<T> start;  ///< λ from before the first step
+    void reset(Index rows) {
+      sweeps.reset(rows);
+      start.reserve(std::size_t(rows));
+    }
   };
 
   SolveOptions options() const { return {tolerance, max_iterations, min_iterations, scale_tolerance, all_verified, criterion}; }
@@ -66,6 +72,7 @@ struct ProximalNewton {
     problem.notify(0, start);
     if (!std::isfinite(start.residual)) return {.status = Status::quarantined, .measure = start};
     if (min_iterations == 0 && now.is_done(start)) return finish(now);
+    problem.save(work.start);
     for (int patience = 20; now.has_time();) {
       if (now.run()) {
         if (now.is_met()) return finish(now);
@@ -82,10 +89,13 @@ struct ProximalNewton {
   }
 
  private:
-  /// The tolerance was not met: what is left of the sweeps leads on from the best λ.
+  /// The tolerance was not met: what is left of the sweeps leads on from the best λ. Where that has run away along what moves
+  /// nothing, as in a wedge that jams, its loads are none: the sweeps lead on from the start.
   SolveReport give_up(auto& now, auto& work) const {
     auto& problem = now.problem();
+    const double allowed = 100 * std::max(problem.energy(work.start), work.body.energy_of_stopping(problem));
     now.restore_best();
+    if (!(problem.energy() <= allowed)) problem.load(work.start);
     const int left = max_sweeps - now.sweeps;
     if (!now.is_late() && left > 0) {
       const SolveReport swept = sweep(problem, work, left, 1);

@@ -121,12 +121,7 @@ class NewtonStage {
   /// Σ w_i |λ_i|². Where contacts depend on each other λ may run away along what moves nothing; one ten times
   /// larger than the sweeps', and than what stops all bodies at once, is not taken: its rounding alone would
   /// give the bodies energy.
-  double energy() const {
-    double sum = 0;
-    for (const Span<T>& span : problem_)
-      for (const Index i : span) sum += problem_.energy(span, i, problem_.impulse(span, i));
-    return sum;
-  }
+  double energy() const { return problem_.energy(); }
   void open_after(double sweeps) { opening_ = sweeps < never ? std::max(least, int(sweeps)) : never; }
 
   SolveOptions limits_;  ///< of the proximal point iteration in one opening: factorizations
