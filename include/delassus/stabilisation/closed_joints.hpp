@@ -22,16 +22,19 @@ namespace delassus {
 struct ClosedJoints {
   using plays = role::Stabilisation;
   double tolerance = 1e-7;  ///< m, rad, of the gaps that a step leaves
-  int max_passes = 4;
+  int max_passes = 4;       ///< of Newton's method
   double rate = 0.2;     ///< share of φ per step, in (0, 1], of overlaps and of what stays open
   double max_speed = 1;  ///< m/s, of overlaps
 
+  /// What closing needs from step to step.
   template <class P>
   requires(P::Laws::pool_count > 0) struct State {
-    inner::CloseGaps<P> gaps;
+    inner::CloseGaps<P> gaps;  ///< room of Newton's method
   };
+  /// Joints are closed where the bodies have moved.
   template <class Base>
   struct stages : Base {
+    /// Advance, then close.
     static void advance(auto& step) {
       Base::advance(step);
       using Step = std::remove_reference_t<decltype(step)>;

@@ -133,6 +133,7 @@ class BasicContactCache {
     anchors_.push_back({.set = s, .block = b});
     materials_.push_back(set.material(b));
   }
+  /// Body b of set s as detection sees it.
   template <class Set>
   [[gnu::always_inline]] static Collider collider_of(const Set& set, Index s, Index b, bool is_movable) {
     Collider c;
@@ -182,7 +183,7 @@ class BasicContactCache {
   Vec3 remembered(Index i, double h) { return remembered(i, h, memory_.search()); }
   /// The same from several threads at once, see `BasicContactMemory::take`.
   using Search = typename BasicContactMemory<Scalar>::Search;
-  Vec3 remembered(Index i, double h, Search& by) {
+  Vec3 remembered(Index i, double h, Search& by) {  ///< `by`: of the thread
     const ContactRecord& record = results[i].record;
     return memory_.take(record.pair, record.feature, record.point(), [&] {
       const Collider &a = colliders[points[i].a], &b = colliders[points[i].b];
