@@ -97,7 +97,11 @@ class CloseGaps {
   bool find(auto& step) {
     joints_.begin();
     each_pool_that_can_gape([&](auto p, auto& pool) {
-      step.world().each([&](const auto& set, auto s) { apply_inverse<false>(set, part<s>(pool.sets)); });
+      step.world().each([&](const auto& set, auto s) {
+        auto& blocks = part<s>(pool.sets);
+        blocks.G.resize_for_overwrite(blocks.H.size());
+        apply_inverse<false>(set, blocks, Range{0, Index(blocks.H.size())});
+      });
       SetBlocksView<T> blocks[sets + 1];
       RowView<T> view;
       show_rows(pool, p, view, blocks);
