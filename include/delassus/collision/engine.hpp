@@ -236,6 +236,4 @@ class CollisionEngine {
 
 }  // namespace delassus
 
-#include <delassus/collision/inner/ahead_in_parts.hpp>
 #include <delassus/collision/inner/engine_ahead.hpp>
-#include <delassus/collision/inner/engine_in_parts.hpp>

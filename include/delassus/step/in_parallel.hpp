@@ -1,6 +1,7 @@
 /// The stages of a plain step by several workers: soft bodies, rows, W and islands.
 #pragma once
 
+#include <delassus/collision/inner/ahead_in_parts.hpp>
 #include <delassus/collision/inner/pairs_in_parts.hpp>
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/compliance/inner/rows_of_w_in_parts.hpp>
