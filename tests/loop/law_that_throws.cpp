@@ -22,12 +22,12 @@ struct Shelf : Bilateral<2> {
   };
   int* calls_left = nullptr;
   int row = 1;
-  void linearize(const Item& item, const auto& world, auto rows) const {
+  void linearize(const Item& item, const auto& world, auto out) const {
     if ((*calls_left)-- == 0) throw std::runtime_error("the shelf breaks");
     const Vec3 x = world.point(item.a);
-    auto end = rows.end(item.a, x);
-    end.along(0, Vec3(0, 0, 1)), rows.phi(0, x[2]);
-    end.along(row, Vec3(0, 1, 0)), rows.phi(1, x[1]);
+    auto end = out.end(item.a, x);
+    end.along(0, Vec3(0, 0, 1)), out.phi(0, x[2]);
+    end.along(row, Vec3(0, 1, 0)), out.phi(1, x[1]);
   }
 };
 

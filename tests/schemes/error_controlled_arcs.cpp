@@ -72,6 +72,22 @@ TEST_CASE("what rolls is of second order under error control") {
         steps[0] + steps[1] + rejections);  // one in 16 steps, and more where an arc begins
 }
 
+// A wobble that grows takes the leading term of the error through zero, where the measured order is neither one
+// nor two. Taken for the first, what the contact holds would count, which no smaller step lessens, and the steps
+// would end at the floor.
+TEST_CASE("what rolls keeps an error per second without a step at the floor") {
+  auto loop = rattleback(ErrorControlled{.accuracy = 1e-4, .per_second = true});
+  long at_floor = 0, rejections = 0, steps = 0;
+  for (int i = 0; i < 30; ++i) {
+    loop.step(0.1);
+    const ErrorReport& report = error_report(loop);
+    at_floor += report.at_floor, rejections += report.rejections, steps += report.steps;
+  }
+  CAPTURE(steps, rejections);
+  CHECK(at_floor == 0);
+  CHECK(100 * rejections <= steps);
+}
+
 TEST_CASE("an arc whose order was measured repeats to the bit from a checkpoint") {
   auto loop = rattleback(ErrorControlled{}), restored = rattleback(ErrorControlled{});
   for (int i = 0; i < 7; ++i) loop.step(0.03);

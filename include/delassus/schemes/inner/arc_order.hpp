@@ -14,12 +14,15 @@ namespace delassus::inner {
 ///
 ///   e(h)/e(h/2) = 2^(p+1),   of the whole from its halves, and of the half from its quarters.
 ///
-/// Until it is known, where something begins, ends or changes, and in contacts of first order, the difference
+/// Where the leading term of an error passes through zero that ratio says nothing: a known order is given up
+/// when the next step denies it too. Until it is known, where something begins, ends or changes, and in contacts of first order, the difference
 /// counts with all that is held, and p is 1: a contact that lets go, or slips, turns what it held into
 /// motion.
 template <class World>
 class ArcOrder {
-  static constexpr double of_first = 3, of_second = 6;  ///< the least e(h)/e(h/2), which is 4 and 8
+  /// The least e(h)/e(h/2): of p = 1 it is 4 and of p = 2 it is 8; here p is half less. Once known to be 2, it is until the ratio
+  /// says 1.
+  static constexpr double of_first = 2.83, of_second = 5.66, of_second_still = 4;
   static constexpr int steps_between = 16;
 
  public:
@@ -42,13 +45,16 @@ class ArcOrder {
     if (p_ == 0 && !measures) return plain;
     const bool is_taken = difference_.take(step, whole);
     const EndError error = is_taken ? difference_.error(step.world(), lengths, tau) : plain;
-    if (!is_taken)
+    if (!is_taken) {
       p_ = 0;
-    else if (measures)
-      p_ = error.sum > of_second * half_                               ? 2
-           : error.sum > of_first * half_ && !any_contact_pushes(step) ? 1
-                                                                       : 0;
-    if (measures) left_ = steps_between;
+    } else if (measures) {
+      const int p = error.sum > (p_ == 2 ? of_second_still : of_second) * half_                               ? 2
+                    : error.sum > of_first * half_ && !any_contact_pushes(step) ? 1
+                                                                                : 0;
+      is_in_doubt_ = p < p_ && !is_in_doubt_;
+      if (!is_in_doubt_) p_ = p;
+    }
+    if (measures) left_ = is_in_doubt_ ? 0 : steps_between;
     return p_ > 0 ? error : plain;
   }
   int order() const { return p_; }  ///< 0: not known
@@ -57,9 +63,13 @@ class ArcOrder {
     if (is_arc)
       --left_;
     else
-      p_ = 0, left_ = 1;
+      p_ = 0, left_ = 1, is_in_doubt_ = false;
   }
-  void memory(auto& archive) { archive(p_, left_); }
+  /// A trial of a step was rejected: what is not known is measured by the next.
+  void reject() {
+    if (p_ == 0) left_ = 0;
+  }
+  void memory(auto& archive) { archive(p_, left_, is_in_doubt_); }
 
  private:
   static bool any_contact_pushes(auto& step) {
@@ -72,7 +82,8 @@ class ArcOrder {
   ArcDifference<World> difference_;
   EndState<World> quarters_;
   double half_ = 0;
-  int p_ = 0, left_ = 1;  ///< the order, and in how many steps it is measured
+  int p_ = 0, left_ = 1;      ///< the order, and in how many steps it is measured
+  bool is_in_doubt_ = false;  ///< the last measurement denied it
 };
 
 }  // namespace delassus::inner

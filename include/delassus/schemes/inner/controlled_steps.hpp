@@ -123,6 +123,8 @@ class ControlledSteps {
     const bool is_at_floor = now <= asked.min_step * 1.0001;
     if (!(E <= 1) && !is_at_floor) {
       control_.reject(t_, now, E, k, change.is_any);
+      if constexpr (has_arcs)
+        if (is_arc) arc_.reject();
       ++report_.rejections;
       ++report_.by_effect[std::size_t(effect_of(step, error, change, pushes))].rejections;
       copy_.bring_back(step);
