@@ -2,6 +2,7 @@
 #include "model/used_contacts.hpp"
 
 #include <delassus/collision/with_compounds.hpp>
+#include <delassus/collision/with_filter.hpp>
 #include <delassus/collision/with_meshes.hpp>
 #include <delassus/model/add.hpp>
 
@@ -158,6 +159,59 @@ TEST_CASE("a contact has the friction of its two shapes, if it is asked for") {
     CHECK_THAT(machine.left_out[0], Contains("all contacts have the law of the loop"));
     CHECK(detect(plain).begin()->second.friction == 0.11);
   }
+}
+
+// Balls of type 0 and affinity 0 in one place: of three, the two that a pair names.
+TEST_CASE("shapes of a contact pair meet whatever their types say") {
+  for (const bool in_world : {false, true}) {
+    Model model;
+    for (const double x : {0., 0.4, 0.8}) {
+      model::Geometry& ball = in_world && x == 0.8 ? add_post(model, x) : add_ball(model, x);
+      ball.type = 0, ball.affinity = 0;
+    }
+    model.pairs.push_back({.geometry = 2, .other = 0, .friction = 0.35});
+    auto loop = loop_of(0.11);
+    CHECK(add(loop, model, {}, Base::as_file, {.surfaces = false}).left_out.empty());
+    const auto found = detect(loop);
+    REQUIRE(found.size() == 1);
+    CHECK(found.begin()->second.gap == Approx(-0.2));
+    CHECK(found.begin()->second.friction == Approx(0.35));
+  }
+}
+
+// The pair's own friction in place of the larger of 0.3 and 0.7, and none where it does not slide. Types that
+// meet anyway take no group: 50 pairs are more than there are.
+TEST_CASE("a contact pair has its own friction") {
+  for (const int freedoms : {1, 3}) {
+    Model model;
+    for (Index k = 0; k < 50; ++k) {
+      add_ball(model, 3 * k).friction = 0.3, add_ball(model, 3 * k + 0.8).friction = 0.7;
+      model.pairs.push_back(
+          {.geometry = 2 * k, .other = 2 * k + 1, .contact_freedoms = freedoms, .friction = 0.1});
+    }
+    auto loop = loop_of(0.11);
+    CHECK(add(loop, model, {}, Base::as_file, {.surfaces = false}).left_out.empty());
+    const auto found = detect(loop);
+    REQUIRE(found.size() == 50);
+    for (const auto& [pair, contact] : found) CHECK(contact.friction == Approx(freedoms == 1 ? 0 : 0.1));
+
+    auto plain = loop_of(0.11);
+    const Machine machine = add(plain, model);
+    REQUIRE(machine.left_out.size() == 2);
+    CHECK_THAT(machine.left_out[1], Contains("its 50 contact pairs have the friction of the loop's law"));
+  }
+}
+
+TEST_CASE("a contact pair whose bodies never meet is named") {
+  Model model;
+  add_ball(model, 0), add_ball(model, 0.8);
+  model.excludes.push_back({1, 0});
+  model.pairs.push_back({.geometry = 0, .other = 1});
+  auto loop = loop_of(0.5, WithFilter{NativeCollision{}});
+  const Machine machine = add(loop, model, {}, Base::as_file, {.surfaces = false});
+  REQUIRE(machine.left_out.size() == 1);
+  CHECK_THAT(machine.left_out[0], Contains("the contact pair of geometries '0' and '1' does not act"));
+  CHECK(detect(loop).empty());
 }
 
 // tan 20° = 0.36: a block of friction 0.4 stays on a slope, one of 0.3 slides by g (sin − μ cos) t²/2.

@@ -4,6 +4,7 @@
 #include <delassus/geometry/support.hpp>
 #include <delassus/model/actuators.hpp>
 #include <delassus/model/inner/add_shapes.hpp>
+#include <delassus/model/inner/contact_kinds.hpp>
 #include <delassus/model/joint_state.hpp>
 #include <delassus/study/code_of.hpp>
 
@@ -36,14 +37,16 @@ Index root_of(const Model& model, Index link) {
   return link;
 }
 
-bool collides(const model::Geometry& geometry) { return geometry.type != 0 || geometry.affinity != 0; }
+bool collides(const Model& model, const model::Geometry& geometry) {
+  return geometry.type != 0 || geometry.affinity != 0 || inner::is_paired(model, Index(&geometry - model.geometries.data()));
+}
 
 /// The lowest point of what a machine moves, m; 0 where it has no shape.
 double lowest_point(const Model& model, const std::vector<Pose>& at) {
   inner::ModelShapes shapes(model);
   double lowest = std::numeric_limits<double>::infinity();
   for (const model::Geometry& geometry : model.geometries) {
-    if (geometry.body < 0 || !collides(geometry)) continue;
+    if (geometry.body < 0 || !collides(model, geometry)) continue;
     const auto [shape, pose] = shapes.placed(geometry, at[std::size_t(geometry.body)]);
     if (shape.kind == ShapeKind::none || shape.kind == ShapeKind::half_space) continue;
     const Vec3 down = transposed_times(pose.rotation, Vec3(0, 0, -1));
@@ -88,7 +91,7 @@ void Start::find_numbers(const Options& options) {
 /// The pose that sets the machine on z = 0, unless the file has a floor.
 void Start::find_floor(const Options&) {
   for (const model::Geometry& geometry : model_.geometries)
-    if (geometry.body < 0 && collides(geometry) && (std::holds_alternative<model::Plane>(geometry.shape) || std::holds_alternative<model::FieldOf>(geometry.shape))) {
+    if (geometry.body < 0 && collides(model_, geometry) && (std::holds_alternative<model::Plane>(geometry.shape) || std::holds_alternative<model::FieldOf>(geometry.shape))) {
       const bool is_plane = std::holds_alternative<model::Plane>(geometry.shape);
       notes.push_back(is_plane ? "the file has a floor of its own: --ground adds none and lifts nothing"
                                : "the file has a height field, which does not act here: --ground adds a level floor at z = 0");

@@ -16,10 +16,11 @@ namespace delassus {
 ///
 /// `base` holds or frees the roots, whatever the file says. Actuators act by `actuate`, and so does weight
 /// that is taken off, see `model/actuators.hpp`. Shapes meet by their types and affinities; bodies of the
-/// loop and of other machines count as 1 and 1 among them. Friction and restitution of single shapes act
+/// loop and of other machines count as 1 and 1 among them. Contact pairs meet whatever their types say, unless
+/// a joint or an exclusion parts their bodies. Friction and restitution of single shapes act
 /// where `leave_out.surfaces` is false, as materials of their bodies. Height fields and triangles of the
 /// world act with `WithMeshes`. What is told by `left_out` of the result does not act: actuators of ball
-/// joints, couplings that are not linear, contact pairs.
+/// joints, couplings that are not linear.
 template <class Loop>
 Machine add(Loop& loop, const Model& model, const Pose& pose = {}, Base base = Base::as_file,
             const LeaveOut& leave_out = {}) {

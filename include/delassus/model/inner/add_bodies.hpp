@@ -29,7 +29,7 @@ LumpShapes shapes_of(Builder& builder, std::size_t l) {
   const Model& model = builder.model();
   for (const Index g : builder.lumps().all[l].shapes) {
     const model::Geometry& geometry = model.geometries[std::size_t(g)];
-    if (geometry.type == 0 && geometry.affinity == 0) continue;
+    if (geometry.type == 0 && geometry.affinity == 0 && !is_paired(model, g)) continue;
     if (!Builder::collides) {
       builder.miss("Contact{...}");
       break;
@@ -77,7 +77,7 @@ void mark(Builder& builder, RigidBody& body, const std::vector<Index>& geometrie
   builder.contact_kinds().mark(body, kind);
   if constexpr (Builder::collides) {
     if (builder.leave_out().surfaces || geometries.empty()) return;
-    const auto surface = [&](Index g) { return SurfaceKind(model.geometries[std::size_t(g)]); };
+    const auto surface = [&](Index g) { return SurfaceKind(model, g); };
     body.material = builder.surface_kinds().number_of(builder.loop().materials(), surface(geometries[0]));
     for (const Index g : geometries)
       if (!(surface(g) == surface(geometries[0])))

@@ -15,6 +15,36 @@
 
 namespace delassus::inner {
 
+/// Names the contact pairs whose bodies never meet, since a joint or an exclusion parts them.
+template <class Builder>
+void leave_parted_pairs(Builder& builder) {
+  const Model& model = builder.model();
+  const auto lump_of = [&](Index geometry) {
+    const Index body = model.geometries[std::size_t(geometry)].body;
+    return body < 0 ? 0 : builder.lumps().of[std::size_t(body)];
+  };
+  const auto parent_of = [&](Index lump) {
+    const Index parent = model.bodies[std::size_t(builder.lumps().all[std::size_t(lump)].root)].parent;
+    return parent < 0 ? 0 : builder.lumps().of[std::size_t(parent)];
+  };
+  const auto is_excluded = [&](Index one, Index other) {
+    return std::any_of(model.excludes.begin(), model.excludes.end(), [&](const model::Exclude& e) {
+      const Index a = e.body < 0 ? 0 : builder.lumps().of[std::size_t(e.body)];
+      const Index b = e.other < 0 ? 0 : builder.lumps().of[std::size_t(e.other)];
+      return (a == one && b == other) || (a == other && b == one);
+    });
+  };
+  for (const model::Pair& pair : model.pairs) {
+    const Index a = lump_of(pair.geometry), b = lump_of(pair.other);
+    const bool are_joined =
+        !model.parents_collide && a > 0 && b > 0 && (parent_of(a) == b || parent_of(b) == a);
+    if (are_joined || a == b || is_excluded(a, b))
+      builder.leave("the contact pair of geometries '" + model.geometries[std::size_t(pair.geometry)].name +
+                    "' and '" + model.geometries[std::size_t(pair.other)].name +
+                    "' does not act: their bodies are one, joined or excluded");
+  }
+}
+
 /// Names what has no law here.
 template <class Builder>
 void leave_rest(Builder& builder) {
@@ -37,7 +67,9 @@ void leave_rest(Builder& builder) {
       }))
     builder.leave(
         "all contacts have the law of the loop: friction and restitution of single shapes are not used");
-  if (any([](const model::Geometry& g) { return g.contact_freedoms > 3; }))
+  if (any([](const model::Geometry& g) { return g.contact_freedoms > 3; }) ||
+      std::any_of(model.pairs.begin(), model.pairs.end(),
+                  [](const model::Pair& p) { return p.contact_freedoms > 3; }))
     builder.leave("contacts spin and roll as the law of the loop says, not as single shapes do");
   if (any([](const model::Geometry& g) { return norm(g.surface_velocity) + norm(g.surface_spin) > 0; }))
     builder.leave("surfaces of shapes do not run");
@@ -47,9 +79,10 @@ void leave_rest(Builder& builder) {
   if (const std::size_t count = builder.contact_kinds().left_over(); count > 0)
     builder.leave(std::to_string(count) +
                   " kinds of types and affinities have no group left, and meet as type 1 and affinity 1");
-  if (!model.pairs.empty())
+  if (leaves_surfaces && !model.pairs.empty())
     builder.leave("its " + std::to_string(model.pairs.size()) +
-                  " contact pairs have no numbers of their own");
+                  " contact pairs have the friction of the loop's law");
+  leave_parted_pairs(builder);
 }
 
 template <class Builder>

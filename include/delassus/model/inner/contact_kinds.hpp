@@ -1,25 +1,53 @@
-/// Who meets whom by the types and affinities of shapes, as groups and masks of bodies.
+/// Who meets whom by the types and affinities of shapes and by contact pairs, as groups and masks of bodies.
 #pragma once
 
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/model/model.hpp>
 
 #include <algorithm>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace delassus::inner {
 
-/// The types and affinities of a body's shapes, ascending, each once.
-using ContactKind = std::vector<std::pair<unsigned, unsigned>>;
+/// What of a shape decides whom it meets.
+struct MeetingShape {
+  unsigned type = 1, affinity = 1;
+  Index geometry = -1;  ///< where a contact pair names it that types and affinities would part
+  friend auto operator<=>(const MeetingShape&, const MeetingShape&) = default;
+};
+/// Those of a body, ascending, each once.
+using ContactKind = std::vector<MeetingShape>;
+
+/// Whether a contact pair names a geometry.
+inline bool is_paired(const Model& model, Index geometry) {
+  return std::any_of(model.pairs.begin(), model.pairs.end(),
+                     [&](const model::Pair& p) { return p.geometry == geometry || p.other == geometry; });
+}
+inline bool do_meet(const model::Geometry& a, const model::Geometry& b) {
+  return (a.type & b.affinity) != 0 || (b.type & a.affinity) != 0;
+}
+/// Whether one names it with a geometry that it would pass.
+inline bool is_paired_against_type(const Model& model, Index geometry) {
+  const auto at = [&](Index g) -> const model::Geometry& { return model.geometries[std::size_t(g)]; };
+  return std::any_of(model.pairs.begin(), model.pairs.end(), [&](const model::Pair& p) {
+    return (p.geometry == geometry || p.other == geometry) && !do_meet(at(p.geometry), at(p.other));
+  });
+}
+/// The contact pair of two geometries; null where there is none.
+inline const model::Pair* pair_of(const Model& model, Index a, Index b) {
+  for (const model::Pair& p : model.pairs)
+    if ((p.geometry == a && p.other == b) || (p.geometry == b && p.other == a)) return &p;
+  return nullptr;
+}
 
 inline ContactKind contact_kind(const Model& model, const std::vector<Index>& geometries) {
   ContactKind kind;
   for (const Index g : geometries) {
     const model::Geometry& geometry = model.geometries[std::size_t(g)];
-    kind.push_back({geometry.type, geometry.affinity});
+    kind.push_back({geometry.type, geometry.affinity, is_paired_against_type(model, g) ? g : -1});
   }
   std::sort(kind.begin(), kind.end());
   kind.erase(std::unique(kind.begin(), kind.end()), kind.end());
@@ -30,6 +58,8 @@ inline ContactKind contact_kind(const Model& model, const std::vector<Index>& ge
 /// and affinity 1, which is the first kind, and theirs is the first bit.
 class ContactKinds {
  public:
+  explicit ContactKinds(const Model& model) : model_(model) {}
+
   /// Counts it, before `number`.
   void note(const ContactKind& kind) {
     if (std::find(kinds_.begin(), kinds_.end(), kind) == kinds_.end()) kinds_.push_back(kind);
@@ -70,22 +100,23 @@ class ContactKinds {
   }
 
  private:
-  using Pair = std::pair<unsigned, unsigned>;
-  static bool do_meet(const Pair& a, const Pair& b) {
-    return (a.first & b.second) != 0 || (b.first & a.second) != 0;
+  bool do_meet(const MeetingShape& a, const MeetingShape& b) const {
+    return (a.type & b.affinity) != 0 || (b.type & a.affinity) != 0 ||
+           (a.geometry >= 0 && b.geometry >= 0 && pair_of(model_, a.geometry, b.geometry));
   }
-  static bool do_meet(const ContactKind& a, const ContactKind& b) {
-    return std::any_of(a.begin(), a.end(), [&](const Pair& x) {
-      return std::any_of(b.begin(), b.end(), [&](const Pair& y) { return do_meet(x, y); });
+  bool do_meet(const ContactKind& a, const ContactKind& b) const {
+    return std::any_of(a.begin(), a.end(), [&](const MeetingShape& x) {
+      return std::any_of(b.begin(), b.end(), [&](const MeetingShape& y) { return do_meet(x, y); });
     });
   }
-  static bool do_all_meet(const ContactKind& a, const ContactKind& b) {
-    return std::all_of(a.begin(), a.end(), [&](const Pair& x) {
-      return std::all_of(b.begin(), b.end(), [&](const Pair& y) { return do_meet(x, y); });
+  bool do_all_meet(const ContactKind& a, const ContactKind& b) const {
+    return std::all_of(a.begin(), a.end(), [&](const MeetingShape& x) {
+      return std::all_of(b.begin(), b.end(), [&](const MeetingShape& y) { return do_meet(x, y); });
     });
   }
 
-  std::vector<ContactKind> kinds_{ContactKind{{1, 1}}};
+  const Model& model_;
+  std::vector<ContactKind> kinds_{ContactKind{MeetingShape{}}};
   std::vector<std::uint32_t> bits_{1};
 };
 

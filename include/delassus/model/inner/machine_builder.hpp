@@ -39,7 +39,9 @@ class MachineBuilder {
         lumps_(lumps),
         pose_(pose),
         leave_out_(leave_out),
-        shapes_(model) {
+        shapes_(model),
+        contact_kinds_(model),
+        surface_kinds_(model) {
     world_pose_.resize(model.bodies.size());
     owner_.assign(model.joints.size(), -1);
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
