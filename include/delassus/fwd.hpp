@@ -80,6 +80,7 @@ struct DirectGaussSeidel;
 
 struct MatrixFreeCompliance;
 struct CheaperCompliance;
+struct UnassembledCompliance;
 struct Baumgarte;
 struct PositionProjection;
 struct SoftContact;

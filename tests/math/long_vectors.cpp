@@ -3,6 +3,7 @@
 #include "catch.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace long_vectors_tests {
@@ -28,6 +29,23 @@ void check() {
     add_multiple(T(3), x.data(), z.data(), n);
     for (std::size_t i = 0; i < std::size_t(n); ++i) REQUIRE(z[i] == y[i] + 3 * x[i]);
     CHECK(z[std::size_t(n)] == y[std::size_t(n)]);  // what lies behind stays
+    scale(T(3), z.data(), n);
+    for (std::size_t i = 0; i < std::size_t(n); ++i) REQUIRE(z[i] == 3 * (y[i] + 3 * x[i]));
+    CHECK(z[std::size_t(n)] == y[std::size_t(n)]);
+    // Three rows that lie n + 2 numbers apart, from the first to the last and back.
+    const std::ptrdiff_t stride = n + 2;
+    const std::vector<T> rows = numbers<T>(Index(3 * stride), 3);
+    const T a[] = {2, -3, 5};
+    std::vector<T> down = y, up = y;
+    add_multiples(a, 3, rows.data(), stride, down.data(), n);
+    add_multiples(a, 3, rows.data() + 2 * stride, -stride, up.data(), n);
+    for (Index i = 0; i < n; ++i) {
+      const T r[] = {rows[std::size_t(i)], rows[std::size_t(i + stride)], rows[std::size_t(i + 2 * stride)]};
+      REQUIRE(down[std::size_t(i)] == y[std::size_t(i)] + 2 * r[0] - 3 * r[1] + 5 * r[2]);
+      REQUIRE(up[std::size_t(i)] == y[std::size_t(i)] + 5 * r[0] - 3 * r[1] + 2 * r[2]);
+    }
+    CHECK(down[std::size_t(n)] == y[std::size_t(n)]);
+    CHECK(up[std::size_t(n)] == y[std::size_t(n)]);
   }
 }
 

@@ -161,10 +161,11 @@ class BlockLu {
   }
   /// r rows less B times k rows, each of so many columns.
   static void take_rows(const Block& B, int k, int r, const T* from, T* to, Index columns) {
-    for (int c = 0; c < k; ++c)
-      for (int i = 0; i < r; ++i)
-        if (const T b = B(i, c); b != T(0))
-          add_multiple<T>(-b, from + std::ptrdiff_t(c) * columns, to + std::ptrdiff_t(i) * columns, columns);
+    T less[w];
+    for (int i = 0; i < r; ++i) {
+      for (int c = 0; c < k; ++c) less[c] = -B(i, c);
+      add_multiples(less, k, from, columns, to + std::ptrdiff_t(i) * columns, columns);
+    }
   }
   /// C −= A B, of any rows times k × c: the rows of A behind its own are zero.
   static void take_product(const Block& A, const Block& B, Block& C, int k, int c) {

@@ -28,7 +28,7 @@ namespace inner {
 
 /// W as a matrix: a copy of it is whole without the bodies.
 template <class Operator>
-concept AssembledOperator = requires(const Operator& W) { W.template blocks<0, 0>(); };
+concept AssembledOperator = requires(Operator& W) { W.copy_matrix(W); };
 
 /// How long an array of a snapshot may become, and what was too long for it.
 class Room {

@@ -7,6 +7,7 @@
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/no_collision.hpp>
 #include <delassus/compliance/assembled.hpp>
+#include <delassus/compliance/unassembled.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/execution.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
@@ -15,6 +16,7 @@
 #include <delassus/schemes/plain_order.hpp>
 #include <delassus/solvers/accelerated_gauss_seidel.hpp>
 #include <delassus/stabilisation/baumgarte.hpp>
+#include <delassus/step/channels.hpp>
 #include <delassus/step/notify.hpp>
 
 #include <tuple>
@@ -28,6 +30,18 @@ namespace inner {
 template <class Scheme>
 inline constexpr bool makes_problem = !requires { requires !Scheme::makes_problem; };
 
+/// The compliance of a loop that names none: that of its solver, if it says one as `using compliance`. Who hands problems
+/// to other threads copies a matrix.
+template <class Solver, bool publishes>
+struct usual_compliance {
+  using type = AssembledCompliance;
+};
+template <class Solver>
+  requires requires { typename Solver::compliance; }
+struct usual_compliance<Solver, false> {
+  using type = typename Solver::compliance;
+};
+
 }  // namespace inner
 
 /// The types of a loop by role: what is named, or the default.
@@ -40,8 +54,8 @@ struct Policies {
   using Laws = the<role::Constraints, Constraints<>>;
   using Integrator = the<role::Integrator, SymplecticEuler>;
   using Collision = the<role::Collision, std::conditional_t<Laws::has_contacts, NativeCollision, NoCollision>>;
-  using Compliance = the<role::Compliance, AssembledCompliance>;
   using Solver = the<role::Solver, AcceleratedGaussSeidel>;
+  using Compliance = the<role::Compliance, typename inner::usual_compliance<Solver, (Publisher<Args> || ...)>::type>;
   using Stabilisation = the<role::Stabilisation, Baumgarte>;
   using Scheme = the<role::Scheme, PlainOrder>;
   using Activity = the<role::Activity, AllActive>;

@@ -66,12 +66,16 @@ class PivotedLu {
     for (int k = 0; k < used; ++k)
       if (swap_[k] != k)
         for (Index r = 0; r < height; ++r) std::swap(column(k)[r], column(swap_[k])[r]);
-    for (int k = 0; k < used; ++k)
-      for (int i = k + 1; i < used; ++i) add_multiple<T>(-lu_(i, k), column(k), column(i), height);
-    for (int k = used; k-- > 0;) {
-      T* const x = column(k);
-      for (Index r = 0; r < height; ++r) x[r] *= over_[k];
-      for (int i = 0; i < k; ++i) add_multiple<T>(-lu_(i, k), x, column(i), height);
+    T less[w];
+    const std::ptrdiff_t stride = used > 1 ? column(1) - column(0) : 0;
+    for (int i = 1; i < used; ++i) {
+      for (int k = 0; k < i; ++k) less[k] = -lu_(i, k);
+      add_multiples(less, i, column(0), stride, column(i), height);
+    }
+    for (int i = used; i-- > 0;) {
+      for (int k = used - 1; k > i; --k) less[used - 1 - k] = -lu_(i, k);
+      add_multiples(less, used - 1 - i, column(used - 1), -stride, column(i), height);
+      scale(over_[i], column(i), height);
     }
   }
 

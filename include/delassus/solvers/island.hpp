@@ -181,6 +181,7 @@ class Island {
 
   void set_observer(const SolveObserver<T>& observer) { observer_ = observer; }
   bool observes_sweeps() const { return observer_.every_sweep; }
+  bool is_heard() const { return observer_.sweep; }
   /// Whether `notify` reads λ.
   bool tells_forces() const { return observer_.wants_forces && observer_.wants_forces(observer_.who); }
   void notify(int sweeps, const Measure& m) {

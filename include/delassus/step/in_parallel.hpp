@@ -210,6 +210,11 @@ struct InParallel {
           island.set_crew(crew);
           Step::Stages::solve_island(step, island);
         };
+        if constexpr (requires { step.W.are_islands_apart(); })
+          if (!step.W.are_islands_apart()) {
+            for (std::size_t k = 0; k < islands.size(); ++k) solve(k, 0, nullptr);
+            return;
+          }
         const std::size_t large = count_large(step);
         for (std::size_t k = 0; k < large; ++k)
           solve_together(step, [&](Index worker, inner::Crew& crew) { solve(k, worker, &crew); });

@@ -161,7 +161,8 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
     if constexpr (has_problem) {
       auto book = this->law_set;
       book.attach(laws());  // the loop may be a copy
-      auto& self = const_cast<StepData&>(*this);  // nothing is written through it here
+      auto& self = const_cast<StepData&>(*this);  // but for what W makes of λ nothing is written through it here
+      self.W.reset(self.rows);
       book.show(self.W, self.rows);
       NoObserver nobody;
       Array<double> lengths;
@@ -199,10 +200,13 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
     static_assert(Self::has_problem,
                   "delassus: this AnimationLoop makes no constraint problem: without constraints, under JointByJoint and by "
                   "NewtonMidpoint there is no W; use PlainOrder and ImplicitMidpoint, or take problem() out");
-    if constexpr (Self::has_problem)
-      return Problem<Laws, typename P::Rows, typename P::Operator>{laws(), this->rows, this->W, this->islands, h};
-    else
+    if constexpr (Self::has_problem) {
+      Problem<Laws, typename P::Rows, typename P::Operator> out{laws(), this->rows, this->W, this->islands, h};
+      if constexpr (requires { out.W.complete(world(), out.rows); }) out.W.complete(world(), out.rows);
+      return out;
+    } else {
       return inner::Absent{};
+    }
   }
   /// The same into one that is there: arrays that are large enough are written over, and nothing is allocated.
   template <class To>

@@ -206,9 +206,9 @@ class SchurComplement {
   /// The rows from … end − 1 of those that are asked as columns: what their impulses make the joints do, and
   /// what that does to all others.
   void take(System& system, Index from, Index end) {
-    const Index columns = end - from;
+    const Index asked = end - from, columns = (asked + 3) / 4 * 4;  // whole packets
     X_.assign(std::size_t(system.rows()) * std::size_t(columns), 0);
-    for (Index c = 0; c < columns; ++c) {
+    for (Index c = 0; c < asked; ++c) {
       const auto& [t, k] = asked_[from + c];
       for (Index e = node(system, t).first; e < node(system, t).last; ++e)
         system.disturb(system.side(e), k, X_.data() + c, columns);
@@ -223,21 +223,23 @@ class SchurComplement {
       for (Index e = system.node(k).first; e < system.node(k).last; ++e) {
         const auto& side = system.side(e);
         const Index to = wanted_[side.block];
-        for (int r = 0; to >= 0 && r < system.node(k).rows; ++r)
-          for (int v = 0; v < width; ++v)
-            if (const double g = side.G(v, r); g != 0)
-              add_multiple(g, &X_[std::size_t(system.first_row(k) + r) * std::size_t(columns)],
-                           velocity(to, v), columns);
+        double g[System::w];
+        for (int v = 0; to >= 0 && v < width; ++v) {
+          for (int r = 0; r < system.node(k).rows; ++r) g[r] = side.G(v, r);
+          add_multiples(g, system.node(k).rows, &X_[std::size_t(system.first_row(k)) * std::size_t(columns)],
+                        columns, velocity(to, v), columns);
+        }
       }
     for (const auto& [t, r] : asked_) {
       change_.assign(columns, 0);
       for (Index e = node(system, t).first; e < node(system, t).last; ++e) {
         const auto& side = system.side(e);
-        for (int v = 0; wanted_[side.block] >= 0 && v < width; ++v)
-          if (const double h = side.H(r, v); h != 0)
-            add_multiple(h, velocity(wanted_[side.block], v), change_.data(), columns);
+        if (wanted_[side.block] < 0) continue;
+        double h[width];
+        for (int v = 0; v < width; ++v) h[v] = side.H(r, v);
+        add_multiples(h, width, velocity(wanted_[side.block], 0), columns, change_.data(), columns);
       }
-      for (Index c = 0; c < columns; ++c) column(row_of(asked_[from + c]))[row_[t] + r] += change_[c];
+      for (Index c = 0; c < asked; ++c) column(row_of(asked_[from + c]))[row_[t] + r] += change_[c];
     }
   }
 
