@@ -7,6 +7,7 @@
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/no_collision.hpp>
 #include <delassus/compliance/assembled.hpp>
+#include <delassus/compliance/unassembled.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/execution.hpp>
 #include <delassus/integrators/symplectic_euler.hpp>
