@@ -47,7 +47,7 @@ struct ProximalNewton {
                   "solve it by AcceleratedGaussSeidel");
     inner::BodySpace<T, inner::NewtonSystem<T, std::max(1, Rows::widest)>, inner::LawsAsTheyAre<T>> body;  ///< of the Newton steps
     AcceleratedSweeps::Workspace<Rows> sweeps;  ///< room of the sweeps where Newton's method does not act
-    Array<T> start;  ///< λ from before the first step
+    Array<T> start;  ///< λ from before the first step, or after sweeps that led on
     void reset(Index rows) {
       sweeps.reset(rows);
       start.reserve(std::size_t(rows));
@@ -73,14 +73,17 @@ struct ProximalNewton {
     if (!std::isfinite(start.residual)) return {.status = Status::quarantined, .measure = start};
     if (min_iterations == 0 && now.is_done(start)) return finish(now);
     problem.save(work.start);
+    double allowed = 0;
     for (int patience = 20; now.has_time();) {
       if (now.run()) {
         if (now.is_met()) return finish(now);
       } else {
         now.restore_best();
+        if (allowed == 0) allowed = largest_energy(problem, work);
         patience = std::min(2 * patience, max_sweeps - now.sweeps);
-        if (patience <= 0) break;
+        if (patience <= 0 || !(problem.energy() <= allowed)) break;
         now.sweeps += sweep(problem, work, patience, 1).sweeps;
+        if (problem.energy() <= allowed) problem.save(work.start);
       }
       if (!now.restart()) break;
       if (now.is_done(now.measure)) return finish(now);
@@ -89,13 +92,17 @@ struct ProximalNewton {
   }
 
  private:
+  /// Σ w_i |λ_i|² beyond which λ has run away along what moves nothing.
+  static double largest_energy(auto& problem, auto& work) {
+    return 100 * std::max(problem.energy(work.start), work.body.energy_of_stopping(problem));
+  }
+
   /// The tolerance was not met: what is left of the sweeps leads on from the best λ. Where that has run away along what moves
-  /// nothing, as in a wedge that jams, its loads are none: the sweeps lead on from the start.
+  /// nothing, as in a wedge that jams, its loads are none: the sweeps lead on from the last λ that had not.
   SolveReport give_up(auto& now, auto& work) const {
     auto& problem = now.problem();
-    const double allowed = 100 * std::max(problem.energy(work.start), work.body.energy_of_stopping(problem));
     now.restore_best();
-    if (!(problem.energy() <= allowed)) problem.load(work.start);
+    if (!(problem.energy() <= largest_energy(problem, work))) problem.load(work.start);
     const int left = max_sweeps - now.sweeps;
     if (!now.is_late() && left > 0) {
       const SolveReport swept = sweep(problem, work, left, 1);

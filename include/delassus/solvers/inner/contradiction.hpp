@@ -4,6 +4,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/solvers/inner/alike_bodies.hpp>
 #include <delassus/solvers/island.hpp>
 
 #include <algorithm>
@@ -22,10 +23,11 @@ namespace delassus::inner {
 ///   |y| ≥ −dᵀz/√(Σ (W z)²/w),
 ///
 /// which must be `margin` times √(Σ d²/w), with W z known to no more than the rounding of d, since z is
-/// scaled to be as large as d. A mass ratio r needs y of r times that, so that the margin is beyond any ratio
-/// that sweeps get through. Joints that contradict each other through a body that contacts hold are found
-/// without the contacts, which would let W z fall slowly. In single precision there is no such margin:
-/// nothing is proved there. Source: [Gale1960], the theorem of the alternative.
+/// scaled to be as large as d. A mass ratio r would need y of r times that and look like a contradiction, though masses are none:
+/// which velocities d + W λ can be reached, H and d say. So W is that of `AlikeBodies`, and only levers and angles make y large.
+/// Where W alone is known it is that, and the margin is beyond any ratio that sweeps get through. Joints that contradict each
+/// other through a body that contacts hold are found without the contacts, which would let W z fall slowly. In single precision
+/// there is no such margin: nothing is proved there. Source: [Gale1960], the theorem of the alternative.
 template <class T>
 class Contradiction {
   static constexpr double rounding = std::numeric_limits<double>::epsilon();
@@ -35,20 +37,36 @@ class Contradiction {
   };
 
  public:
-  explicit Contradiction(Island<T>& island) : island_(island) {}
+  [[gnu::always_inline]] explicit Contradiction(const Island<T>& island) : whole_(island), island_(sizeof(T) == sizeof(double) && alike_.take(island) ? alike_.island(island) : island) {}
+  [[gnu::always_inline]] ~Contradiction() {}
 
   /// From the direction in which λ has gone since `before` was saved; λ is something else afterwards.
   bool is_proved(const Array<T>& before) {
     if constexpr (sizeof(T) < sizeof(double)) return false;
+    // z is scaled before W hears of it: λ that has run away would leave its rounding in velocities that are sums of changes.
     T z[most_rows];
-    const T* at = before.data();
-    for (const Span<T>& span : island_)
-      for (const Index i : span) {
-        const T* lambda = island_.impulse(span, i);
-        for (int k = 0; k < span.pool->rows; ++k) z[k] = lambda[k] - *at++;
-        clear_bounded(span, i, z);
-        island_.assign(span, i, z);
+    double size = 0, free = 0;
+    for (const bool is_scaled : {false, true}) {
+      const double factor = is_scaled ? std::sqrt(free / size) : 1;
+      if (is_scaled && !(factor > 0 && std::isfinite(factor))) return false;
+      const T* at = before.data();
+      const Span<T>* from = whole_.begin();
+      for (const Span<T>& span : island_) {
+        for (const Index i : span) {
+          const T *lambda = whole_.impulse(*from, i), *d = island_.free_of_impulses(span, i);
+          for (int k = 0; k < span.pool->rows; ++k) z[k] = lambda[k] - *at++;
+          clear_bounded(span, i, z);
+          double w[most_rows];
+          span.pool->weights(i, w);
+          for (int k = 0; k < span.pool->rows; ++k) {
+            if (!is_scaled && w[k] > 0) size += w[k] * double(z[k]) * double(z[k]), free += double(d[k]) * double(d[k]) / w[k];
+            z[k] *= T(factor);
+          }
+          if (is_scaled) island_.assign(span, i, z);
+        }
+        ++from;
       }
+    }
     if (moves_nothing()) return true;
     bool has_less = false;
     has_two_sided_alone_ = true;
@@ -164,7 +182,9 @@ class Contradiction {
       }
   }
 
-  Island<T>& island_;
+  const Island<T>& whole_;
+  AlikeBodies<T> alike_;
+  Island<T> island_;
   bool has_two_sided_alone_ = false;  ///< z = 0 on lower and upper rows
 };
 
