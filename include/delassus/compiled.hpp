@@ -60,12 +60,13 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   WHAT(KIND, Drive<Turn>)                    \
   WHAT(KIND, Drive<Slide>)
 
-#define DELASSUS_COMPILED_LAW(KIND, ...)           \
-  KIND struct inner::LawRows<__VA_ARGS__, double>;  \
-  KIND struct inner::LawLoops<__VA_ARGS__, double>; \
-  KIND struct inner::LawTangents<__VA_ARGS__, double>;
+#define DELASSUS_COMPILED_LAW(KIND, ...)                                                                                              \
+  KIND const LawSteps<double>* inner::law_steps<__VA_ARGS__, double>();                                                               \
+  KIND const LawTable<double>* inner::law_table<__VA_ARGS__, double>();                                                               \
+  KIND void inner::law_tangent<__VA_ARGS__, double>(const PoolView<double>&, Index, const double*, const double*, double*, double*);  \
+  KIND void inner::convex_law_tangent<__VA_ARGS__, double>(const PoolView<double>&, Index, const double*, const double*, double, double*, double*);
 
-#define DELASSUS_COMPILED_POOL(KIND, ...) KIND struct Pool<__VA_ARGS__>;
+#define DELASSUS_COMPILED_POOL(KIND, ...) KIND ConstraintHandle<__VA_ARGS__> inner::add_item(Pool<__VA_ARGS__>&, const __VA_ARGS__::Item&);
 
 // What `compile_here.hpp` has checked is not checked in each file again.
 #define DELASSUS_COMPILED_CHECK(KIND, ...) KIND bool inner::was_checked<__VA_ARGS__, double> = true;
@@ -104,6 +105,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND double worst_equality(AllLaws<double>, AllRows<double>);                                                                   \
   KIND Index row_count(AllRows<double>);                                                                                          \
   KIND void add_restitution(const WorldView<double>&, AllLaws<double>, AllRows<double>, const Islands<double>&, const double* const*, const double* const*, const std::size_t*, int, double, double, Bounces<double>&); \
+  KIND struct Bounces<double>;                                                                                                    \
+  KIND void remember_impulses(AllRows<double>, Bounces<double>&);                                                                 \
   KIND class EnergyGuard<double>;                                                                                                 \
   KIND class inner::CoupledColumns<double>;                                                                                       \
   KIND class inner::NodalRows<double>;                                                                                            \
@@ -112,6 +115,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class Array<char>;                                                                                                         \
   KIND class OwningArray<Array<double>>;                                                                                          \
   KIND class OwningArray<Array<Index>>;                                                                                           \
+  KIND void inner::AssembledRows<double>::prepare(const RigidBodies&, int);                                                       \
+  KIND void inner::AssembledRows<double>::prepare(const Particles&, int);                                                         \
   KIND void inner::make_bias(const LawPool<double>&, const RowArrays<double>&, inner::Range, const double* const*, const double* const*, const MovingSurfaces<double>&, const Baumgarte&, double, double, bool); \
   KIND void warm_start(AllLaws<double>, AllRows<double>, ContactCache&, double, double);                                          \
   KIND void keep_impulses(AllLaws<double>, AllRows<double>, ContactCache&);                                                       \
@@ -121,6 +126,8 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND SolveReport AcceleratedGaussSeidel::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 6>>&) const; \
   KIND SolveReport AcceleratedGaussSeidel::solve(Island<double>&, inner::SweepSpace<double, inner::NewtonSpace<double, 3>>&) const; \
   KIND SolveReport AcceleratedSweeps::solve(Island<double>&, inner::SweepSpace<double, SweepsAlone::Space<double, 6>>&) const; \
+  KIND double inner::length_of_island(const Span<double>*, const Span<double>*);                                                  \
+  KIND Index inner::undecided_loads(const Island<double>&, const SolveReport&);                                                   \
   KIND class inner::NewtonSystem<double, 6>;                                                                                      \
   KIND class BlockLu<6, double>;                                                                                                  \
   KIND class OwningArray<inner::IslandGraph<BlockLu<6, double>>>;                                                                 \
@@ -135,6 +142,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 #define DELASSUS_COMPILED_DIRECT(KIND, R)                                                                                       \
   KIND SolveReport DirectGaussSeidel::solve(Island<double>&, inner::DirectSpace<double, R, 6>&) const; \
   KIND class inner::SchurComplement<double, inner::DirectSystem<R, 6>>;                                                         \
+  KIND struct inner::DirectSpace<double, R, 6>;                                                                      \
   KIND struct inner::DefinedOnce<inner::DirectSpace<double, R, 6>>;                                                    \
   KIND class OwningArray<inner::IslandGraph<SparseLu<R, double>>>;
 
@@ -148,6 +156,9 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
 #define DELASSUS_COMPILED_WORLD(KIND)                                                                  \
   KIND void inner::refuse_number(std::string_view, double, const char*, const char*);                  \
   KIND std::string inner::shown_type(std::string_view);                                                \
+  KIND std::string inner::stale_constraint(std::uint32_t, const std::string&);                         \
+  KIND void inner::refuse_during_step(const std::string&);                                             \
+  KIND void inner::refuse_still_ends(const std::string&, const std::string&);                          \
   KIND void inner::refuse_one_body(const std::string&, const std::string&);                            \
   KIND void inner::refuse_no_body(const std::string&);                                                 \
   KIND class BasicRigidBodies<double>;                                                                 \
@@ -159,6 +170,7 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND class BasicConvexHull<double>;                                                                  \
   DELASSUS_COMPILED_BODIES(KIND, RigidBodies)                                                          \
   DELASSUS_COMPILED_BODIES(KIND, Particles)                                                            \
+  KIND class inner::Overlaps<inner::Solid>;                                                            \
   KIND Anchor anchor(const RigidBodies&, RigidBodies::Handle, const Vec3&, const Quat&);               \
   KIND Anchor anchor(const Particles&, Particles::Handle, const Vec3&, const Quat&);                   \
   KIND MidpointRate<double> midpoint_rate(const Mat3&, const Vec3&, const Vec3&, const Vec3&, double);

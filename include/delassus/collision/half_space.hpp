@@ -2,22 +2,12 @@
 #pragma once
 
 #include <delassus/collision/manifold.hpp>
+#include <delassus/collision/plane.hpp>
 #include <delassus/collision/signed_pair.hpp>
 
 namespace delassus {
 
-/// A plane in the frame of A: the solid is normal · x ≤ offset.
-struct Plane {
-  Vec3 normal;
-  double offset;
-};
-
 namespace inner {
-
-inline Plane plane_of(const Shape& s, const Pose& pose) {
-  const Vec3 n = pose.rotation * Vec3(s.size[0], s.size[1], s.size[2]);
-  return {n, s.size[3] + dot(n, pose.position)};
-}
 
 /// A half-space and a shape over its plane, in the frame of A.
 struct PlanePair {

@@ -27,9 +27,18 @@ struct ConstraintHandle {
   friend bool operator==(const ConstraintHandle&, const ConstraintHandle&) = default;
 };
 
+template <class Law>
+struct Pool;
+
 namespace inner {
 
 struct NeverBreaks {};
+
+/// Functions of a pool that a program can compile once, without the classes of all pools in each of its files.
+template <class Law>
+ConstraintHandle<Law> add_item(Pool<Law>& pool, const typename Law::Item& item);
+template <class Char>
+std::basic_string<Char> stale_constraint(std::uint32_t owner, const std::basic_string<Char>& what);
 
 }  // namespace inner
 
@@ -51,18 +60,7 @@ struct Pool {
   Pool() = default;
   explicit Pool(Law l) : law(std::move(l)) {}
 
-  ConstraintHandle<Law> add(const Item& item) {
-    const Index place = slots.take();
-    if (place == Index(items.size())) {
-      items.push_back(item);
-      impulse.resize(items.size());
-      starts_cold.push_back(0);
-    }
-    items[place] = item;
-    impulse.set_zero(std::size_t(place));
-    starts_cold[place] = 0;
-    return {place, slots.generation(place), owner};
-  }
+  ConstraintHandle<Law> add(const Item& item) { return inner::add_item(*this, item); }
 
   ConstraintHandle<Law> handle(Index place) const {
     DELASSUS_EXPECT(slots.is_alive(place), "constraint: place " + std::to_string(place) + " of this law holds none");
@@ -70,7 +68,7 @@ struct Pool {
   }
   /// What is wrong with a handle that this pool does not contain.
   static std::string stale(ConstraintHandle<Law> h, const std::string& what) {
-    return inner::wrong_handle(h.owner, "constraint", what + ", or is another loop's; its handle is stale");
+    return inner::stale_constraint(h.owner, what);
   }
   bool contains(ConstraintHandle<Law> h) const { return h.owner == owner && slots.is_current(h.index, h.generation); }
 
@@ -104,6 +102,28 @@ struct Pool {
   const Item& item(Index i) const { return items[slots.active()[i]]; }
   Index count() const { return Index(slots.active().size()); }
 };
+
+namespace inner {
+
+template <class Law>
+ConstraintHandle<Law> add_item(Pool<Law>& pool, const typename Law::Item& item) {
+  const Index place = pool.slots.take();
+  if (place == Index(pool.items.size())) {
+    pool.items.push_back(item);
+    pool.impulse.resize(pool.items.size());
+    pool.starts_cold.push_back(0);
+  }
+  pool.items[place] = item;
+  pool.impulse.set_zero(std::size_t(place));
+  pool.starts_cold[place] = 0;
+  return {place, pool.slots.generation(place), pool.owner};
+}
+template <class Char>
+std::basic_string<Char> stale_constraint(std::uint32_t owner, const std::basic_string<Char>& what) {
+  return wrong_handle(owner, "constraint", what + ", or is another loop's; its handle is stale");
+}
+
+}  // namespace inner
 
 /// What is not a law has no items; the loop's checks say what it lacks.
 template <class Law>

@@ -4,9 +4,8 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/linear/block_pattern.hpp>
+#include <delassus/math/eigen.hpp>
 #include <delassus/math/linear.hpp>
-
-#include <Eigen/Cholesky>
 
 #include <span>
 #include <utility>

@@ -63,27 +63,35 @@ std::string name_of_body(const World& world, const Anchor& end) {
   return name;
 }
 
+/// Whether nothing moves what is at this end, now or later.
+template <class World>
+bool never_moves(const World& world, const Anchor& end) {
+  bool is_still = true;
+  world.visit(end.set, [&](const auto& set, auto) {
+    if constexpr (requires { set.never_moves(end.block); }) is_still = set.never_moves(end.block);
+    else is_still = false;
+  });
+  return is_still;
+}
 /// Whether nothing moves the bodies that a joint holds, now or later.
 template <class World, class Item>
 bool none_moves(const World& world, Item& item) {
   bool is_still = true;
-  each_end(item, [&](const Anchor& end) {
-    world.visit(end.set, [&](const auto& set, auto) {
-      if constexpr (requires { set.never_moves(end.block); }) is_still = is_still && set.never_moves(end.block);
-      else is_still = false;
-    });
-  });
+  each_end(item, [&](const Anchor& end) { is_still = is_still && never_moves(world, end); });
   return is_still;
 }
-/// "rigid body #0 and the world", of its first two ends.
+template <class World>
+std::string name_of_end(const World& world, const Anchor* end) {
+  return end->is_world() ? std::string("the world") : name_of_body(world, *end);
+}
+/// Of a law whose item nothing moves: its first two ends are "rigid body #0 and the world".
 template <class World, class Item>
-std::string names_of_ends(const World& world, const Item& item) {
-  const auto name = [&](const Anchor& end) { return end.is_world() ? std::string("the world") : name_of_body(world, end); };
-  std::string names;
+[[noreturn]] void refuse_still_item(const std::string& law, const World& world, const Item& item) {
+  const Anchor *first = nullptr, *second = nullptr;
   each_pair(item, [&](const Anchor& a, const Anchor& b) {
-    if (names.empty()) names = name(a) + " and " + name(b);
+    if (!first) first = &a, second = &b;
   });
-  return names;
+  refuse_still_ends(law, first ? name_of_end(world, first) + " and " + name_of_end(world, second) : std::string());
 }
 
 /// Items that were read speak of the sets of this world.

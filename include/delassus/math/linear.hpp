@@ -3,9 +3,7 @@
 
 #include <delassus/core/cmath.hpp>
 #include <delassus/math/eager.hpp>
-
-#include <Eigen/Core>
-#include <Eigen/Geometry>
+#include <delassus/math/eigen.hpp>
 
 namespace delassus {
 

@@ -5,6 +5,7 @@
 #include <delassus/math/linear.hpp>
 
 #include <cstdint>
+#include <cstring>
 
 namespace delassus {
 
@@ -25,6 +26,9 @@ struct Anchor {
   /// Also true of an anchor of a body that no loop has seen: its `set` is not told before.
   bool is_world() const { return set < 0; }
 };
+
+/// to = from, as bytes: Eigen's assignment of a quaternion is a dozen functions in a build without inlining.
+inline void assign(Anchor& to, const Anchor& from) { std::memcpy(static_cast<void*>(&to), &from, sizeof(Anchor)); }
 
 /// An item that holds an array `parts` of pairs of material points, each with a and b.
 template <class Item>

@@ -25,9 +25,9 @@ namespace inner {
 /// `items` and `memory` by place, `places` of the items: null where these are all.
 template <class Law, Needs needs, class T>
 void show_law(const Law& law, const void* items, const Index* places, void* memory, PoolView<T>& view) {
-  view.table = &LawLoops<Law, T>::table;
-  if constexpr (needs != Needs::sweeps && refines<Law>(refine::tangent)) view.tangent = &LawTangents<Law, T>::tangent;
-  if constexpr (needs == Needs::convex_tangents && refines<Law>(refine::tangent)) view.convex_tangent = &LawTangents<Law, T>::convex_tangent;
+  view.table = law_table<Law, T>();
+  if constexpr (needs != Needs::sweeps && refines<Law>(refine::tangent)) view.tangent = &law_tangent<Law, T>;
+  if constexpr (needs == Needs::convex_tangents && refines<Law>(refine::tangent)) view.convex_tangent = &convex_law_tangent<Law, T>;
   view.turns = turning_rows<Law>();
   view.law = &law;
   view.law_items = items;

@@ -163,8 +163,8 @@ class BasicContactCache {
       results[i].starts_cold = false;
       // Member by member: a record that is made and then assigned is copied once more.
       ContactRecord& record = results[i].record;
-      record.a = anchors_[p.a];
-      record.b = anchors_[p.b];
+      assign(record.a, anchors_[p.a]);
+      assign(record.b, anchors_[p.b]);
       assign(record.point_a, p.point_a);
       assign(record.point_b, p.point_b);
       assign(record.normal, p.normal);

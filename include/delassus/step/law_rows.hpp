@@ -211,6 +211,12 @@ struct LawRows {
 template <class Law, class T>
 constinit const LawSteps<T> LawRows<Law, T>::table = make_table();
 
+/// What a law does in the stages; a function for the same reason as `law_table`.
+template <class Law, class T>
+const LawSteps<T>* law_steps() {
+  return &LawRows<Law, T>::table;
+}
+
 }  // namespace inner
 
 /// The pools of a loop's laws: `PoolsOf laws(step.laws())`.
@@ -228,7 +234,7 @@ class PoolsOf<Constraints<L...>, T> {
     if (of_ == &laws) return;
     of_ = &laws;
     each_pool(const_cast<Constraints<L...>&>(laws), [&]<class Law>(auto p, Pool<Law>& pool) __attribute__((always_inline)) {
-      pools_[p] = {&pool, &inner::LawRows<Law, T>::table};
+      pools_[p] = {&pool, inner::law_steps<Law, T>()};
     });
   }
   /// A copy is of nothing.

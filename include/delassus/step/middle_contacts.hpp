@@ -2,8 +2,8 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
-#include <delassus/collision/inner/ahead.hpp>
 #include <delassus/collision/inner/margins.hpp>
+#include <delassus/collision/inner/summary.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/constraints/contact/contact.hpp>

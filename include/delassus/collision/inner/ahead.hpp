@@ -15,8 +15,6 @@
 
 namespace delassus::inner {
 
-/// Two bodies touch when they are nearer than this share of their size.
-inline constexpr double touch_share = 1e-4;
 /// Two bodies meet when they come nearer than that.
 inline constexpr double meeting_share = 1e-4;
 /// Cosine of the angle, 4.5e-5, within which two normals count as one.

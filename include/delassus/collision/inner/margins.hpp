@@ -2,8 +2,8 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
-#include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/summary.hpp>
+#include <delassus/collision/plane.hpp>
 #include <delassus/collision/settings.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/geometry/support.hpp>
@@ -15,6 +15,8 @@ namespace delassus {
 namespace inner {
 
 inline constexpr double margin_share = 5e-3, margin_limit = 0.5;
+/// Two bodies touch when they are nearer than this share of their size.
+inline constexpr double touch_share = 1e-4;
 
 inline double limited_margin(double way, double scale) {
   return std::min(std::max(margin_share * scale, way), margin_limit * scale);

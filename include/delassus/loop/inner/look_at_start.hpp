@@ -10,24 +10,23 @@ namespace delassus::inner {
 /// Two rigid bodies or particles whose shapes overlap, in the order of the sets and blocks of the world.
 template <class Step>
 [[gnu::cold, gnu::noinline]] SolidPair find_overlap(const Step& step) {
-  Array<Solid> solids;
+  Overlaps<Solid> overlaps;
   step.world().each([&](const auto& set, auto s) {
     if constexpr (requires { set.never_moves(0); })
-      for (const Index b : set.active()) {
-        if (!set.has_collider(b)) continue;
-        const Shape shape = set.shape(b);
-        if (shape.is_kept() || !is_finite(set.pose(b).position)) continue;
-        solids.push_back({shape, set.pose(b), outer_radius(shape), set.group(b), set.collides_with(b), Index(s), b, !set.never_moves(b)});
-      }
+      for (const Index b : set.active())
+        if (set.has_collider(b))
+          overlaps.add(set.shape(b), set.pose(b), set.group(b), set.collides_with(b), Index(s), b, !set.never_moves(b));
   });
-  return first_overlap(solids, [&](const Solid& a, const Solid& b) {
+  for (;;) {
+    const SolidPair pair = overlaps.next();
     bool are_joined = false;
-    const auto is_on = [](const auto& end, const Solid& s) { return end.set == s.set && end.block == s.block; };
     step.each_joint([&](const auto& x, const auto& y) {
-      are_joined = are_joined || (is_on(x, a) && is_on(y, b)) || (is_on(x, b) && is_on(y, a));
+      const auto is_on = [](const auto& end, Index set, Index block) { return end.set == set && end.block == block; };
+      are_joined = are_joined || (is_on(x, pair.set_a, pair.block_a) && is_on(y, pair.set_b, pair.block_b)) ||
+                   (is_on(x, pair.set_b, pair.block_b) && is_on(y, pair.set_a, pair.block_a));
     });
-    return are_joined;
-  });
+    if (!are_joined || !pair) return pair;
+  }
 }
 
 /// The longest arm of a joint, from the centre of a body to its end, m; of ends in the centres, the way between these.

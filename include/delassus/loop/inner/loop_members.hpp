@@ -74,7 +74,7 @@ auto AnimationLoop<Args...>::add(Item item) {
       each_pair(item, [&](const Anchor& a, const Anchor& b) {
         if (a.is_world() && b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
       });
-      if (inner::none_moves(world(), item)) inner::refuse_still_ends(inner::type_text<Law>(), inner::names_of_ends(world(), item));
+      if (inner::none_moves(world(), item)) inner::refuse_still_item(inner::type_text<Law>(), world(), item);
       each_pair(item, [&](const Anchor& a, const Anchor& b) {
         if (!a.is_world() && inner::are_on_one_body(a, b)) inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), a));
       });

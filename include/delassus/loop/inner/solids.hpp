@@ -78,16 +78,35 @@ struct SolidPair {
   explicit operator bool() const { return set_a >= 0; }
 };
 
-/// The first two that overlap and that no joint connects, which `are_joined(a, b)` says; sorts the solids.
-inline SolidPair first_overlap(Array<Solid>& solids, auto&& are_joined) {
-  sort(solids.data(), solids.data() + solids.size(), [](const Solid& a, const Solid& b) {
-    return a.is_endless() != b.is_endless() ? a.is_endless() : a.first() < b.first();
-  });
-  for (std::size_t i = 0; i < solids.size(); ++i)
-    for (std::size_t j = i + 1; j < solids.size(); ++j) {
-      const Solid &a = solids[i], &b = solids[j];
+/// The pairs of a scene that overlap, one after the other. A template, so that a program can compile it once.
+template <class S>
+class Overlaps {
+ public:
+  void add(const Shape& shape, const Pose& pose, std::uint32_t group, std::uint32_t collides_with, Index set, Index block, bool moves);
+  /// The first pair once all are added, then the next; none is left where it is false.
+  SolidPair next();
+
+ private:
+  Array<S> solids_;
+  std::size_t i_ = 0, j_ = 0;
+};
+
+template <class S>
+void Overlaps<S>::add(const Shape& shape, const Pose& pose, std::uint32_t group, std::uint32_t collides_with, Index set, Index block, bool moves) {
+  if (!shape.is_kept() && is_finite(pose.position))
+    solids_.push_back({shape, pose, outer_radius(shape), group, collides_with, set, block, moves});
+}
+template <class S>
+SolidPair Overlaps<S>::next() {
+  if (j_ == 0)
+    sort(solids_.data(), solids_.data() + solids_.size(), [](const S& a, const S& b) {
+      return a.is_endless() != b.is_endless() ? a.is_endless() : a.first() < b.first();
+    });
+  for (; i_ < solids_.size(); ++i_, j_ = i_)
+    while (++j_ < solids_.size()) {
+      const S &a = solids_[i_], &b = solids_[j_];
       if (!a.is_endless() && b.first() > a.pose.position[0] + a.radius) break;
-      if (overlap(a, b) && !are_joined(a, b)) return {a.set, a.block, b.set, b.block};
+      if (overlap(a, b)) return {a.set, a.block, b.set, b.block};
     }
   return {};
 }

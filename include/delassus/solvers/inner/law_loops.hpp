@@ -342,21 +342,18 @@ struct LawLoops {
 template <class Law, class T>
 constinit const LawTable<T> LawLoops<Law, T>::table = make_table();
 
+/// The table of a law: a function, which a program can compile once without reading the class of each law in each of its files.
+template <class Law, class T>
+const LawTable<T>* law_table() {
+  return &LawLoops<Law, T>::table;
+}
+
 /// What Newton's method asks of a law: apart from the loops, since naming a table compiles all of it.
 template <class Law, class T>
-struct LawTangents {
-  using Items = LawItems<Law, T>;
-  static constexpr int R = Law::rows;
-
-  static void tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope);
-  static void convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
-                             double* slope);
-};
-
-template <class Law, class T>
-void LawTangents<Law, T>::tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
+void law_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double* lambda, double* slope) {
+  [[maybe_unused]] constexpr int R = Law::rows;
   if constexpr (refines<Law>(refine::tangent)) {
-    const Items of(pool);
+    const LawItems<Law, T> of(pool);
     Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
     for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
     Mat<R, R> S;
@@ -368,9 +365,10 @@ void LawTangents<Law, T>::tangent(const PoolView<T>& pool, Index i, const double
   }
 }
 template <class Law, class T>
-void LawTangents<Law, T>::convex_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
+void convex_law_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
                            double* slope) {
-  const Items of(pool);
+  [[maybe_unused]] constexpr int R = Law::rows;
+  const LawItems<Law, T> of(pool);
   Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
   for (int k = 0; k < R; ++k) c.W(k, k) = w[k];
   if constexpr (refines<Law>(refine::convex_tangent)) {
@@ -378,7 +376,7 @@ void LawTangents<Law, T>::convex_tangent(const PoolView<T>& pool, Index i, const
     for (int k = 0; k < R * R; ++k) slope[k] = S.data()[k];
     store(c.lambda, lambda);
   } else {
-    tangent(pool, i, w, d, lambda, slope);
+    law_tangent<Law>(pool, i, w, d, lambda, slope);
   }
 }
 

@@ -1,0 +1,24 @@
+/// The plane of a half-space.
+#pragma once
+
+#include <delassus/geometry/shape.hpp>
+#include <delassus/math/linear.hpp>
+#include <delassus/math/pose.hpp>
+
+namespace delassus {
+
+/// A plane in the frame of A: the solid is normal · x ≤ offset.
+struct Plane {
+  Vec3 normal;
+  double offset;
+};
+
+namespace inner {
+
+inline Plane plane_of(const Shape& s, const Pose& pose) {
+  const Vec3 n = pose.rotation * Vec3(s.size[0], s.size[1], s.size[2]);
+  return {n, s.size[3] + dot(n, pose.position)};
+}
+
+}  // namespace inner
+}  // namespace delassus
