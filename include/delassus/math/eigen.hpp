@@ -1,9 +1,8 @@
 /// Eigen's quaternions and small factorizations, without the parts of their headers that nothing here names.
 ///
-/// `<Eigen/Geometry>` reads the singular values, the transforms and more with the quaternions. A compiler
-/// keeps all of it in memory, in each file. What is left out here comes with Eigen's own header: a file that
-/// uses `Eigen::Isometry3d` includes
-/// `<Eigen/Geometry>`, before this library or after it.
+/// `<Eigen/Geometry>` reads singular values, transforms and more with the quaternions, and a compiler keeps all of it in
+/// memory, in each file. What is left out here comes with Eigen's own header: a file that uses `Eigen::Isometry3d`
+/// includes `<Eigen/Geometry>`, before this library or after it.
 #pragma once
 
 #include <delassus/core/cmath.hpp>

@@ -366,7 +366,7 @@ void law_tangent(const PoolView<T>& pool, Index i, const double* w, const double
 }
 template <class Law, class T>
 void convex_law_tangent(const PoolView<T>& pool, Index i, const double* w, const double* d, double slip, double* lambda,
-                           double* slope) {
+                        double* slope) {
   [[maybe_unused]] constexpr int R = Law::rows;
   const LawItems<Law, T> of(pool);
   Local<R> c{zero<Mat<R, R>>(), load<R>(d), load<R>(lambda)};
