@@ -23,6 +23,7 @@ from pathlib import Path
 
 INCLUDE = re.compile(r"^\s*#\s*include\s*<(delassus/[^>]+)>", re.MULTILINE)
 EIGEN = re.compile(r"^\s*#\s*include\s*<(Eigen/[^>]+)>", re.MULTILINE)
+PART_OF_EIGEN = "delassus/math/eigen.hpp"  # leaves parts of Eigen out, which a head start must not bring
 # The warnings of cmake/programs.cmake, as errors: a user may compile with all of them.
 FLAGS = ["-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wnon-virtual-dtor",
          "-Woverloaded-virtual", "-Werror", "-Wno-missing-field-initializers"]
@@ -38,9 +39,12 @@ def closure(include, header, seen):
 
 
 def eigen_of(include, header):
-    """The headers of Eigen that `header` reaches, sorted."""
-    texts = [(include / part).read_text(encoding="utf-8") for part in closure(include, header, set())]
-    return tuple(sorted({name for text in texts for name in EIGEN.findall(text)}))
+    """The headers of Eigen that `header` reaches, or of ours that reads a part of it, sorted."""
+    if header == PART_OF_EIGEN:
+        return ()
+    parts = closure(include, header, set())
+    texts = [(include / part).read_text(encoding="utf-8") for part in parts - {PART_OF_EIGEN}]
+    return tuple(sorted({name for text in texts for name in EIGEN.findall(text)} | parts & {PART_OF_EIGEN}))
 
 
 def stamp_of(include, header, command):
@@ -100,7 +104,7 @@ def check(include, compilers, system, absent, cache, jobs, only=None):
         command = [compiler, *FLAGS, f"-I{include}", *(f"-isystem{d}" for d in system),
                    f"-DDELASSUS_CHECKED_BY_{hashlib.sha256(version.encode()).hexdigest()[:8]}"]
         if compiler != compilers[0] and "clang" in version and system:
-            head_start = precompiled(folder.name, command, version, ["Eigen/Core", "Eigen/Geometry", "Eigen/Cholesky"])
+            head_start = precompiled(folder.name, command, version, [PART_OF_EIGEN])
             tasks += [(compiler, headers[k:k + 16], command, head_start) for k in range(0, len(headers), 16)]
             continue
         by_eigen = {}
