@@ -1,5 +1,6 @@
 // The midpoint rule by Newton's method on mechanisms: a closed loop with a dependent row, and what all joints
 // keep.
+#include <delassus/stabilisation/position_projection.hpp>
 #include <delassus/steppers/newton_midpoint.hpp>
 
 #include "convergence_order.hpp"
@@ -199,6 +200,20 @@ TEST_CASE("two free bodies on a joint keep energy, momentum and their joint") {
   keeps_energy<Hinge>("hinge");
   keeps_energy<Slider>("slider");
   keeps_energy<Universal>("universal");
+}
+
+// Spun about the hinge in its centre nothing is to be solved, in no step: 59 rad/s for 0.1 s.
+TEST_CASE("where the midpoint rule solves nothing projection has nothing to close") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}}, NewtonMidpoint{}, PositionProjection{}};
+  auto& set = bodies<RigidBodies>(loop.world());
+  set.gravity.setZero();
+  const auto body =
+      set.add({.position = {0.1, 0, 0}, .angular_velocity = {0, 0, 59}, .mass = 1.0, .shape = Box{0.2, 0.2, 0.2}});
+  loop.add(Hinge::Item{world_anchor({0.1, 0, 0}), anchor(set, body, {0, 0, 0})});
+  for (int n = 0; n < 100; ++n) loop.step(1e-3);
+  CHECK(set.position(body) == Vec3(0.1, 0, 0));
+  const Quat turned = exponential<double>(Vec3(0, 0, 5.9));
+  CHECK(set.orientation(body).angularDistance(turned) < 2e-3);  // (h ω)³/12 a step
 }
 
 }  // namespace newton_midpoint_mechanisms_tests

@@ -32,7 +32,7 @@ struct Limit : inner::Stops, OnAxis<Coordinate> {
     double restitution = 0;  ///< e in [0, 1]
     double margin = Coordinate::limit_margin;  ///< rad or m
     double position = 0;     ///< q at the start of the last step
-    double way = 0;          ///< what the last step added to it
+    double way = 0;          ///< what the last step that moved it added to it
   };
 
   static void check(const Item& item) {
@@ -47,7 +47,7 @@ struct Limit : inner::Stops, OnAxis<Coordinate> {
   void follow(Item& item, const auto& world) const {
     const double before = item.position;
     OnAxis<Coordinate>::follow(item, world);
-    item.way = item.position - before;
+    if (item.position != before) item.way = item.position - before;  // else it is looked at again in one place
   }
 
   void linearize(const Item& item, const auto& world, auto row) const {

@@ -11,9 +11,12 @@
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/middle_contacts.hpp>
+#include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/position_laws.hpp>
 #include <delassus/step/row_types.hpp>
 #include <delassus/step/solve.hpp>
+
+#include <type_traits>
 
 namespace delassus {
 
@@ -152,10 +155,18 @@ struct ProjectionState {
 };
 
 /// What position projection changes: bodies are displaced as well as moved. Rows of the midpoint rule cannot say what
-/// is open where the step ends; there the gaps are those of the end.
+/// is open where the step ends; there the gaps are those of the end. An integrator that moves at once closes its joints itself.
 template <class Base>
 struct ProjectionStages : Base {
   static void advance(auto& step) {
+    if constexpr (MovesAtOnce<std::remove_cvref_t<decltype(step.integrator())>>)
+      Base::advance(step);
+    else
+      advance_and_displace(step);
+  }
+
+ private:
+  static void advance_and_displace(auto& step) {
     constexpr bool sees_end = requires { step.template state<role::Integrator>().at_start; };
     if constexpr (sees_end) {
       Base::advance(step);
