@@ -9,8 +9,8 @@ namespace delassus {
 
 /// A plane in the frame of A: the solid is normal · x ≤ offset.
 struct Plane {
-  Vec3 normal;
-  double offset;
+  Vec3 normal;    ///< out of the solid, of length 1
+  double offset;  ///< m, along the normal
 };
 
 namespace inner {

@@ -80,6 +80,7 @@ class UnassembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
     return *reinterpret_cast<const Mat<R_of<p>, R_of<p>, T>*>(diagonal_[p].data() +
                                                               std::ptrdiff_t(R_of<p> * R_of<p>) * i);
   }
+  /// (d + W λ)_i of item i of pool p, m/s and rad/s: from y where W is no matrix.
   template <int p>
   Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     if (is_matrix_) return matrix_.template residual<p>(rows, i);

@@ -18,6 +18,12 @@ namespace delassus::inner {
 template <class T>
 class AlikeBodies {
  public:
+  /// One a thread, which keeps its room: a step in which sweeps stall allocates nothing when warm.
+  static AlikeBodies& of_this_thread() {
+    static thread_local AlikeBodies room;
+    return room;
+  }
+
   [[gnu::always_inline]] AlikeBodies() {}
   AlikeBodies(const AlikeBodies&) = delete;
   AlikeBodies& operator=(const AlikeBodies&) = delete;
@@ -52,6 +58,8 @@ class AlikeBodies {
 
   /// Room for all, and where the bodies of each set begin in it.
   [[gnu::always_inline]] bool count(const Island<T>& whole) {
+    pools_.clear(), spans_.clear();
+    most_sets_ = 0;
     for (const Span<T>& span : whole) {
       if (span.pool->form == FormOfW::functions) return false;
       most_sets_ = std::max(most_sets_, std::size_t(span.pool->sets));

@@ -183,7 +183,7 @@ class Contradiction {
   }
 
   const Island<T>& whole_;
-  AlikeBodies<T> alike_;
+  AlikeBodies<T>& alike_ = AlikeBodies<T>::of_this_thread();
   Island<T> island_;
   bool has_two_sided_alone_ = false;  ///< z = 0 on lower and upper rows
 };
