@@ -46,6 +46,8 @@ struct ErrorControlled {
     inner::expect_positive("ErrorControlled: max_step", max_step, "s");
     inner::expect_not_negative("ErrorControlled: output_step", output_step, "s");
     DELASSUS_EXPECT(min_step <= max_step, "ErrorControlled: min_step = " + inner::text(min_step) + " s is above max_step = " + inner::text(max_step) + " s");
+    DELASSUS_EXPECT(output_step == 0 || output_step >= min_step,
+                    "ErrorControlled: output_step = " + inner::text(output_step) + " s is below min_step = " + inner::text(min_step) + " s; take 0 for no outputs");
   }
   void run(auto& step) const { step.template state<role::Scheme>().run(step, *this); }
 };

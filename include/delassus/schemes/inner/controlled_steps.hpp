@@ -3,6 +3,9 @@
 
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
+#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/soft.hpp>
 #include <delassus/rows/theta.hpp>
 #include <delassus/schemes/error_report.hpp>
 #include <delassus/schemes/inner/arc_order.hpp>
@@ -13,12 +16,15 @@
 #include <delassus/schemes/inner/pushing_rows.hpp>
 #include <delassus/schemes/inner/step_copy.hpp>
 #include <delassus/schemes/inner/step_size_control.hpp>
+#include <delassus/step/law_rows.hpp>
+#include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/plain_step.hpp>
 #include <delassus/step/step_report.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -49,7 +55,7 @@ class ControlledSteps {
     is_kept_ = false;
     if (!control_.has_begun()) control_.begin(std::min({1e-3, asked.max_step, H}));
     for (double left = H; left > 0;) {
-      const double now = control_.propose(asked.max_step, asked.min_step, std::min(left, to_output(asked.output_step)));
+      const double now = control_.propose(asked.max_step, asked.min_step, reach(left, asked.output_step));
       if (!attempt_or_leave(step, asked, now, now == left)) continue;
       left = now == left ? 0 : end - (t_ + now);
       t_ = left > 0 ? t_ + now : end;
@@ -109,7 +115,7 @@ class ControlledSteps {
     const bool pushes = !(of_first_.are_none() && of_second_.are_none() && of_whole_.are_none());
     const bool is_smooth = !pushes && all_move_by_block(step.world());
     const bool is_arc = pushes && !change.is_any && !change.is_shift && all_move_by_block(step.world());
-    int known = is_smooth ? order : 0;
+    int known = !is_smooth ? 0 : any_spring(step) ? 1 : order;
     EndError error = end_of_whole_.error(step.world(), lengths_, change.is_impact ? now : asked.horizon);
     if constexpr (has_arcs)
       if (is_arc) error = arc_.error(step, end_of_whole_, lengths_, asked.horizon, measures, error), known = arc_.order();
@@ -250,11 +256,11 @@ class ControlledSteps {
     });
   }
 
-  /// s to the next multiple of `output` after t.
-  double to_output(double output) const {
-    if (!(output > 0)) return std::numeric_limits<double>::infinity();
+  /// s to the next multiple of `output` after t, or to the end where that is the same but for rounding.
+  double reach(double left, double output) const {
+    if (!(output > 0)) return left;
     const double next = (std::floor(t_ / output * (1 + 1e-12) + 1e-9) + 1) * output;
-    return next - t_;
+    return next - t_ < left - 1e-9 * output ? next - t_ : left;
   }
 
   void check(auto& step, const auto& asked) const {
@@ -262,14 +268,31 @@ class ControlledSteps {
       DELASSUS_EXPECT(asked.accuracy >= 1e-3,
                       "ErrorControlled: accuracy = " + text(asked.accuracy) +
                           " is too fine for an integrator of first order; take ImplicitMidpoint, or NewtonMidpoint where nothing pushes");
+    // Places and orientations of a world in float are known to 1e-7 of themselves, and an error is a difference of them.
+    if constexpr (std::is_same_v<typename World::Scalar, float>)
+      DELASSUS_EXPECT(asked.accuracy >= 1e-5, "ErrorControlled: accuracy = " + text(asked.accuracy) + " is too fine for bodies in float; take 1e-5 or more, or bodies in double");
     if constexpr (Laws::has_contacts)
       if constexpr (requires { step.solver().tolerance; }) {
         // What a solve leaves of the velocity, tolerance g h, moves a body by tolerance g h² in a step: a tenth of the error at most.
-        const double most = asked.accuracy * lengths_.least() / (20 * greatest_gravity(step.world()) * asked.max_step * asked.max_step);
-        DELASSUS_EXPECT(double(step.solver().tolerance) <= most,
-                        "ErrorControlled: the solver's tolerance = " + text(double(step.solver().tolerance)) + " is too loose for accuracy = " +
-                            text(asked.accuracy) + " in steps of up to " + text(asked.max_step) + " s; take " + text(most) + " or less, or a smaller max_step");
+        const double way = asked.accuracy * lengths_.least() / (20 * greatest_gravity(step.world())), tolerance = double(step.solver().tolerance);
+        const double most = way / asked.max_step / asked.max_step;
+        DELASSUS_EXPECT(tolerance <= most, "ErrorControlled: the solver's tolerance = " + text(tolerance) + " is too loose for accuracy = " +
+                                               text(asked.accuracy) + " in steps of up to " + text(asked.max_step) + " s; take " +
+                                               (most >= 1e-15 ? text(most) + " or less, or " : std::string()) + "max_step = " +
+                                               text(std::sqrt(way / tolerance)) + " s or less");
       }
+  }
+  /// Springs of joints are taken at the end of a step, and are of first order whatever the integrator's is.
+  static bool any_spring(const auto& step) {
+    bool any = false;
+    if constexpr (Laws::pool_count > 0 && !MovesAtOnce<typename P::Integrator>)
+      each_pool(step.rows, [&](auto p, const auto& pool) {
+        using Law = std::remove_cvref_t<decltype(step.laws().template pool<p>().law)>;
+        if constexpr (!has_mean_springs<Law>)
+          for (Index i = 0; i < pool.items() && !any; ++i)
+            for (int k = 0; k < Law::rows; ++k) any = any || is_spring(pool.stiffness[i][k], pool.damping[i][k]);
+      });
+    return any;
   }
   /// Springs and elements couple bodies beyond the order of the integrator: there the halves are taken.
   static bool all_move_by_block(const World& world) {
