@@ -60,7 +60,7 @@ TEST_CASE("an output at the end of a host's step is no step of its own") {
   }
 }
 
-TEST_CASE("numbers of ErrorControlled that cannot be are one sentence") {
+TEST_CASE("outputs, steps and accuracies that no step can keep are refused") {
   const auto refuses = []<class Bodies>(Bodies, ErrorControlled scheme, const char* what) {
     CHECK_THROWS_WITH(thrown<Bodies>(scheme).step(0.01), Catch::Contains(what));
   };
