@@ -60,6 +60,7 @@ bool simulate(const Model& model, const Start& start, const Options& options, co
   ControlTable control = options.control.empty() ? ControlTable() : ControlTable(options.control, motion->machine);
   const double h = options.caller_step();
   const long steps = std::max(1l, std::lround(options.seconds / h)), every = std::max(1l, steps / 10);
+  double gap = 0, overlap = 0;  // m, the largest of all steps
   long unconverged = 0, held = 0, inner_steps = 0, at_floor = 0;
   const auto begin = std::chrono::steady_clock::now();
   if (!options.is_quiet) print_head(asked.accuracy > 0);
@@ -68,6 +69,7 @@ bool simulate(const Model& model, const Start& start, const Options& options, co
     const StepReport report = motion->step(h);
     unconverged += report.status != Status::converged && report.status != Status::stalled;
     held += report.quarantined;
+    gap = std::max(gap, double(report.max_joint_violation)), overlap = std::max(overlap, double(report.max_penetration));
     inner_steps += motion->error_report().steps, at_floor += motion->error_report().at_floor;
     const double kinetic = kinetic_energy(motion->set());
     rows.take(*motion, report, kinetic);
@@ -88,7 +90,8 @@ bool simulate(const Model& model, const Start& start, const Options& options, co
     if (!report.causes.empty()) std::puts(""), print(step_table(report));
     std::puts("");
   }
-  std::printf("%s: %s, %ld steps, %ld not converged, %.0f µs a step\n", name.c_str(), size_of(model, motion->machine).c_str(), steps, unconverged, 1e6 * seconds / double(steps));
+  std::printf("%s: %s, %ld steps, %ld not converged, %.0f µs a step, gaps of joints up to %.2g m, overlaps up to %.2g m\n", name.c_str(), size_of(model, motion->machine).c_str(), steps, unconverged,
+              1e6 * seconds / double(steps), gap, overlap);
   if (at_floor > 0) std::printf("%s: %ld inner steps were as small as they may be and missed the accuracy\n", name.c_str(), at_floor);
   if (held > 0) std::printf("%s: bodies were held since their motion was not finite\n", name.c_str());
   std::printf("%s.html\n%s.csv\n", base.c_str(), base.c_str());

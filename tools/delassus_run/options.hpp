@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ struct Options {
   double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = -1, budget = 1e-3, frames = 30;
   int threads = 1;
   Base base = Base::as_file;
-  Integration integration = Integration::euler;
+  std::optional<Integration> integration;  ///< `euler`, or `midpoint` under an accuracy
   bool has_ground = false, lists_all = false, is_strict = false, is_quiet = false, audits = false, studies = false, writes_vtk = false, pushes_apart = false;
 
   static constexpr double most_steps = 1e7;
@@ -29,7 +30,7 @@ struct Options {
   /// Which loop it is, and its numbers. A tolerance that nobody said is fine enough for the accuracy.
   Asked asked() const {
     const double usual = accuracy > 0 ? std::min(1e-6, 1e-3 * accuracy) : 1e-6;
-    return {.integration = integration, .accuracy = accuracy, .audits = audits, .tolerance = tolerance > 0 ? tolerance : usual, .friction = friction, .longest_step = caller_step(), .threads = threads};
+    return {.integration = integration.value_or(Integration::euler), .accuracy = accuracy, .audits = audits, .tolerance = tolerance > 0 ? tolerance : usual, .friction = friction, .longest_step = caller_step(), .threads = threads};
   }
   double caller_step() const { return accuracy > 0 ? std::min(step_under_control, seconds) : step; }
 };
@@ -45,6 +46,19 @@ inline CLI::Validator number_in(double least, double most, const std::string& wo
       "NUMBER");
 }
 
+/// One of the words of a map, which becomes what it stands for.
+template <class T>
+CLI::Validator one_of(std::map<std::string, T> words, const std::string& which) {
+  return CLI::Validator(
+      [=](std::string& word) {
+        const auto found = words.find(word);
+        if (found == words.end()) return "'" + word + "' is not " + which;
+        word = std::to_string(int(found->second));
+        return std::string();
+      },
+      "WORD");
+}
+
 /// Reads them; a wrong word ends the program with a sentence.
 inline void describe(CLI::App& app, Options& options) {
   const std::map<std::string, Base> bases{{"free", Base::free}, {"fixed", Base::fixed}};
@@ -55,10 +69,10 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_option("--accuracy", options.accuracy, "error of an inner step, a share of a body's size: steps follow it, in place of --dt")
       ->check(number_in(1e-9, 0.1, "an accuracy from 1e-9 to 0.1"))
       ->excludes(step);
-  app.add_option("--integrator", options.integration, "euler or midpoint, of second order; --accuracy takes midpoint")->transform(CLI::CheckedTransformer(integrations));
+  app.add_option("--integrator", options.integration, "euler or midpoint, of second order; --accuracy takes midpoint")->transform(one_of(integrations, "euler or midpoint"));
   app.add_option("--tolerance", options.tolerance, "of the solver, a share of the speeds; 1e-6, or what the accuracy takes")->check(number_in(1e-15, 1, "a tolerance from 1e-15 to 1"));
   app.add_option("--friction", options.friction, "of all contacts; else what the file says, and 0.8 where it says nothing")->check(number_in(0, 1e6, "a coefficient from 0 to 1e6"));
-  app.add_option("--base", options.base, "free or fixed: whether something holds the root; as the file says if not said")->transform(CLI::CheckedTransformer(bases));
+  app.add_option("--base", options.base, "free or fixed: whether something holds the root; as the file says if not said")->transform(one_of(bases, "free or fixed"));
   app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
   app.add_flag("--push-apart", options.pushes_apart, "links of one tree collide even where they are in each other at the start");
   app.add_option("--key", options.key, "keyframe of the file to start from");
@@ -84,6 +98,8 @@ inline void check(const Options& options) {
                   "--dt " + inner::text(options.step) + " is longer than --seconds " + inner::text(options.seconds));
   DELASSUS_EXPECT(steps <= Options::most_steps, "--seconds " + inner::text(options.seconds) + " are " + inner::text(steps) + " steps of " +
                                                     inner::text(options.caller_step()) + " s; more than 1e7 are refused");
+  DELASSUS_EXPECT(options.accuracy == 0 || options.integration != Integration::euler,
+                  "--accuracy takes an integrator of second order; take --integrator euler out, or write midpoint");
   DELASSUS_EXPECT(!options.studies || options.control.empty(), "--study compares runs with the controls of --key; take --control out");
   for (const std::string& package : options.packages)
     DELASSUS_EXPECT(package.find('=') != 0 && package.find('=') != package.npos, "--package " + package + ": write NAME=FOLDER");

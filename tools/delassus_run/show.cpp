@@ -4,6 +4,9 @@
 #include <delassus/io/csv.hpp>
 #include <delassus/model/inner/add_shapes.hpp>
 
+#include <cmath>
+#include <numbers>
+
 namespace delassus_run {
 
 namespace {
@@ -81,7 +84,7 @@ Rows::Rows(std::string path, const Model& model, const Motion& motion) : path_(s
     const model::JointKind kind = model.joints[j].kind;
     const model::Axis& axis = motion.machine.axes[j];
     if ((kind != model::JointKind::hinge && kind != model::JointKind::slide) || (axis.a.is_world() && axis.b.is_world())) continue;
-    joints_.push_back(Index(j));
+    joints_.push_back(Index(j)), is_turn_.push_back(kind == model::JointKind::hinge), last_.push_back(position_of(motion.world(), motion.machine, Index(j)));
     column(model.joints[j].name + (kind == model::JointKind::hinge ? " (rad)" : " (m)"));
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -115,7 +118,12 @@ void Rows::number(double value, int digits) {
 void Rows::take(const Motion& motion, const StepReport& report, double kinetic) {
   number(motion.time(), 9), number(kinetic, 9), number(double(motion.contacts().size()), 9);
   for (const double x : {report.residual, report.max_joint_violation, report.max_penetration}) number(x, 3);
-  for (const Index j : joints_) number(position_of(motion.world(), motion.machine, j), 12);
+  for (std::size_t k = 0; k < joints_.size(); ++k) {
+    double q = position_of(motion.world(), motion.machine, joints_[k]);
+    // An angle goes on through π, as limits and springs count it.
+    if (is_turn_[k]) q += 2 * std::numbers::pi * std::round((last_[k] - q) / (2 * std::numbers::pi));
+    number(last_[k] = q, 12);
+  }
   for (const Index b : roots_) {
     const Pose pose = pose_of(motion.set(), motion.machine, b);
     const auto body = motion.machine.parts[std::size_t(b)].body;

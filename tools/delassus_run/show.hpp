@@ -53,6 +53,8 @@ class Rows {
   std::string path_, line_;
   std::FILE* file_ = nullptr;
   std::vector<Index> joints_;  ///< hinges and slides that move
+  std::vector<char> is_turn_;
+  std::vector<double> last_;     ///< of `joints_`, rad or m, all turns counted
   std::vector<Index> roots_;   ///< links with six freedoms
 };
 

@@ -61,13 +61,13 @@ Start::Start(const Model& model, const Options& options) : model_(model), base_(
   find_numbers(options);
   if (options.has_ground) find_floor(options);
   const std::unique_ptr<Motion> first = put({});
-  tell_limits(*first);
+  tell_limits(*first), tell_fall(*first);
   find_overlaps(*first, options);
 }
 
 /// Those of the joints that move on this base; a root that the base frees stands where the tree has it.
 void Start::find_numbers(const Options& options) {
-  if (options.key.empty()) return;
+  if (options.key.empty()) return find_allowed();
   const model::Keyframe& key = keyframe(model_, options.key);
   key_ = &key;
   const JointSpace space(model_, base_), file(model_, Base::as_file);
@@ -86,6 +86,35 @@ void Start::find_numbers(const Options& options) {
     for (int k = 0; k < positions && !key.q.empty(); ++k) q_[std::size_t(q + k)] = key.q[std::size_t(from_q + k)];
     for (int k = 0; k < rates && !key.v.empty(); ++k) v_[std::size_t(v + k)] = key.v[std::size_t(from_v + k)];
   }
+}
+
+/// A joint whose limits leave out where the file has it starts at the nearest of them: pushed there, it would start with a speed.
+void Start::find_allowed() {
+  JointSpace space(model_, base_);
+  std::vector<double> q(std::size_t(space.q_size()));
+  space.reference(q);
+  bool any = false;
+  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    const model::Joint& joint = model_.joints[j];
+    const Index k = space.q_of(Index(j));
+    if ((joint.kind != model::JointKind::hinge && joint.kind != model::JointKind::slide) || !joint.is_limited || k < 0 || is_tied(Index(j))) continue;
+    double& at = q[std::size_t(k)];
+    const double asked = at;
+    at = std::clamp(at, joint.lower, joint.upper);
+    if (at == asked) continue;
+    any = true;
+    notes.push_back("joint '" + joint.name + "' starts at its limit " + inner::text(at) + (joint.kind == model::JointKind::hinge ? " rad" : " m") + ", since the file's " +
+                    inner::text(asked) + " is outside of " + inner::text(joint.lower) + " and " + inner::text(joint.upper));
+  }
+  if (!any) return;
+  q_ = std::move(q);
+  v_.assign(std::size_t(space.v_size()), 0);
+}
+
+/// Whether something else but its own axis says where a joint is: then it stays where the file has it.
+bool Start::is_tied(Index joint) const {
+  return !model_.connects.empty() || !model_.welds.empty() ||
+         std::any_of(model_.couplings.begin(), model_.couplings.end(), [&](const model::Coupling& c) { return c.joint == joint || c.other == joint; });
 }
 
 /// The pose that sets the machine on z = 0, unless the file has a floor.
@@ -135,6 +164,20 @@ void Start::tell_limits(const Motion& motion) {
     if (q >= joint.lower - slack && q <= joint.upper + slack) continue;
     notes.push_back("joint '" + joint.name + "' starts at " + inner::text(q) + (joint.kind == model::JointKind::hinge ? " rad" : " m") + ", outside of its limits " +
                     inner::text(joint.lower) + " and " + inner::text(joint.upper) + ", and is pushed back");
+  }
+}
+
+/// A robot whose base is free, and nothing to stand on.
+void Start::tell_fall(const Motion& motion) {
+  const bool has_something = adds_floor_ || std::any_of(model_.geometries.begin(), model_.geometries.end(),
+                                                        [&](const model::Geometry& geometry) { return geometry.body < 0 && collides(model_, geometry); });
+  if (has_something || is_zero(model_.gravity)) return;
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+    const model::Body& body = model_.bodies[b];
+    const bool is_free = body.joints.empty() || (body.joints.size() == 1 && model_.joints[std::size_t(body.joints[0])].kind == model::JointKind::free);
+    if (body.parent >= 0 || body.is_kinematic || motion.machine.parts[b].is_world || !is_free) continue;
+    notes.push_back("nothing holds '" + body.name + "' and there is no floor: it falls; --base fixed holds it, --ground adds a floor");
+    return;
   }
 }
 

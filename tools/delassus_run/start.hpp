@@ -27,8 +27,11 @@ class Start {
 
  private:
   void find_numbers(const Options& options);
+  void find_allowed();
+  bool is_tied(Index joint) const;
   void find_floor(const Options& options);
   void tell_limits(const Motion& motion);
+  void tell_fall(const Motion& motion);
   void find_overlaps(Motion& motion, const Options& options);
 
   Model model_;

@@ -118,7 +118,9 @@ void study_of(const Model& model, const Start& start, const Options& options, co
   const double horizon = study.horizon(0, options.budget);
   if (!best) {
     std::printf("%s: no run is known to be within %s", plan.name.c_str(), budget.c_str());
-    if (horizon < plan.duration)
+    if (!(horizon > 0))
+      std::printf("; the references do not agree to it in any part of the run: a larger --budget");
+    else if (horizon < plan.duration)
       std::printf("; the references agree to it up to %s s only: study fewer --seconds, or a larger --budget", number(horizon).c_str());
     std::puts("");
   } else {
