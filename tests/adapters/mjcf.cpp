@@ -125,7 +125,7 @@ TEST_CASE("contact numbers of geoms: friction, freedoms, filters, priority, the 
   const Model m = read_text(
       "<worldbody><geom type='box' size='1 1 1' friction='.5 .1' condim='6' contype='2' conaffinity='-1' "
       "priority='3' "
-      "surfacevel='1 2 3 4 5 6'/><geom size='1' condim='1'/></worldbody>");
+      "surfacevel='1 2 3 4 5 6'/><geom size='1' condim='1' contype='-2147483648'/></worldbody>");
   const model::Geometry& g = m.geometries[0];
   CHECK(g.friction == 0.5);
   CHECK(g.spinning_friction == 0.1);
@@ -137,6 +137,7 @@ TEST_CASE("contact numbers of geoms: friction, freedoms, filters, priority, the 
   CHECK(g.surface_velocity == Vec3(1, 2, 3));
   CHECK(g.surface_spin == Vec3(4, 5, 6));
   CHECK(m.geometries[1].contact_freedoms == 1);
+  CHECK(m.geometries[1].type == 0x80000000u);  // the last bit alone
 }
 
 TEST_CASE("flags leave out what they switch off") {

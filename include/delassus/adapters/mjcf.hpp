@@ -18,7 +18,7 @@ struct MjcfOptions {
   /// file.
   std::vector<std::string> files;
   std::int64_t most_elements =
-      200'000;  ///< that a model may have, with the copies of `replicate` and `attach`
+      200'000;  ///< that a model may have, with the copies of `replicate` and `attach`; of texts 50 bytes each
 };
 
 /// The machine that a text describes. `name` stands in what is thrown, with the line, and files that the text

@@ -50,8 +50,8 @@ inline std::string folder_of(const std::string& path) {
 class Document {
  public:
   /// Pre: `text` is what the file holds.
-  Document(const std::string& text, const std::string& path, const Folders& folders)
-      : folders_(folders), folder_(folder_of(path)) {
+  Document(const std::string& text, const std::string& path, const Folders& folders, Skipped& skipped, Budget& budget)
+      : folders_(folders), folder_(folder_of(path)), skipped_(skipped), budget_(budget) {
     const Element root = parse(text, path);
     if (root.name() != "mujoco")
       root.refuse("the first element is '" + std::string(root.name()) + "'; MJCF begins with 'mujoco'");
@@ -94,6 +94,7 @@ class Document {
   static constexpr int deepest = 500;
 
   Element parse(const std::string& text, const std::string& path) {
+    budget_.take_text(path, text);
     files_.push_back(std::make_unique<File>());
     File& file = *files_.back();
     file.path = path;
@@ -107,7 +108,20 @@ class Document {
     }
     const auto* root = file.xml.RootElement();
     DELASSUS_EXPECT(root != nullptr, path + ":1: there is no element");
+    if (const auto* second = root->NextSiblingElement())
+      Element(second, &file)
+          .refuse("an element '" + std::string(second->Name()).substr(0, 40) + "' stands beside '" + root->Name() +
+                  "'; a file has one that holds all others");
     return {root, &file};
+  }
+
+  /// Names what stands between elements and is none: an element that has lost its `<` becomes a text.
+  void skip_texts(const Element& of) {
+    for (const auto* node = of.xml()->FirstChild(); node; node = node->NextSibling())
+      if (node->ToText() || node->ToUnknown())
+        skipped_.add(of, node->GetLineNum(),
+                     "'" + beginning(node->Value()) + "' in " + std::string(of.name()) +
+                         " is no element, and is passed over");
   }
 
   /// Reads what is included, and refuses what is not known. A section is the name under which children are
@@ -115,6 +129,7 @@ class Document {
   void scan(const Element& parent, std::string_view section, int depth) {
     if (depth > deepest)
       parent.refuse("elements lie within each other deeper than " + std::to_string(deepest));
+    skip_texts(parent);
     for (const auto* xml = parent.xml()->FirstChildElement(); xml; xml = xml->NextSiblingElement()) {
       const Element e(xml, parent.file());
       if (!check_known(section, e)) {
@@ -160,6 +175,8 @@ class Document {
 
   Folders folders_;
   std::string folder_;
+  Skipped& skipped_;
+  Budget& budget_;
   std::vector<std::unique_ptr<File>> files_;
   std::vector<std::string> included_;
   std::map<const tinyxml2::XMLElement*, const File*> includes_;

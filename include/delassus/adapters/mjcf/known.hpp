@@ -201,11 +201,12 @@ inline bool is_name(std::string_view attribute) {
 inline void check_numbers(const Element& e) {
   for (const auto* a = e.xml()->FirstAttribute(); a; a = a->Next()) {
     if (is_name(a->Name())) continue;
-    for (const std::string_view word : words(a->Value())) {
+    for_each_word(a->Value(), [&](std::string_view word) {
       double value = 0;
-      if (!parse_number(word, value)) break;
+      if (!parse_number(word, value)) return false;
       e.check_size(a->Name(), word, value);
-    }
+      return true;
+    });
   }
 }
 

@@ -58,7 +58,7 @@ inline void read_asset(Reading& r, const Element& e, Source& source) {
 /// Parses a document and reads what comes before its bodies.
 inline Source& open_source(Reading& r, const std::string& text, const std::string& path) {
   r.open_models.push_back(Document::canonical(path));
-  r.sources.push_back(std::make_unique<Source>(std::make_unique<Document>(text, path, r.folders)));
+  r.sources.push_back(std::make_unique<Source>(std::make_unique<Document>(text, path, r.folders, r.skipped, r.budget)));
   Source& source = *r.sources.back();
   const Document& document = *source.document;
   document.for_each_section("compiler", [&](const Element& e) { read(e, source.compiler, r.skipped); });

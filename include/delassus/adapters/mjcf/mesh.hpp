@@ -56,13 +56,14 @@ inline RawMesh mesh_of_file(const Element& e, const std::string& path) {
            "'; OBJ and STL are read, so convert it to one of them");
 }
 
-inline RawMesh inline_mesh(const Element& e) {
+inline RawMesh inline_mesh(const Element& e, const Budget& budget) {
   RawMesh mesh;
   const std::vector<double> x = e.numbers("vertex"), corners = e.numbers("face");
   if (x.size() % 3 != 0)
     e.refuse("vertex of a mesh has " + std::to_string(x.size()) + " numbers, no multiple of 3");
   if (corners.size() % 3 != 0)
     e.refuse("face of a mesh has " + std::to_string(corners.size()) + " numbers, no multiple of 3");
+  budget.expect_points(e, double(x.size()) / 3);
   for (std::size_t i = 0; i < x.size(); i += 3) mesh.vertices.push_back({x[i], x[i + 1], x[i + 2]});
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     std::array<Index, 3> t;
@@ -111,7 +112,7 @@ inline LoadedMesh load_mesh(const Element& e, const MeshSpec& s, const Document&
       e.refuse("the mesh file '" + e.text("file") + "' is not found; name its folder in MjcfOptions::files");
     raw = mesh_of_file(e, path);
   } else {
-    raw = inline_mesh(e);
+    raw = inline_mesh(e, budget);
   }
   budget.take_points(e, double(raw.vertices.size()));
   if (raw.vertices.size() < 4)

@@ -3,6 +3,7 @@
 
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/io/inner/xml_tags.hpp>
 #include <delassus/math/linear.hpp>
 
 #include <algorithm>
@@ -27,17 +28,18 @@ struct File {
   tinyxml2::XMLDocument xml;
 };
 
-/// The words of a text.
-inline std::vector<std::string_view> words(std::string_view text) {
-  constexpr std::string_view space = " \t\r\n";
-  std::vector<std::string_view> found;
-  for (std::size_t at = text.find_first_not_of(space); at != std::string_view::npos;
-       at = text.find_first_not_of(space, at)) {
-    const std::size_t end = std::min(text.find_first_of(space, at), text.size());
-    found.push_back(text.substr(at, end - at));
-    at = end;
+/// Calls visit(word) for the words of a text, until it says false.
+template <class Visit>
+void for_each_word(std::string_view text, Visit&& visit) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+  for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
+    const char* const word = at;
+    while (at < end && !is_space(*at)) ++at;
+    if (at == word)
+      ++at;
+    else if (!visit(std::string_view(word, std::size_t(at - word))))
+      return;
   }
-  return found;
 }
 
 /// Whether the word is a number in whole, what is infinite, NaN or too large for a double included.
@@ -65,7 +67,8 @@ class Element {
   const tinyxml2::XMLElement* xml() const { return xml_; }
   const File* file() const { return file_; }
   std::string_view name() const { return xml_->Name(); }
-  std::string where() const { return file_->path + ":" + std::to_string(xml_->GetLineNum()); }
+  std::string where() const { return where(xml_->GetLineNum()); }
+  std::string where(int line) const { return file_->path + ":" + std::to_string(line); }
   /// The sentence begins with file and line.
   [[noreturn, gnu::cold]] void refuse(const std::string& reason) const {
     inner::refuse(where() + ": " + reason);
@@ -85,12 +88,16 @@ class Element {
   std::vector<double> numbers(const char* attribute) const {
     std::vector<double> found;
     const char* all = xml_->Attribute(attribute);
-    for (const std::string_view word : words(all ? all : "")) {
+    std::size_t count = 0;  // a list that grows has twice the room in the end
+    for_each_word(all ? all : "", [&](std::string_view) { return ++count > 0; });
+    found.reserve(count);
+    for_each_word(all ? all : "", [&](std::string_view word) {
       double value = 0;
       if (!parse_number(word, value)) refuse_value(attribute, word, "is no number");
       check_size(attribute, word, value);
       found.push_back(value);
-    }
+      return true;
+    });
     return found;
   }
   /// From `least` to `to.size()` numbers over the first of `to`; says how many, 0 where the attribute is
@@ -110,7 +117,7 @@ class Element {
   bool read(const char* attribute, int& to) const {
     double value = to;
     if (!read(attribute, value)) return false;
-    if (value != std::floor(value) || std::abs(value) > 2147483647)
+    if (value != std::floor(value) || value < -2147483648.0 || value > 2147483647)
       refuse_value(attribute, text(attribute), "is no whole number of 32 bits");
     to = int(value);
     return true;
@@ -156,9 +163,10 @@ class Skipped {
   Skipped(bool is_strict, std::vector<std::string>& to) : is_strict_(is_strict), to_(to) {}
 
   /// Once, of however many copies it is said.
-  void add(const Element& at, const std::string& what) {
-    const std::string sentence = at.where() + ": " + what;
-    if (is_strict_) at.refuse(what + "; without `strict` this is left out and named in Model::skipped");
+  void add(const Element& at, const std::string& what) { add(at, at.xml()->GetLineNum(), what); }
+  void add(const Element& at, int line, const std::string& what) {
+    const std::string sentence = at.where(line) + ": " + what;
+    if (is_strict_) refuse(sentence + "; without `strict` this is left out and named in Model::skipped");
     if (said_.insert(sentence).second) to_.push_back(sentence);
   }
   /// Once for each file and kind.
@@ -175,7 +183,21 @@ class Skipped {
 /// How much a file may make: `replicate` and `attach` can ask for more than a machine can hold.
 class Budget {
  public:
-  explicit Budget(std::int64_t elements) : elements_(elements), all_(elements) {}
+  explicit Budget(std::int64_t elements)
+      : elements_(elements), all_(elements), parts_(std::max(least_parts, 5 * std::min(elements, std::int64_t(1) << 40))), bytes_(10 * parts_) {}
+
+  /// Of a file, before a tree is made of it: all of them together may have 5 tags and attributes an element, of 10 letters.
+  void take_text(const std::string& path, std::string_view text) {
+    bytes_ -= std::int64_t(text.size());
+    parts_ -= std::count(text.begin(), text.end(), '<') + std::count(text.begin(), text.end(), '=');
+    if (bytes_ < 0 || parts_ < 0)
+      inner::refuse(path + ":1: the text is too long for a model of " + std::to_string(all_) +
+                    " elements; raise MjcfOptions::most_elements if it is right");
+    const std::size_t longer = longer_tag(text, 200);
+    if (longer != text.npos)
+      inner::refuse(path + ":" + std::to_string(1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(longer), '\n')) +
+                    ": a tag has more than 200 attributes, and MJCF has no such");
+  }
 
   void take_element(const Element& at) {
     expect_elements(at, 1);
@@ -196,16 +218,24 @@ class Budget {
     if ((letters_ -= std::int64_t(count)) < 0)
       at.refuse("the names of copies grow beyond 20000000 letters; make them shorter");
   }
+  /// Before room is made for them.
+  void expect_points(const Element& at, double count) const {
+    if (count > points_) refuse_points(at);
+  }
   /// Points of meshes and height fields, in all.
   void take_points(const Element& at, double count) {
-    if ((points_ -= count) < 0)
-      at.refuse(std::string(at.name()) + " '" + at.text("name") + "' grows beyond the " + text(most_points) +
-                " points that the meshes and height fields of a model may have");
+    if ((points_ -= count) < 0) refuse_points(at);
   }
 
  private:
+  [[noreturn, gnu::cold]] static void refuse_points(const Element& at) {
+    at.refuse(std::string(at.name()) + " '" + at.text("name") + "' grows beyond the " + text(most_points) +
+              " points that the meshes and height fields of a model may have");
+  }
+
   static constexpr double most_points = 3e6;
-  std::int64_t elements_, all_, references_ = 1'000'000, letters_ = 20'000'000;
+  static constexpr std::int64_t least_parts = 50'000;
+  std::int64_t elements_, all_, parts_, bytes_, references_ = 1'000'000, letters_ = 20'000'000;
   double points_ = most_points;
 };
 

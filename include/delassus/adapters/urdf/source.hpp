@@ -5,6 +5,7 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/io/inner/xml_tags.hpp>
 #include <delassus/model/check.hpp>
 
 #include <algorithm>
@@ -137,8 +138,12 @@ class Source {
       if (std::find(names.begin(), names.end(), std::string_view(e->Name())) == names.end()) skip_element(*e);
   }
 
-  /// Refuses numbers that are none, or too many or too large; passes over attributes that URDF does not have.
+  /// Refuses numbers that are none, or too many or too large. Passes over attributes that URDF does not have,
+  /// and what stands within and is no element, as one that has lost its `<`.
   void expect_attributes(const Element& of) {
+    for (const tinyxml2::XMLNode* node = of.FirstChild(); node; node = node->NextSibling())
+      if (node->ToText() || node->ToUnknown())
+        skip(node->GetLineNum(), "'" + beginning(node->Value()) + "' in <" + of.Name() + "> is no element");
     std::string others;
     for (const tinyxml2::XMLAttribute* a = of.FirstAttribute(); a; a = a->Next()) {
       const Attribute* known = find(of.Name(), a->Name());
@@ -184,12 +189,18 @@ class Source {
   void expect_moderate(std::string_view text) const {
     const std::size_t zero = text.find('\0');
     if (zero != text.npos)
-      refuse_at(1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(zero), '\n')),
-                "a zero byte stands in the text");
+      refuse_at(line_of(text, zero), "a zero byte stands in the text");
     if (text.size() > most_bytes || std::size_t(std::count(text.begin(), text.end(), '<') +
                                                 std::count(text.begin(), text.end(), '=')) > most_parts)
       refuse_at(1, "the file is longer than 16 MiB, or has more than " + std::to_string(most_parts) +
                        " elements and attributes");
+    const std::size_t longer = longer_tag(text, 200);
+    if (longer != text.npos)
+      refuse_at(line_of(text, longer), "a tag has more than 200 attributes, and URDF has no such");
+  }
+
+  static int line_of(std::string_view text, std::size_t at) {
+    return 1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'));
   }
 
   static const Attribute* find(std::string_view element, std::string_view name) {
