@@ -158,6 +158,30 @@ def check_what_it_says(program, folder, out):
     expect(status == 0, f"the command that a study names: {command} {text}")
 
 
+def check_start(program, folder, out):
+    """What a run begins from: within limits, and with a word on what falls. An angle counts its turns."""
+    low = folder / "low.xml"
+    low.write_text(THROWN.replace('range="-30 30"', 'range="10 30"').replace('<geom type="plane" size="1 1 1"/>', ""))
+    status, text, _ = run(program, low, "--seconds", 0.005, "--out", out)
+    expect(status == 0 and "joint 'lid' starts at its limit 0.174533 rad, since the file's 0 is outside of 0.174533 and 0.523599" in text, f"a start within limits: {text}")
+    row = last_row(out / "low.csv")
+    # It begins at rest: after one step of free fall both bodies have g h, and the lid has not turned.
+    mass = 1.1
+    expect(abs(row["lid (rad)"] - 0.174533) < 1e-6 and abs(row["kinetic energy (J)"] - mass * (9.81 * 0.005) ** 2 / 2) < 1e-9, f"no push at the start: {row}")
+    expect("nothing holds 'box' and there is no floor: it falls; --base fixed holds it, --ground adds a floor" in text, f"what falls: {text}")
+    status, text, _ = run(program, low, "--ground", "--seconds", 0.005, "--out", out)
+    expect(status == 0 and "it falls" not in text, f"on a floor nothing falls: {text}")
+    wheel, table = folder / "wheel.xml", folder / "control.csv"
+    wheel.write_text(WHEEL), table.write_text("time,motor\n0,20\n")
+    status, text, _ = run(program, wheel, "--control", table, "--seconds", 2, "--dt", 0.001, "--out", out)
+    # Kick, then drift under 30 rad/s^2: 30 t (t + h)/2.
+    expect(status == 0 and abs(last_row(out / "wheel.csv")["turn (rad)"] - 30 * 2 * 2.001 / 2) < 1e-4, f"nine turns: {last_row(out / 'wheel.csv')}")
+    expect("gaps of joints up to" in text and "overlaps up to" in text, f"the last line: {text}")
+    for words, said in ((("--base", "loose"), "'loose' is not free or fixed"), (("--accuracy", "1e-3", "--integrator", "euler"), "takes an integrator of second order")):
+        status, text, error = run(program, wheel, *words, "--out", out)
+        expect(status not in (0, 1) and said in text + error, f"{words}: {text} {error}")
+
+
 def check_overlaps(program, folder, out):
     """Links that are in each other as a run begins do not collide, unless the user says so."""
     knees = folder / "knees.xml"
@@ -202,6 +226,7 @@ def main():
         status, _, error = run(program, bad, "--out", out)
         expect(status == 1 and "bad.urdf:4" in error, f"a bad number: {status} {error}")
         check_control(program, Path(folder), out)
+        check_start(program, Path(folder), out)
         check_overlaps(program, Path(folder), out)
         check_free_root(program, Path(folder), out)
         check_bases(program, Path(folder), out)
