@@ -279,13 +279,21 @@ struct Cost {
   bool ended = false;  ///< not by a signal
   std::string says;    ///< of what it threw; empty where it threw nothing
   double seconds = 0;  ///< of the processor
-  double megabytes = 0;  ///< most that was in memory, with what the tests had there before
+  double megabytes = 0;  ///< most that was in memory, less what the tests had there before
 };
+
+/// Of this process, in memory now.
+inline double resident_megabytes() {
+  long pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return double(resident) * double(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
 
 template <class Work>
 Cost cost_of(Work&& work) {
   int ends[2];
   REQUIRE(::pipe(ends) == 0);
+  const double before = resident_megabytes();
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {
@@ -310,7 +318,7 @@ Cost cost_of(Work&& work) {
   cost.ended = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   cost.seconds = (double(use.ru_utime.tv_sec + use.ru_stime.tv_sec) + 1e-6 * double(use.ru_utime.tv_usec + use.ru_stime.tv_usec)) /
                  (is_sanitized ? 10 : 1);
-  cost.megabytes = is_sanitized ? 0 : double(use.ru_maxrss) / 1e3;
+  cost.megabytes = is_sanitized ? 0 : double(use.ru_maxrss) * 1024 / 1e6 - before;
   return cost;
 }
 
