@@ -65,6 +65,7 @@ def prepared(page, out):
             return match.group(0)
         file = (page.parent / target).resolve() if target else page
         if file.suffix == ".md" and file.is_relative_to(ROOT / "docs"):
+            text = text.replace("`", "")  # Doxygen shows them in a reference
             return f"[{text}](@ref {label(file, place[1:]) if place else label(file)})"
         if file.is_dir() or file.suffix == ".md":
             return text
@@ -133,7 +134,7 @@ def left_as_written(out):
     """Pages of which Doxygen has not understood a part: its commands, or tags that it has made itself, stand in the text."""
     for page in sorted(out.glob("*.html")):
         text = re.sub(r'<(pre|code|tt)\b.*?</\1>|<div class="(?:line|fragment)">.*?</div>', "", page.read_text(encoding="utf-8", errors="replace"), flags=re.DOTALL)
-        if found := re.search(r"[@\\](?:section|subsection|ref|code|anchor|page)\b|&lt;/?(?:tt|b|em|td|tr|table)\b", text):
+        if found := re.search(r"[@\\](?:section|subsection|ref|code|anchor|page)\b|&lt;/?(?:tt|b|em|td|tr|table)\b|`", text):
             yield f"{page.name}: {found.group(0)} stands in the text"
 
 
