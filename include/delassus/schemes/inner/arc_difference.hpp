@@ -10,9 +10,9 @@
 #include <delassus/core/index.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/math/twist.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
-#include <delassus/rows/soft.hpp>
 #include <delassus/schemes/inner/end_state.hpp>
 
 #include <cstddef>
@@ -43,13 +43,13 @@ class ArcDifference {
   /// the mean of a step, by which that of what sticks to it differs for good.
   void look(auto& step) {
     is_known_ = true;
-    each_pool(step.rows, [&](auto, const auto& pool) {
-      step.world().each([&](const auto& set, auto s) {
-        const auto& blocks = inner::part<s>(pool.sets);
-        is_known_ = is_known_ && blocks.G.size() == blocks.H.size();
-        for (const Index b : blocks.block)
-          is_known_ = is_known_ && (set.moves(b) || is_zero(set.velocity()[b]));
-      });
+    const AllRows<T> pools = step.arrays.all();
+    step.world().each([&](const auto& set, auto s) {
+      for (const RowArrays<T>& pool : pools) {
+        const SetArrays<T>& ends = pool.set[int(s)];
+        is_known_ = is_known_ && ends.G->size() == ends.H->size();
+        for (const Index b : *ends.block) is_known_ = is_known_ && (set.moves(b) || is_zero(set.velocity()[b]));
+      }
     });
   }
   bool is_known() const { return is_known_; }
@@ -57,6 +57,7 @@ class ArcDifference {
   bool take(auto& step, const EndState<World>& whole) {
     if (!is_known_) return false;
     whole.difference(step.world(), places_, velocities_);
+    find_sliding(step);
     drop<false>(step, places_);
     drop<true>(step, velocities_);
     return true;
@@ -90,7 +91,7 @@ class ArcDifference {
   void drop(auto& step, Differences& x) {
     residual_.clear();
     each_held_row<of_rates>(
-        step, [&](const auto& pool, Index i, int k) { residual_.push_back(rate(pool, i, k, x)); });
+        step, [&](const RowArrays<T>& pool, Index i, int k) { residual_.push_back(rate(pool, i, k, x)); });
     direction_.resize(residual_.size()), image_.resize(residual_.size());
     for (std::size_t n = 0; n < residual_.size(); ++n) direction_[n] = residual_[n];
     T size = dot_of(residual_, residual_);
@@ -103,10 +104,10 @@ class ArcDifference {
       });
       std::size_t n = 0;
       each_held_row<of_rates>(
-          step, [&](const auto& pool, Index i, int k) { push(pool, i, k, direction_[n++], way_); });
+          step, [&](const RowArrays<T>& pool, Index i, int k) { push(pool, i, k, direction_[n++], way_); });
       n = 0;
       each_held_row<of_rates>(
-          step, [&](const auto& pool, Index i, int k) { image_[n++] = rate(pool, i, k, way_); });
+          step, [&](const RowArrays<T>& pool, Index i, int k) { image_[n++] = rate(pool, i, k, way_); });
       const T effort = dot_of(direction_, image_);
       if (!(effort > T(0))) return;
       const T share = size / effort;
@@ -119,45 +120,57 @@ class ArcDifference {
       for (n = 0; n < residual_.size(); ++n) direction_[n] = residual_[n] + size / before * direction_[n];
     }
   }
-  /// f(pool, item, row).
-  template <bool of_rates>
-  static void each_held_row(auto& step, auto&& f) {
+  /// Which contacts slide.
+  void find_sliding(auto& step) {
+    slides_.clear(), first_contact_.clear();
     each_pool(step.rows, [&](auto p, const auto& pool) {
       const auto& items = step.laws().template pool<p>();
-      using Law = std::remove_cvref_t<decltype(items.law)>;
-      constexpr auto kinds = row_kinds<Law>();
-      for (Index i = 0; i < pool.items(); ++i) {
-        bool sticks = of_rates;
-        if constexpr (ContactLaw<Law>)
-          sticks = sticks && !step.contact_cache.results[items.item(i).result].is_sliding;
-        for (int k = 0; k < Law::rows; ++k) {
-          const RowKind kind = kinds[std::size_t(k)];
-          const bool holds = kind == RowKind::equality
-                                 ? !is_spring(pool.stiffness[i][k], pool.damping[i][k])
-                                 : pool.lambda[i][k] != T(0) && (sticks || kind != RowKind::friction);
-          if (holds) f(pool, i, k);
-        }
+      if constexpr (ContactLaw<std::remove_cvref_t<decltype(items.law)>>) {
+        first_contact_.push_back(Index(slides_.size()));
+        for (Index i = 0; i < pool.items(); ++i) slides_.push_back(step.contact_cache.results[items.item(i).result].is_sliding);
+      } else {
+        first_contact_.push_back(-1);
       }
     });
   }
+  /// f(pool, item, row).
+  template <bool of_rates>
+  void each_held_row(auto& step, auto&& f) const {
+    const AllRows<T> pools = step.arrays.all();
+    for (std::size_t p = 0; p < pools.size(); ++p) {
+      const RowArrays<T>& pool = pools[p];
+      const RowKind* const kinds = step.pools.all()[p].law->kinds;
+      const Index first = first_contact_[p];
+      for (Index i = 0; i < pool.items(); ++i) {
+        const bool sticks = of_rates && (first < 0 || !slides_[first + i]);
+        for (int k = 0; k < pool.rows; ++k) {
+          const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
+          const bool holds = kinds[k] == RowKind::equality ? !pool.is_soft(row) : (*pool.lambda)[row] != T(0) && (sticks || kinds[k] != RowKind::friction);
+          if (holds) f(pool, i, k);
+        }
+      }
+    }
+  }
   /// Row k of H x.
-  static T rate(const auto& pool, Index i, int k, const Differences& x) {
+  static T rate(const RowArrays<T>& pool, Index i, int k, const Differences& x) {
     T sum = 0;
     for_each_index<int(World::set_count)>([&](auto s) {
-      const auto& blocks = inner::part<s>(pool.sets);
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-        for (int j = 0; j < int(blocks.H[e].cols()); ++j)
-          sum += blocks.H[e](k, j) * std::get<s>(x)[blocks.block[e]][j];
+      const SetArrays<T>& ends = pool.set[s];
+      for (Index e = (*ends.offset)[i]; e < (*ends.offset)[i + 1]; ++e)
+        for (int j = 0; j < ends.width; ++j)
+          sum += (*ends.H)[(std::size_t(e) * std::size_t(ends.width) + std::size_t(j)) * std::size_t(pool.rows) + std::size_t(k)] *
+                 std::get<s>(x)[(*ends.block)[e]][j];
     });
     return sum;
   }
   /// x += M⁻¹ Hᵀ of row k, times λ.
-  static void push(const auto& pool, Index i, int k, T lambda, Differences& x) {
+  static void push(const RowArrays<T>& pool, Index i, int k, T lambda, Differences& x) {
     for_each_index<int(World::set_count)>([&](auto s) {
-      const auto& blocks = inner::part<s>(pool.sets);
-      for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-        for (int j = 0; j < int(blocks.H[e].cols()); ++j)
-          std::get<s>(x)[blocks.block[e]][j] += blocks.G[e](j, k) * lambda;
+      const SetArrays<T>& ends = pool.set[s];
+      for (Index e = (*ends.offset)[i]; e < (*ends.offset)[i + 1]; ++e)
+        for (int j = 0; j < ends.width; ++j)
+          std::get<s>(x)[(*ends.block)[e]][j] +=
+              (*ends.G)[(std::size_t(e) * std::size_t(pool.rows) + std::size_t(k)) * std::size_t(ends.width) + std::size_t(j)] * lambda;
     });
   }
   static T dot_of(const Array<T>& a, const Array<T>& b) {
@@ -167,6 +180,8 @@ class ArcDifference {
   }
   Differences places_, velocities_, way_;
   Array<T> residual_, direction_, image_;  ///< of held rows
+  Array<char> slides_;           ///< contacts, pool by pool
+  Array<Index> first_contact_;   ///< of a pool in `slides_`; −1: of joints
   bool is_known_ = false;
 };
 

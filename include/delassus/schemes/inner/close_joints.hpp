@@ -4,9 +4,9 @@
 #include <delassus/compliance/add_impulses.hpp>
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/rows/islands.hpp>
-#include <delassus/rows/rate.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
-#include <delassus/rows/soft.hpp>
+#include <delassus/rows/world_view.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/find_islands.hpp>
 #include <delassus/step/linearize.hpp>
@@ -66,25 +66,9 @@ class CloseJoints {
   /// Of places or of velocities: what closes the rows, into `change_`.
   template <class Step, bool of_places>
   void solve(Step& step) {
-    using T = typename Step::Scalar;
     auto& rows = step.rows;
-    for_each_index<Laws::pool_count>([&](auto p) {
-      using Law = std::remove_cvref_t<decltype(step.laws().template pool<p>().law)>;
-      constexpr auto kinds = row_kinds<Law>();
-      auto& pool = rows.template pool<p>();
-      for (Index i = 0; i < pool.items(); ++i) {
-        const auto u = rate(pool, i, std::as_const(step).world(), [](const auto& set) -> const auto& { return set.velocity(); });
-        set_zero(pool.lambda[i]);
-        set_zero(pool.d[i]);
-        for (int k = 0; k < Law::rows; ++k) {
-          if (is_spring(pool.stiffness[i][k], pool.damping[i][k])) continue;
-          const T phi = pool.phi[i][k];
-          if (kinds[k] == RowKind::equality) pool.d[i][k] = of_places ? phi : u[k];
-          const bool is_open = (kinds[k] == RowKind::lower && phi > T(0)) || (kinds[k] == RowKind::upper && phi < T(0));
-          if (is_open) pool.d[i][k] = of_places ? phi : T(phi / step.h);
-        }
-      }
-    });
+    const BodyVelocities<World> v(step.world());
+    for (std::size_t p = 0; p < std::size_t(Laws::pool_count); ++p) aim(step.pools.all()[p].law->kinds, step.arrays.all()[p], of_places ? nullptr : v.start, step.h);
     step.W.reset(rows);
     book_.show(step.W, rows);
     NoObserver nobody;
@@ -98,6 +82,26 @@ class CloseJoints {
       for (auto& x : to) set_zero(x);
       add_impulses(inverse_of<s>(step.W, set, 1), s, ArraysOf(rows).all(), to, part<s>(step.scratch));
     });
+  }
+  /// λ = 0, and d of the rows that hold: φ, or where the velocities `v` are given the rate. Open bounds are φ away, or φ/h.
+  template <class T>
+  static void aim(const RowKind* kinds, const RowArrays<T>& pool, const T* const* v, double h) {
+    static constexpr T nothing[most_rows] = {};
+    T u[most_rows];
+    for (Index i = 0; i < pool.items(); ++i) {
+      const T* before = nothing;
+      for (int s = 0; v && s < pool.sets; ++s, before = u) pool.set[s].products->rate(pool.set[s], i, v[s], before, u);
+      for (int k = 0; k < pool.rows; ++k) {
+        const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
+        const T phi = (*pool.phi)[row];
+        const bool is_open = (kinds[k] == RowKind::lower && phi > T(0)) || (kinds[k] == RowKind::upper && phi < T(0));
+        T d = 0;
+        if (!pool.is_soft(row) && kinds[k] == RowKind::equality) d = v ? u[k] : phi;
+        if (!pool.is_soft(row) && is_open) d = v ? T(phi / h) : phi;
+        (*pool.d)[row] = d;
+        (*pool.lambda)[row] = T(0);
+      }
+    }
   }
   PositionLaws<Laws, typename World::Scalar, needs_of<typename P::Solver>> book_;
   typename World::template PerSet<VelocitiesOf> change_;

@@ -3,9 +3,7 @@
 
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
-#include <delassus/core/index.hpp>
-#include <delassus/rows/row_system.hpp>
-#include <delassus/rows/soft.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/theta.hpp>
 #include <delassus/schemes/error_report.hpp>
 #include <delassus/schemes/inner/arc_order.hpp>
@@ -283,15 +281,13 @@ class ControlledSteps {
       }
   }
   /// Springs of joints are taken at the end of a step, and are of first order whatever the integrator's is.
-  static bool any_spring(const auto& step) {
+  static bool any_spring(auto& step) {
     bool any = false;
-    if constexpr (Laws::pool_count > 0 && !MovesAtOnce<typename P::Integrator>)
-      each_pool(step.rows, [&](auto p, const auto& pool) {
-        using Law = std::remove_cvref_t<decltype(step.laws().template pool<p>().law)>;
-        if constexpr (!has_mean_springs<Law>)
-          for (Index i = 0; i < pool.items() && !any; ++i)
-            for (int k = 0; k < Law::rows; ++k) any = any || is_spring(pool.stiffness[i][k], pool.damping[i][k]);
-      });
+    if constexpr (Laws::pool_count > 0 && !MovesAtOnce<typename P::Integrator>) {
+      const AllRows<typename World::Scalar> pools = step.arrays.all();
+      for (std::size_t p = 0; p < pools.size(); ++p)
+        for (std::size_t row = 0; row < pools[p].phi->size() && !any; ++row) any = !step.pools.all()[p].law->has_mean_springs && pools[p].is_soft(row);
+    }
     return any;
   }
   /// Springs and elements couple bodies beyond the order of the integrator: there the halves are taken.
