@@ -143,7 +143,7 @@ def check_what_it_says(program, folder, out):
     expect(status == 0 and "not read" not in text, f"a package: {text}")
     model = thrown(folder)
     status, text, _ = run(program, model, "--audit", "--quiet", "--seconds", 2, "--out", out)
-    rows = {line.split("  ")[0] + " " + name: line for line in text.splitlines() for name in ("Contact<Coulomb>", "Limit<Turn> of 'lid'", "'box'") if name in line}
+    rows = {line.split("  ")[0] + " " + name: line for line in text.splitlines() for name in ("Contact<Coulomb>", "Limit<Turn> of joint 'lid'", "'box'") if name in line}
     expect(status == 0 and " acted " in rows.get("contact Contact<Coulomb>", "") and any("'box'" in line for line in rows.values()), f"what acted: {text}")
     status, text, _ = run(program, model, "--accuracy", 1e-3, "--audit", "--seconds", 2, "--out", out)
     expect(status == 0 and "inner steps" in text and "What set the size of the steps" in text and "impact" in text, f"a kept error: {text}")
@@ -180,6 +180,61 @@ def check_start(program, folder, out):
     for words, said in ((("--base", "loose"), "'loose' is not free or fixed"), (("--accuracy", "1e-3", "--integrator", "euler"), "takes an integrator of second order")):
         status, text, error = run(program, wheel, *words, "--out", out)
         expect(status not in (0, 1) and said in text + error, f"{words}: {text} {error}")
+
+
+FINGERS = """<robot name="fingers">
+  <link name="world"/>
+  LINKS
+  <joint name="lead" type="revolute"><parent link="world"/><child link="one"/><axis xyz="0 0 1"/><limit lower="3" upper="5" effort="50" velocity="9"/></joint>
+  <joint name="follow" type="revolute"><parent link="world"/><child link="two"/><origin xyz="0 3 0"/><axis xyz="0 0 1"/><limit lower="-9" upper="9" effort="50" velocity="9"/><mimic joint="lead" multiplier="-0.5" offset="0.25"/></joint>
+</robot>
+""".replace("LINKS", "".join(f'<link name="{name}"><inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>' for name in ("one", "two")))
+
+
+def check_held(program, folder, out):
+    """Joints that start where the user says, and hold there; a table moves what they hold."""
+    pendulum, table = folder / "pendulum.urdf", folder / "hold.csv"
+    words = (pendulum, "--at", "swing=0.5", "--hold", "500,40", "--seconds", 4, "--dt", 0.002, "--quiet", "--out", out)
+
+    def balance(asked):  # 500 (q - asked) = m g l cos q
+        q = asked
+        for _ in range(99):
+            q = asked + 19.62 * math.cos(q) / 500
+        return q
+
+    status, text, _ = run(program, *words)
+    rows = [float(row["swing (rad)"]) for row in csv.DictReader(open(out / "pendulum.csv"))]
+    expect(status == 0 and abs(rows[0] - 0.5) < 1e-3 and abs(rows[-1] - balance(0.5)) < 1e-5, f"a joint that holds: {rows[0]} {rows[-1]}, not {balance(0.5)}")
+    table.write_text("time,swing\n0.5,7\n")
+    status, text, _ = run(program, *words, "--control", table)
+    expect(status == 0 and abs(last_row(out / "pendulum.csv")["swing (rad)"] - balance(7)) < 1e-5, f"what it holds moves by a turn: {last_row(out / 'pendulum.csv')}")
+    status, text, _ = run(program, *words[:1], "--at", "swing=7", "--seconds", 0.004, "--dt", 0.002, "--out", out)
+    expect(status == 0 and abs(last_row(out / "pendulum.csv")["swing (rad)"] - 7) < 1e-3, f"a start after a turn: {last_row(out / 'pendulum.csv')}")
+    fingers = folder / "fingers.urdf"
+    fingers.write_text(FINGERS)
+    status, text, _ = run(program, fingers, "--at", "lead=4", "--seconds", 0.5, "--out", out)
+    row = last_row(out / "fingers.csv")
+    expect(status == 0 and "outside" not in text and abs(row["lead (rad)"] - 4) < 1e-6 and abs(row["follow (rad)"] - (0.25 - 0.5 * 4)) < 1e-6, f"within limits beyond half a turn, with what follows: {text} {row}")
+    status, text, _ = run(program, fingers, "--at", "lead=2", "--seconds", 0.01, "--out", out)
+    expect(status == 0 and "joint 'lead' starts at 2 rad, outside of its limits 3 and 5" in text, f"a start beyond a limit: {text}")
+    # A cap of 50 N·m on a servo that is asked for a far place: 50 / 0.11 rad/s² with the rotor's share of the other finger, whose rate is half.
+    table.write_text("time,lead\n0,1000\n")
+    status, text, _ = run(program, fingers, "--at", "lead=3.1", "--hold", "1e4,0", "--control", table, "--seconds", 0.02, "--dt", 0.001, "--out", out)
+    inertia, t = 0.11 * (1 + 0.5 ** 2), 0.02
+    expect(status == 0 and abs(last_row(out / "fingers.csv")["lead (rad)"] - (3.1 + 50 / inertia * t * (t + 0.001) / 2)) < 1e-6, f"the cap of a servo: {last_row(out / 'fingers.csv')}")
+    box = folder / "box.xml"
+    status, text, _ = run(program, box, "--ground", "--height", 0.5, "--seconds", 0.01, "--dt", 0.001, "--out", out)
+    expect(status == 0 and abs(last_row(out / "box.csv")["box.z (m)"] - (0.6 - 9.81 * 0.01 * 0.011 / 2)) < 1e-9, f"a height: {last_row(out / 'box.csv')}")
+    wheel = folder / "wheel.xml"
+    wheel.write_text(WHEEL.replace('gear="3"', 'gear="3" ctrllimited="true" ctrlrange="-1 2"')), table.write_text("time,motor\n0,1\n0.1,5\n0.2,6\n")
+    status, text, _ = run(program, wheel, "--control", table, "--seconds", 0.01, "--out", out)
+    expect(status == 0 and "5 for 'motor' at 0.1 s is beyond its range, -1 to 2, and counts as its end" in text and text.count("beyond its range") == 1, f"a control that is clamped: {text}")
+    status, text, _ = run(program, wheel, "--hold", 10, "--seconds", 0.01, "--out", out)
+    expect(status == 0 and "no joint is left for --hold" in text, f"nothing to hold: {text}")
+    for words, said in ((("--at", "lead"), "write JOINT=PLACE"), (("--at", "lead=nan"), "write JOINT=PLACE"), (("--at", "thumb=1"), "there is no joint 'thumb'; there is 'lead', 'follow'"),
+                        (("--at", "follow=1"), "follows another"), (("--hold", "-1"), "-1"), (("--hold", "1,2,3"), "3"), (("--height", "1"), "ground"), (("--hold", "nan"), "nan")):
+        status, text, error = run(program, fingers, *words, "--out", out)
+        expect(status != 0 and said in text + error and (text + error).count("\n") < 4, f"{words}: {status} {text} {error}")
 
 
 def check_overlaps(program, folder, out):
@@ -227,6 +282,7 @@ def main():
         expect(status == 1 and "bad.urdf:4" in error, f"a bad number: {status} {error}")
         check_control(program, Path(folder), out)
         check_start(program, Path(folder), out)
+        check_held(program, Path(folder), out)
         check_overlaps(program, Path(folder), out)
         check_free_root(program, Path(folder), out)
         check_bases(program, Path(folder), out)

@@ -58,6 +58,7 @@ bool simulate(const Model& model, const Start& start, const Options& options, co
   std::optional<VtkSeries> vtk;
   if (options.writes_vtk) vtk.emplace(base);
   ControlTable control = options.control.empty() ? ControlTable() : ControlTable(options.control, motion->machine);
+  for (const std::string& note : control.notes) std::printf("note: %s\n", note.c_str());
   const double h = options.caller_step();
   const long steps = std::max(1l, std::lround(options.seconds / h)), every = std::max(1l, steps / 10);
   double gap = 0, overlap = 0;  // m, the largest of all steps

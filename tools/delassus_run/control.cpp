@@ -67,6 +67,22 @@ ControlTable::ControlTable(const std::string& path, const Machine& machine) {
     }
   }
   DELASSUS_EXPECT(!times_.empty(), path + ": no row of controls; write a line 'time,NAME...' and rows of numbers below it");
+  find_clamped(path, machine);
+}
+
+/// One sentence an actuator, with the first number of its column that is beyond.
+void ControlTable::find_clamped(const std::string& path, const Machine& machine) {
+  for (std::size_t k = 0; k < actuators_.size(); ++k) {
+    const model::Actuator& actuator = machine.actuators[std::size_t(actuators_[k])].actuator;
+    if (!actuator.control_is_limited) continue;
+    for (std::size_t row = 0; row < times_.size(); ++row) {
+      const double value = values_[row * actuators_.size() + k];
+      if (value >= actuator.control_lower && value <= actuator.control_upper) continue;
+      notes.push_back(path + ": " + inner::text(value) + " for '" + actuator.name + "' at " + inner::text(times_[row]) + " s is beyond its range, " + inner::text(actuator.control_lower) +
+                      " to " + inner::text(actuator.control_upper) + ", and counts as its end");
+      break;
+    }
+  }
 }
 
 void ControlTable::set(Machine& machine, double time) {

@@ -12,6 +12,8 @@ namespace delassus_run {
 /// before the first and without a file controls stay as they are.
 class ControlTable {
  public:
+  std::vector<std::string> notes;  ///< sentences that the user should read: what is beyond the range of an actuator
+
   ControlTable() = default;
   /// Refuses with file and line what is no such table of this machine.
   ControlTable(const std::string& path, const delassus::Machine& machine);
@@ -20,6 +22,8 @@ class ControlTable {
   void set(delassus::Machine& machine, double time);
 
  private:
+  void find_clamped(const std::string& path, const delassus::Machine& machine);
+
   std::vector<delassus::Index> actuators_;  ///< of the columns
   std::vector<double> times_, values_;      ///< row by row
   std::size_t next_ = 0;                    ///< the first row that is still to come

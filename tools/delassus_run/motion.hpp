@@ -3,6 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
+#include <delassus/model/joint_space.hpp>
 #include <delassus/model/machine.hpp>
 #include <delassus/schemes/error_report.hpp>
 #include <delassus/step/contact_result.hpp>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace delassus_run {
 
@@ -41,12 +43,15 @@ class Motion {
   using EachJoint = std::function<void(const Anchor&, const Anchor&)>;
 
   Machine machine;
+  std::vector<double> joints;  ///< of each joint: q of a hinge or slide as the run begins, with all its turns, rad or m
 
   virtual ~Motion() = default;
   /// The machine's controls hold for h s.
   virtual StepReport step(double h) = 0;
   virtual World<RigidBodies>& world() = 0;
   virtual double time() const = 0;
+  /// As `set_joint_state`.
+  virtual void set_joints(JointSpace& space, std::span<const double> q, std::span<const double> v) = 0;
   virtual std::span<const ContactResult> contacts() const = 0;
   virtual void each_joint(const EachJoint& f) const = 0;
   /// Of the steps so far, where `Asked::audits`; joints have the names of the links that they hold.

@@ -16,9 +16,10 @@
 namespace delassus_run {
 
 struct Options {
-  std::vector<std::string> models, packages;
+  std::vector<std::string> models, packages, places;
+  std::vector<double> hold;  ///< stiffness and damping of joints that hold; empty: none does
   std::string out = "out/run", key, meshes, control;
-  double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = -1, budget = 1e-3, frames = 30;
+  double seconds = 5, step = 5e-3, accuracy = 0, tolerance = 0, friction = -1, budget = 1e-3, frames = 30, height = 0;
   int threads = 1;
   Base base = Base::as_file;
   std::optional<Integration> integration;  ///< `euler`, or `midpoint` under an accuracy
@@ -32,6 +33,9 @@ struct Options {
     const double usual = accuracy > 0 ? std::min(1e-6, 1e-3 * accuracy) : 1e-6;
     return {.integration = integration.value_or(Integration::euler), .accuracy = accuracy, .audits = audits, .tolerance = tolerance > 0 ? tolerance : usual, .friction = friction, .longest_step = caller_step(), .threads = threads};
   }
+  /// A share of the stiffness that damps where the user says no damping, s: a joint without inertia comes to rest in it.
+  static constexpr double usual_damping = 0.05;
+
   double caller_step() const { return accuracy > 0 ? std::min(step_under_control, seconds) : step; }
 };
 
@@ -73,9 +77,15 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_option("--tolerance", options.tolerance, "of the solver, a share of the speeds; 1e-6, or what the accuracy takes")->check(number_in(1e-15, 1, "a tolerance from 1e-15 to 1"));
   app.add_option("--friction", options.friction, "of all contacts; else what the file says, and 0.8 where it says nothing")->check(number_in(0, 1e6, "a coefficient from 0 to 1e6"));
   app.add_option("--base", options.base, "free or fixed: whether something holds the root; as the file says if not said")->transform(one_of(bases, "free or fixed"));
-  app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
+  auto* const ground = app.add_flag("--ground", options.has_ground, "adds a floor at z = 0 where the file has none, and sets the machine on it");
   app.add_flag("--push-apart", options.pushes_apart, "links of one tree collide even where they are in each other at the start");
+  app.add_option("--height", options.height, "at which the machine is let go above the floor of --ground, m")->check(number_in(0, 1e6, "a height from 0 to 1e6 m"))->needs(ground);
   app.add_option("--key", options.key, "keyframe of the file to start from");
+  app.add_option("--at", options.places, "JOINT=PLACE: where a hinge (rad) or a slide (m) starts; may be repeated");
+  app.add_option("--hold", options.hold, "STIFFNESS[,DAMPING]: each joint without an actuator holds where it starts, N·m/rad or N/m; capped by the file's effort. An actuator of the joint's name for --control")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->check(number_in(0, 1e12, "a number from 0 to 1e12"));
   app.add_option("--control", options.control, "a CSV table: time (s), then a column for each actuator it controls, by name; else controls are those of --key, or 0")->check(CLI::ExistingFile);
   app.add_option("--meshes", options.meshes, "a folder of meshes and other files")->check(CLI::ExistingDirectory);
   app.add_option("--package", options.packages, "NAME=FOLDER of package://NAME, for URDF; may be repeated");
@@ -101,6 +111,7 @@ inline void check(const Options& options) {
   DELASSUS_EXPECT(options.accuracy == 0 || options.integration != Integration::euler,
                   "--accuracy takes an integrator of second order; take --integrator euler out, or write midpoint");
   DELASSUS_EXPECT(!options.studies || options.control.empty(), "--study compares runs with the controls of --key; take --control out");
+  DELASSUS_EXPECT(options.hold.size() <= 2, "--hold takes a stiffness and a damping, not " + std::to_string(options.hold.size()) + " numbers");
   for (const std::string& package : options.packages)
     DELASSUS_EXPECT(package.find('=') != 0 && package.find('=') != package.npos, "--package " + package + ": write NAME=FOLDER");
 }

@@ -84,7 +84,7 @@ Rows::Rows(std::string path, const Model& model, const Motion& motion) : path_(s
     const model::JointKind kind = model.joints[j].kind;
     const model::Axis& axis = motion.machine.axes[j];
     if ((kind != model::JointKind::hinge && kind != model::JointKind::slide) || (axis.a.is_world() && axis.b.is_world())) continue;
-    joints_.push_back(Index(j)), is_turn_.push_back(kind == model::JointKind::hinge), last_.push_back(position_of(motion.world(), motion.machine, Index(j)));
+    joints_.push_back(Index(j)), is_turn_.push_back(kind == model::JointKind::hinge), last_.push_back(motion.joints[j]);
     column(model.joints[j].name + (kind == model::JointKind::hinge ? " (rad)" : " (m)"));
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

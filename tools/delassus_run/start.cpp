@@ -1,11 +1,13 @@
 // A machine as its run begins.
 #include "start.hpp"
 
+#include "joint_numbers.hpp"
+
 #include <delassus/geometry/support.hpp>
 #include <delassus/model/actuators.hpp>
 #include <delassus/model/inner/add_shapes.hpp>
 #include <delassus/model/inner/contact_kinds.hpp>
-#include <delassus/model/joint_state.hpp>
+#include <delassus/model/joint_space.hpp>
 #include <delassus/study/code_of.hpp>
 
 #include <algorithm>
@@ -16,15 +18,6 @@
 namespace delassus_run {
 
 namespace {
-
-const model::Keyframe& keyframe(const Model& model, const std::string& name) {
-  std::string names;
-  for (const model::Keyframe& key : model.keyframes) {
-    if (key.name == name) return key;
-    names += " '" + key.name + "'";
-  }
-  inner::refuse("model '" + model.name + "' has no keyframe '" + name + "'; it has" + (names.empty() ? " none" : names));
-}
 
 /// The link that a body of a loop was made of, the first of them; −1: none.
 Index link_of(const Machine& machine, const Anchor& body) {
@@ -57,68 +50,36 @@ double lowest_point(const Model& model, const std::vector<Pose>& at) {
 
 }  // namespace
 
-Start::Start(const Model& model, const Options& options) : model_(model), base_(options.base) {
-  find_numbers(options);
+Start::Start(const Model& model, const Options& options) : model_(model), base_(options.base), key_(keyframe(model_, options)), own_actuators_(model.actuators.size()) {
+  JointNumbers numbers = joint_numbers(model_, base_, options);
+  q_ = std::move(numbers.q), v_ = std::move(numbers.v), notes = std::move(numbers.notes);
+  if (!options.hold.empty()) add_holders(options);
   if (options.has_ground) find_floor(options);
   const std::unique_ptr<Motion> first = put({});
   tell_limits(*first), tell_fall(*first);
   find_overlaps(*first, options);
 }
 
-/// Those of the joints that move on this base; a root that the base frees stands where the tree has it.
-void Start::find_numbers(const Options& options) {
-  if (options.key.empty()) return find_allowed();
-  const model::Keyframe& key = keyframe(model_, options.key);
-  key_ = &key;
-  const JointSpace space(model_, base_), file(model_, Base::as_file);
-  q_.resize(std::size_t(space.q_size()));
-  v_.assign(std::size_t(space.v_size()), 0);
-  space.reference(q_);
-  for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-    const model::JointKind kind = model_.joints[j].kind;
-    const int positions = kind == model::JointKind::free ? 7 : kind == model::JointKind::ball ? 4 : 1;
-    const int rates = kind == model::JointKind::free ? 6 : kind == model::JointKind::ball ? 3 : 1;
-    const Index q = space.q_of(Index(j)), v = space.v_of(Index(j)), from_q = file.q_of(Index(j)), from_v = file.v_of(Index(j));
-    if (q < 0) {
-      notes.push_back("the base is fixed: keyframe '" + key.name + "' does not move '" + model_.joints[j].name + "'");
-      continue;
-    }
-    for (int k = 0; k < positions && !key.q.empty(); ++k) q_[std::size_t(q + k)] = key.q[std::size_t(from_q + k)];
-    for (int k = 0; k < rates && !key.v.empty(); ++k) v_[std::size_t(v + k)] = key.v[std::size_t(from_v + k)];
-  }
-}
-
-/// A joint whose limits leave out where the file has it starts at the nearest of them: pushed there, it would start with a speed.
-void Start::find_allowed() {
-  JointSpace space(model_, base_);
-  std::vector<double> q(std::size_t(space.q_size()));
-  space.reference(q);
-  bool any = false;
+/// A servo for each joint that nothing else drives. It has the cap of the joint.
+void Start::add_holders(const Options& options) {
+  const double stiffness = options.hold[0], damping = options.hold.size() > 1 ? options.hold[1] : Options::usual_damping * stiffness;
+  const auto is_driven = [&](Index joint) {
+    return std::any_of(model_.actuators.begin(), model_.actuators.end(),
+                       [&](const model::Actuator& a) { return a.transmission == model::Transmission::joint && a.target == joint; });
+  };
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const model::Joint& joint = model_.joints[j];
-    const Index k = space.q_of(Index(j));
-    if ((joint.kind != model::JointKind::hinge && joint.kind != model::JointKind::slide) || !joint.is_limited || k < 0 || is_tied(Index(j))) continue;
-    double& at = q[std::size_t(k)];
-    const double asked = at;
-    at = std::clamp(at, joint.lower, joint.upper);
-    if (at == asked) continue;
-    any = true;
-    notes.push_back("joint '" + joint.name + "' starts at its limit " + inner::text(at) + (joint.kind == model::JointKind::hinge ? " rad" : " m") + ", since the file's " +
-                    inner::text(asked) + " is outside of " + inner::text(joint.lower) + " and " + inner::text(joint.upper));
+    if (!has_number(joint) || follows(model_, Index(j)) || is_driven(Index(j))) continue;
+    model::Actuator servo{.name = joint.name, .target = Index(j), .gain = stiffness, .bias = {0, -stiffness, -damping}};
+    servo.force_is_limited = joint.effort > 0;
+    servo.force_lower = -joint.effort, servo.force_upper = joint.effort;
+    model_.actuators.push_back(servo);
   }
-  if (!any) return;
-  q_ = std::move(q);
-  v_.assign(std::size_t(space.v_size()), 0);
+  if (model_.actuators.size() == own_actuators_) notes.push_back("no joint is left for --hold: each has an actuator or follows another");
 }
 
-/// Whether something else but its own axis says where a joint is: then it stays where the file has it.
-bool Start::is_tied(Index joint) const {
-  return !model_.connects.empty() || !model_.welds.empty() ||
-         std::any_of(model_.couplings.begin(), model_.couplings.end(), [&](const model::Coupling& c) { return c.joint == joint || c.other == joint; });
-}
-
-/// The pose that sets the machine on z = 0, unless the file has a floor.
-void Start::find_floor(const Options&) {
+/// The pose that sets the machine on z = 0 or above it, unless the file has a floor.
+void Start::find_floor(const Options& options) {
   for (const model::Geometry& geometry : model_.geometries)
     if (geometry.body < 0 && collides(model_, geometry) && (std::holds_alternative<model::Plane>(geometry.shape) || std::holds_alternative<model::FieldOf>(geometry.shape))) {
       const bool is_plane = std::holds_alternative<model::Plane>(geometry.shape);
@@ -133,7 +94,7 @@ void Start::find_floor(const Options&) {
   if (!q_.empty()) q = q_;
   std::vector<Pose> at(model_.bodies.size());
   space.poses(q, at);
-  const double lift = -lowest_point(model_, at);
+  const double lift = options.height - lowest_point(model_, at);
   pose_.position[2] = lift;
   // A free joint counts from the world, whatever the frame of the model is.
   if (q_.empty()) return;
@@ -145,25 +106,31 @@ void Start::find_floor(const Options&) {
 
 std::unique_ptr<Motion> Start::put(const Asked& asked) const {
   std::unique_ptr<Motion> motion = moved(model_, pose_, base_, asked);
+  Machine& machine = motion->machine;
   if (adds_floor_) motion->set().add_fixed(HalfSpace{});
-  if (!q_.empty()) {
-    JointSpace space(model_, base_, pose_);
-    set_joint_state(*motion, motion->machine, space, q_, v_);
+  JointSpace space(model_, base_, pose_);
+  if (!q_.empty()) motion->set_joints(space, q_, v_);
+  motion->joints.resize(model_.joints.size());
+  for (std::size_t j = 0; j < model_.joints.size(); ++j)
+    if (has_number(model_.joints[j])) motion->joints[j] = q_.empty() ? model_.joints[j].reference : q_[std::size_t(space.q_of(Index(j)))];
+  if (key_) {
+    model::Keyframe key = *key_;
+    if (!key.control.empty()) key.control.resize(machine.actuators.size());
+    set_controls(machine, key);
   }
-  if (key_) set_controls(motion->machine, *key_);
+  for (std::size_t k = own_actuators_; k < machine.actuators.size(); ++k) machine.controls[k] = motion->joints[std::size_t(model_.actuators[k].target)];
   return motion;
 }
 
 void Start::tell_limits(const Motion& motion) {
   for (std::size_t j = 0; j < model_.joints.size(); ++j) {
     const model::Joint& joint = model_.joints[j];
-    const bool has_number = joint.kind == model::JointKind::hinge || joint.kind == model::JointKind::slide;
     const model::Axis& axis = motion.machine.axes[j];
-    if (!has_number || !joint.is_limited || (axis.a.is_world() && axis.b.is_world())) continue;
-    const double q = position_of(motion.world(), motion.machine, Index(j)), slack = 1e-9 * (1 + std::abs(joint.lower) + std::abs(joint.upper));
+    if (!has_number(joint) || !joint.is_limited || (axis.a.is_world() && axis.b.is_world())) continue;
+    const double q = motion.joints[j], slack = 1e-9 * (1 + std::abs(joint.lower) + std::abs(joint.upper));
     if (q >= joint.lower - slack && q <= joint.upper + slack) continue;
-    notes.push_back("joint '" + joint.name + "' starts at " + inner::text(q) + (joint.kind == model::JointKind::hinge ? " rad" : " m") + ", outside of its limits " +
-                    inner::text(joint.lower) + " and " + inner::text(joint.upper) + ", and is pushed back");
+    notes.push_back("joint '" + joint.name + "' starts at " + inner::text(q) + unit_of(joint) + ", outside of its limits " + inner::text(joint.lower) + " and " +
+                    inner::text(joint.upper) + ", and is pushed back");
   }
 }
 

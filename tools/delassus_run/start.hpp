@@ -1,4 +1,4 @@
-/// A machine as its run begins: on its base, on the floor, in the pose of a keyframe.
+/// A machine as its run begins: on its base, on the floor, its joints in place.
 #pragma once
 
 #include "options.hpp"
@@ -13,8 +13,8 @@ class Start {
  public:
   std::vector<std::string> notes;  ///< sentences that the user should read
 
-  /// Refuses a keyframe that is not there. Links of one tree that are in each other as the run begins do not collide, unless the
-  /// options say so.
+  /// Refuses a keyframe and joints that are not there. Links of one tree that are in each other as the run begins do not collide,
+  /// unless the options say so.
   Start(const Model& model, const Options& options);
 
   Start(const Start&) = delete;
@@ -26,9 +26,7 @@ class Start {
   bool adds_floor() const { return adds_floor_; }
 
  private:
-  void find_numbers(const Options& options);
-  void find_allowed();
-  bool is_tied(Index joint) const;
+  void add_holders(const Options& options);
   void find_floor(const Options& options);
   void tell_limits(const Motion& motion);
   void tell_fall(const Motion& motion);
@@ -39,7 +37,8 @@ class Start {
   Pose pose_;
   bool adds_floor_ = false;
   const model::Keyframe* key_ = nullptr;
-  std::vector<double> q_, v_;  ///< of the joints, see `JointSpace`; empty: as the tree describes
+  std::size_t own_actuators_ = 0;  ///< of the file; those behind them hold their joints
+  std::vector<double> q_, v_;      ///< see `JointNumbers`
 };
 
 }  // namespace delassus_run

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
 
 namespace delassus_run {
 
@@ -72,6 +73,27 @@ std::vector<double> steps_within(double between) {
 
 std::string number(double x) { return inner::number_text(x, 6); }
 
+/// Says how far a study is, a line each tenth; a terminal has the library's own line besides.
+class Heard {
+ public:
+  /// As many loops after the two references; 0: says nothing.
+  explicit Heard(int loops) : loops_(loops) {}
+
+  void one_more() {
+    const std::lock_guard lock(mutex_);
+    const int n = ++begun_ - 2;
+    if (loops_ == 0 || (n > 0 && 10 * n / loops_ == 10 * (n - 1) / loops_)) return;
+    if (n <= 0) std::printf("study: reference %d of 2\n", begun_);
+    else std::printf("study: %d %% of the runs\n", 100 * n / loops_);
+    std::fflush(stdout);
+  }
+
+ private:
+  std::mutex mutex_;
+  const int loops_;
+  int begun_ = 0;
+};
+
 /// What the command line says for a run.
 std::string words_for(const StudyRun& run, const std::string& file, const Options& options) {
   std::string words = "./run machine " + file;
@@ -79,7 +101,13 @@ std::string words_for(const StudyRun& run, const std::string& file, const Option
   else words += std::string(run.code.starts_with("Implicit") ? " --integrator midpoint" : "") + " --dt " + number(run.h) + " --tolerance " + number(run.tolerance);
   if (options.base != Base::as_file) words += options.base == Base::free ? " --base free" : " --base fixed";
   if (options.has_ground) words += " --ground";
+  if (options.height > 0) words += " --height " + number(options.height);
   if (!options.key.empty()) words += " --key " + options.key;
+  for (const std::string& place : options.places) words += " --at " + place;
+  if (!options.hold.empty()) words += " --hold " + number(options.hold[0]) + (options.hold.size() > 1 ? "," + number(options.hold[1]) : "");
+  if (options.pushes_apart) words += " --push-apart";
+  if (!options.meshes.empty()) words += " --meshes " + options.meshes;
+  for (const std::string& package : options.packages) words += " --package " + package;
   if (options.friction >= 0) words += " --friction " + number(options.friction);
   return words;
 }
@@ -91,11 +119,15 @@ void study_of(const Model& model, const Start& start, const Options& options, co
   plan.steps = steps_within(plan.duration / plan.outputs);
   plan.accuracies = {1e-2, 1e-3, 1e-4};
   plan.tolerances = {1e-3, 1e-6};
-  plan.max_seconds = 20;
+  plan.max_seconds = std::max(2., 2 * options.seconds);  // at half the pace of the clock
   plan.repeats = 1;
   plan.is_quiet = options.is_quiet;
 
+  // Each run is made twice, by its measures and by the clock.
+  const std::size_t runs = plan.tolerances.size() * (2 * plan.steps.size() + plan.accuracies.size());
+  Heard heard(options.is_quiet ? 0 : int(2 * runs));
   const auto scene = [&](const auto& policy) {
+    heard.one_more();
     Asked asked = policy.asked();
     asked.friction = options.friction;
     asked.longest_step = 0.02;  // s: with it that tolerance is fine enough
