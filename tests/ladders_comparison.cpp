@@ -219,7 +219,7 @@ TEST_CASE("a hinge's gap is the angle between its axes, a slider's the way off i
   const auto hinge = loop.add(Hinge::Item{world_anchor({0, 0, 0}), anchor(set, body)});
   CHECK(std::abs(look(loop).joint_gap - 0.1) < 1e-14);
   loop.remove(hinge);
-  set.place(body, {0.03, 0.04, 7});
+  set.place(body, {0.03, 0.04, 7}, Quat::Identity());
   loop.add(Slider::Item{world_anchor({0, 0, 0}), anchor(set, body)});
   CHECK(std::abs(look(loop).joint_gap - 0.05) < 1e-15);
 }
