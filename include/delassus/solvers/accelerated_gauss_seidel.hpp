@@ -99,11 +99,17 @@ struct BasicAcceleratedGaussSeidel {
   SolveReport solve(Island<T>& problem, Space& work) const;
 
  private:
-  /// What the stages have found, or what they find from loads that are shared; the former where they then find less.
+  /// What the stages have found, or what they find from loads that are shared.
   template <class T, class Space>
-  SolveReport finish(auto& monitor, Island<T>& problem, Space& work) const {
+  [[gnu::always_inline]] SolveReport finish(auto& monitor, Island<T>& problem, Space& work) const {
     SolveReport report = monitor.finish();  // the only one that is returned, and so never copied
-    if (share_loads_up_to <= 0) return report;
+    if (share_loads_up_to > 0 && (work.loads.rounds > 0 || problem.row_count() >= inner::fewest_rows_of_loads))
+      share_loads(report, problem, work);
+    return report;
+  }
+  /// Solves again from loads that are shared, where they are left to chance; keeps what was before where that finds less.
+  template <class T, class Space>
+  void share_loads(SolveReport& report, Island<T>& problem, Space& work) const {
     inner::SettleSpace<T>& loads = work.loads;
     if (loads.rounds > 0 && report.status > loads.before.status) {
       problem.load(loads.solved_before);
@@ -114,10 +120,9 @@ struct BasicAcceleratedGaussSeidel {
     } else if (report.sweeps < max_iterations &&
                inner::settle_loads(problem, loads, share_loads_up_to, criterion == Criterion::residual && !all_verified ? tolerance : 0, report)) {
       report = solve(problem, work);
-      return report;
+      return;
     }
     loads.rounds = loads.sweeps = 0;
-    return report;
   }
   /// Plain sweeps, until what is left is a few slow directions or one circle, which five changes can tell. Of a rough start
   /// five changes tell nothing, and mixing at once may end none: therefore forty sweeps.

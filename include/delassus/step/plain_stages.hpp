@@ -192,9 +192,10 @@ struct PlainStages : StagesWithoutConstraints {
   }
   /// One of them, an `Island`.
   static void solve_island(auto& step, auto& island) {
+    using Step = std::remove_reference_t<decltype(step)>;
     SolveReport& report = step.reports[island.island()];
-    report = step.solver().solve(island, std::remove_reference_t<decltype(step)>::Stages::solver_workspace(step, island));
-    report.undecided_loads = inner::undecided_loads<typename std::remove_reference_t<decltype(step)>::Scalar>(island, report);
+    report = step.solver().solve(island, Step::Stages::solver_workspace(step, island));
+    if constexpr (inner::some_push<typename Step::Laws>) report.undecided_loads = inner::undecided_loads<typename Step::Scalar>(island, report);
   }
   static auto& solver_workspace(auto& step, auto&) { return step.solver_workspace.itself(); }
   /// Impulses go to the items and to the contacts, and are kept for the next step.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/core/slice.hpp>
+#include <delassus/fwd.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
@@ -23,6 +24,12 @@ inline void summarise(inner::Slice<const SolveReport> islands, StepReport& step)
 }
 
 namespace inner {
+
+/// Whether a law's first row can only push, as that of a contact.
+template <class Laws>
+inline constexpr bool some_push = false;
+template <class... L>
+inline constexpr bool some_push<Constraints<L...>> = ((row_kinds<L>()[0] == RowKind::lower) || ...);
 
 /// Of an island whose solver says whether it decided the loads.
 template <class T>

@@ -38,6 +38,9 @@ Closed closed_items(const Island<T>& problem) {
   return out;
 }
 
+/// Three contacts with friction have as many; fewer share no load in several ways.
+inline constexpr int fewest_rows_of_loads = 9;
+
 /// Whether some contact's friction is as large as it may be, as where it slips.
 template <class T>
 bool some_may_slip(const Island<T>& problem) {
@@ -61,7 +64,7 @@ template <class T>
 bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tolerance, SolveReport& report) {
   constexpr int most_rounds = 3, most_products = 200;
   constexpr double least_way = 1e-4;  // of |λ|; what is nearer is not solved again
-  if (problem.row_count() < 9) return false;  // three contacts with friction have nine
+  if (problem.row_count() < fewest_rows_of_loads) return false;
   const Closed closed = closed_items(problem);
   if (closed.contacts < 3 || closed.contacts > most || closed.rows > 6 * most) return false;
   if (closed.others == 0 && !some_may_slip(problem)) return false;
