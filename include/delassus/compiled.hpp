@@ -84,7 +84,9 @@ extern template struct CompiledWithAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>;
   KIND struct inner::BlockLoops<R, 6, double>;                                                                  \
   KIND void inner::apply_inverse<false>(const RigidBodies&, SetBlocks<R, 6, double>&, inner::Range);                         \
   KIND void inner::apply_inverse<false>(const Particles&, SetBlocks<R, 3, double>&, inner::Range);                            \
-  KIND void inner::set_own_blocks<R>(const RowView<double>&, inner::Range, double*, double*);
+  KIND void inner::set_own_blocks<R>(const RowView<double>&, inner::Range, double*, double*);                            \
+  KIND struct inner::SetOwnBlocks<R, double>;                                                                          \
+  KIND void inner::add_impulses_to_bodies<R>(const RowView<double>&);
 
 #define DELASSUS_COMPILED_ROWS(KIND)                                                                                              \
   DELASSUS_COMPILED_HEIGHT(KIND, 1)                                                                                               \

@@ -41,16 +41,17 @@ class UnassembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
 
   template <class World>
   void build(const World& world, Rows& rows) {
-    are_apart_ = false;
-    if (couples(world)) matrix_.build(world, rows);
-    if (!is_matrix_) build_own(world, rows, inner::OneRange{});
+    are_apart_ = is_matrix_ = false;
+    if constexpr (inner::any_may_couple<World>)
+      if ((is_matrix_ = couples(world))) return matrix_.build(world, rows);
+    build_own(world, rows, inner::OneRange{});
   }
   /// The same by several workers, with room as for a matrix.
   template <class World, class Parts, class E>
   void build(const World& world, Rows& rows, Parts& parts, auto& of_sets, const E& execution) {
-    are_apart_ = true;
-    if (couples(world)) matrix_.build(world, rows, parts, of_sets, execution);
-    if (is_matrix_) return;
+    are_apart_ = true, is_matrix_ = false;
+    if constexpr (inner::any_may_couple<World>)
+      if ((is_matrix_ = couples(world))) return matrix_.build(world, rows, parts, of_sets, execution);
     build_own(world, rows, inner::SharedRanges{execution});
     world.each([&](const auto& set, auto s) {
       each_pool(rows, [&](auto, const auto& pool) {
@@ -65,12 +66,10 @@ class UnassembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   void reset(const Rows& rows) {
     if (is_matrix_) return;
     for (auto& y : y_) y.assign_zeros(y.size());
-    each_pool(rows, [&](auto p, const auto& pool) {
-      for_pool<p>(rows, [&](const RowView<T>& view) {
-        for (Index i = 0; i < pool.items(); ++i)
-          inner::impulse_changed<R_of<p>>(view, i,
-                                          inner::load<R_of<p>>(view.lambda + std::ptrdiff_t(R_of<p>) * i));
-      });
+    for_each_index<pools>([&](auto p) __attribute__((always_inline)) {
+      Shown of;
+      show_bodies<p>(rows, of);
+      inner::add_impulses_to_bodies<R_of<p>>(of.view);
     });
   }
 
@@ -85,17 +84,17 @@ class UnassembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   Vec<Rows::template rows_of<p>, T> residual(const Rows& rows, Index i) const {
     if (is_matrix_) return matrix_.template residual<p>(rows, i);
     Vec<R_of<p>, T> out;
-    for_pool<p>(rows, [&](const RowView<T>& view) {
-      inner::store(inner::velocity_without_blocks<R_of<p>>(view, i), out.data());
-    });
+    Shown of;
+    show_bodies<p>(rows, of);
+    inner::store(inner::velocity_without_blocks<R_of<p>>(of.view, i), out.data());
     return out;
   }
   template <int p>
   void commit(const Rows& rows, Index i, const Vec<Rows::template rows_of<p>, T>& change) {
-    if (!is_matrix_)
-      for_pool<p>(rows, [&](const RowView<T>& view) {
-        inner::impulse_changed<R_of<p>>(view, i, inner::load<R_of<p>>(change.data()));
-      });
+    if (is_matrix_) return;
+    Shown of;
+    show_bodies<p>(rows, of);
+    inner::impulse_changed<R_of<p>>(of.view, i, inner::load<R_of<p>>(change.data()));
   }
 
   /// The arrays that a solver reads of row p.
@@ -126,12 +125,10 @@ class UnassembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
   template <int p>
   static constexpr int R_of = Rows::template rows_of<p>;
 
-  template <class World>
-  bool couples(const World& world) {
-    is_matrix_ = false;
-    if constexpr (inner::any_may_couple<World>)
-      world.each([&](const auto& set, auto) { is_matrix_ = is_matrix_ || inner::is_coupled(set); });
-    return is_matrix_;
+  static bool couples(const auto& world) {
+    bool any = false;
+    world.each([&](const auto& set, auto) { any = any || inner::is_coupled(set); });
+    return any;
   }
   template <class Ranges>
   void build_own(const auto& world, Rows& rows, const Ranges& ranges) {
@@ -140,29 +137,29 @@ class UnassembledCompliance::Operator<RowSystem<T, Widths<w...>, R...>> {
       y_[std::size_t(int(s))].resize(std::size_t(set.blocks()) *
                                      std::size_t(std::remove_cvref_t<decltype(set)>::width));
     });
-    each_pool(rows, [&](auto p, const auto& pool) {
+    for_each_index<pools>([&](auto p) __attribute__((always_inline)) {
       constexpr int height = R_of<p>;
-      const std::size_t items = std::size_t(pool.items());
+      const std::size_t items = std::size_t(rows.template pool<p>().items());
       diagonal_[p].resize_for_overwrite(std::size_t(height * height) * items);
       compliance_[p].resize_for_overwrite(std::size_t(height) * items);
       if (items == 0) return;
-      for_pool<p>(rows, [&](const RowView<T>& view) {
-        ranges(view.items, 128, [&](inner::Range range) {
-          inner::set_own_blocks<height>(view, range, diagonal_[p].data(), compliance_[p].data());
-        });
-      });
+      Shown of;
+      show_bodies<p>(rows, of);
+      ranges(of.view.items, 128, inner::SetOwnBlocks<height, T>{of.view, diagonal_[p].data(), compliance_[p].data()});
     });
   }
-  /// f(view) with what `show` says, for a moment.
-  template <int p>
-  void for_pool(const Rows& rows, auto&& f) const {
+
+  /// What `show` says, for a moment.
+  struct Shown {
     SetBlocksView<T> of_sets[sets + 1];
     RowView<T> view;
-    inner::show_rows(const_cast<Rows&>(rows).template pool<p>(), p, view, of_sets);
-    view.form = FormOfW::bodies;
-    view.on_diagonal = compliance_[p].data();
-    for (int s = 0; s < sets; ++s) of_sets[s].y = const_cast<double*>(y_[std::size_t(s)].data());
-    f(view);
+  };
+  template <int p>
+  [[gnu::always_inline]] void show_bodies(const Rows& rows, Shown& of) const {
+    inner::show_rows(const_cast<Rows&>(rows).template pool<p>(), p, of.view, of.of_sets);
+    of.view.form = FormOfW::bodies;
+    of.view.on_diagonal = compliance_[p].data();
+    for (int s = 0; s < sets; ++s) of.of_sets[s].y = const_cast<double*>(y_[std::size_t(s)].data());
   }
 
   bool is_matrix_ = false, are_apart_ = false;

@@ -40,7 +40,7 @@ concept HasEnds = HasParts<Item> || requires(const Item& item) { item.a.owner, i
 
 /// f(a, b) for every pair of ends that an item holds apart or together; nothing for one without ends.
 template <class Item, class F>
-void each_pair(Item& item, F&& f) {
+[[gnu::always_inline]] inline void each_pair(Item& item, F&& f) {
   if constexpr (HasParts<Item>) {
     for (auto& part : item.parts)
       if (part.is_given()) f(part.a, part.b);
@@ -50,7 +50,7 @@ void each_pair(Item& item, F&& f) {
 }
 /// f(anchor) for every end of an item; nothing for one without ends.
 template <class Item, class F>
-void each_end(Item& item, F&& f) {
+[[gnu::always_inline]] inline void each_end(Item& item, F&& f) {
   each_pair(item, [&](auto& a, auto& b) __attribute__((always_inline)) { f(a), f(b); });
   if constexpr (requires { item.c.owner, item.d.owner; }) f(item.c), f(item.d);
 }

@@ -5,6 +5,7 @@
 #include <delassus/core/index.hpp>
 #include <delassus/core/ranges.hpp>
 #include <delassus/math/eager.hpp>
+#include <delassus/rows/free_velocity.hpp>
 #include <delassus/rows/row_view.hpp>
 
 #include <cstddef>
@@ -40,6 +41,20 @@ void set_own_blocks(const RowView<T>& view, Range items, T* diagonal, T* complia
       x += compliance[row];
     }
   }
+}
+
+/// The same, as a function of the items.
+template <int R, class T>
+struct SetOwnBlocks {
+  const RowView<T>& view;
+  T *diagonal, *compliance;
+  void operator()(Range items) const { set_own_blocks<R>(view, items, diagonal, compliance); }
+};
+
+/// y += G λ of every item: its impulses as the velocities of its bodies.
+template <int R, class T>
+void add_impulses_to_bodies(const RowView<T>& view) {
+  for (Index i = 0; i < view.items; ++i) impulse_changed<R>(view, i, load<R>(view.lambda + std::ptrdiff_t(R) * i));
 }
 
 }  // namespace delassus::inner
