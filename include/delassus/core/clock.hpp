@@ -20,7 +20,7 @@ concept Clock = std::copyable<C> && requires(const C clock) {
 struct SteadyClock {
   double now() const {
 #ifdef CLOCK_MONOTONIC
-    std::timespec time;
+    ::timespec time;  // of the C library: not every platform has it in std
     ::clock_gettime(CLOCK_MONOTONIC, &time);
     return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 #else
