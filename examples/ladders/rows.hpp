@@ -140,7 +140,7 @@ inline constexpr Row rows[] = {
     {"HC-08", "range of friction up to 1, all its scenes", "AcceleratedGaussSeidel{.tolerance = 1e-6, .max_iterations = 200}",
      friction_range_in_200, Level::silver},
     {"HC-08", "range of friction, wedge and arch", "", jams, Level::gold},
-    {"HC-08", "range of friction, wedge and arch", "ProximalNewton", jams_newton, Level::gold},
+    {"HC-08", "range of friction, wedge and arch", "ProximalNewton, PositionProjection", jams_newton, Level::gold},
     {"HC-09", "duplicate constraints", "", duplicates, Level::gold},
     {"HC-10", "redundant hinges", "WholeViolation, Substeps{.count = 4}", many_hinges, Level::gold},
     {"HC-10", "redundant hinges", "NewtonMidpoint", many_hinges_midpoint, Level::gold},
