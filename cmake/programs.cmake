@@ -9,6 +9,10 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${DELASSUS_CCACHE})
   endif()
 endif()
+# The system's Python, for which apt installs NumPy and VTK, before others that stand on the path.
+if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED Python3_EXECUTABLE AND NOT DEFINED Python3_ROOT_DIR AND NOT DEFINED ENV{VIRTUAL_ENV})
+  set(Python3_ROOT_DIR /usr)
+endif()
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ${PROJECT_IS_TOP_LEVEL})
 
