@@ -101,19 +101,24 @@ inline void describe(CLI::App& app, Options& options) {
   app.add_option("--out", options.out, "folder of NAME.html and NAME.csv, made if missing")->capture_default_str();
 }
 
-/// What no single option shows. Throws a sentence.
+/// What no single option of a machine shows. Throws a sentence.
+inline void check_machine(const Options& options) {
+  DELASSUS_EXPECT(options.accuracy == 0 || options.integration != Integration::euler,
+                  "--accuracy takes an integrator of second order; take --integrator euler out, or write midpoint");
+  DELASSUS_EXPECT(options.hold.size() <= 2, "--hold takes a stiffness and a damping, not " + std::to_string(options.hold.size()) + " numbers");
+  for (const std::string& package : options.packages)
+    DELASSUS_EXPECT(package.find('=') != 0 && package.find('=') != package.npos, "--package " + package + ": write NAME=FOLDER");
+}
+
+/// The same of a run.
 inline void check(const Options& options) {
+  check_machine(options);
   const double steps = options.seconds / options.caller_step();
   DELASSUS_EXPECT(options.accuracy > 0 || options.step <= options.seconds,
                   "--dt " + inner::text(options.step) + " is longer than --seconds " + inner::text(options.seconds));
   DELASSUS_EXPECT(steps <= Options::most_steps, "--seconds " + inner::text(options.seconds) + " are " + inner::text(steps) + " steps of " +
                                                     inner::text(options.caller_step()) + " s; more than 1e7 are refused");
-  DELASSUS_EXPECT(options.accuracy == 0 || options.integration != Integration::euler,
-                  "--accuracy takes an integrator of second order; take --integrator euler out, or write midpoint");
   DELASSUS_EXPECT(!options.studies || options.control.empty(), "--study compares runs with the controls of --key; take --control out");
-  DELASSUS_EXPECT(options.hold.size() <= 2, "--hold takes a stiffness and a damping, not " + std::to_string(options.hold.size()) + " numbers");
-  for (const std::string& package : options.packages)
-    DELASSUS_EXPECT(package.find('=') != 0 && package.find('=') != package.npos, "--package " + package + ": write NAME=FOLDER");
 }
 
 /// A name of its own for what each model writes: the file's, with the folder's before it or a number behind it where two are the same.

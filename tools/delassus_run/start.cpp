@@ -19,12 +19,6 @@ namespace delassus_run {
 
 namespace {
 
-/// The link that a body of a loop was made of, the first of them; −1: none.
-Index link_of(const Machine& machine, const Anchor& body) {
-  for (std::size_t b = 0; b < machine.parts.size(); ++b)
-    if (!machine.parts[b].is_world && !body.is_world() && machine.parts[b].body.index == body.block) return Index(b);
-  return -1;
-}
 Index root_of(const Model& model, Index link) {
   while (model.bodies[std::size_t(link)].parent >= 0) link = model.bodies[std::size_t(link)].parent;
   return link;
@@ -49,6 +43,12 @@ double lowest_point(const Model& model, const std::vector<Pose>& at) {
 }
 
 }  // namespace
+
+Index link_of(const Machine& machine, const Anchor& body) {
+  for (std::size_t b = 0; b < machine.parts.size(); ++b)
+    if (!machine.parts[b].is_world && !body.is_world() && machine.parts[b].body.index == body.block) return Index(b);
+  return -1;
+}
 
 Start::Start(const Model& model, const Options& options) : model_(model), base_(options.base), key_(keyframe(model_, options)), own_actuators_(model.actuators.size()) {
   JointNumbers numbers = joint_numbers(model_, base_, options);

@@ -8,6 +8,9 @@
 
 namespace delassus_run {
 
+/// The link that a body of a loop was made of, the first of them; −1: none.
+Index link_of(const Machine& machine, const Anchor& body);
+
 /// What a run begins from. Made once, and put into as many loops as wanted.
 class Start {
  public:
