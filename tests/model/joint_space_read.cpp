@@ -124,4 +124,22 @@ TEST_CASE("a quaternion keeps its sign") {
   }
 }
 
+// Near the pose in which the first and the third hinge are parallel they turn the body nearly alike, one against the other.
+TEST_CASE("three hinges near their lock go on by less than a turn and reach the pose") {
+  const Model m = with_joints({{.axis = {1, 0, 0}}, {.axis = {0, 1, 0}}, {.axis = {0, 0, 1}}});
+  JointSpace space(m);
+  Dice dice{std::mt19937(77)};
+  for (int n = 0; n < 200; ++n) {
+    const double off = std::pow(10., -2 - dice.below(7));
+    std::vector<double> q{dice.number(1), std::numbers::pi / 2 - off, dice.number(1)};
+    const std::vector<double> before = q;
+    std::vector<Pose> pose(1);
+    space.poses(q, pose);
+    const Quat moved = exponential<double>(dice.vector(1e-3)) * Quat(pose[0].rotation);
+    const JointGap gap = space.read_q(0, {}, {pose[0].position, rotation_matrix(moved)}, q);
+    CHECK(gap.angle <= 1e-12);
+    CHECK(difference(q, before) <= std::numbers::pi);
+  }
+}
+
 }  // namespace model_joint_space_read_tests

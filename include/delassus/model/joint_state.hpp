@@ -2,9 +2,11 @@
 #pragma once
 
 #include <delassus/bodies/world.hpp>
+#include <delassus/constraints/joints/coupling.hpp>
 #include <delassus/math/rotation.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/model/inner/count_turns.hpp>
+#include <delassus/model/inner/each_rotor.hpp>
 #include <delassus/model/joint_space.hpp>
 #include <delassus/model/machine.hpp>
 
@@ -27,7 +29,9 @@ KnownTurns place_joints(Loop& loop, const Machine& machine, JointSpace& space, s
   space.poses(q, poses);
   space.velocities(q, v, velocities);
   for (std::size_t b = 0; b < machine.parts.size(); ++b) {
-    const std::string why = machine.parts[b].is_world ? "" : what_is_wrong(set, machine.parts[b].body);
+    if (machine.parts[b].is_world) continue;
+    std::string why = what_is_wrong(set, machine.parts[b].body);
+    if (why.empty() && !(norm(poses[b].position) <= 1e50 && norm(velocities[b]) <= 1e50)) why = "q and v take it beyond 1e50 m or 1e50 m/s";
     if (!why.empty()) refuse("set_joint_state: body " + std::to_string(b) + ": " + why);
   }
   for (std::size_t b = 0; b < machine.parts.size(); ++b) {
@@ -46,6 +50,7 @@ KnownTurns place_joints(Loop& loop, const Machine& machine, JointSpace& space, s
       coordinates[j] = machine.axes[j].coordinate(q[std::size_t(k)]);
   KnownTurns turns(machine, std::move(coordinates));
   tell_laws(loop, turns);
+  each_rotor(loop, machine, [](Index, auto& item) { item.rate = from_pose; });  // it turns as the bodies do
   return turns;
 }
 

@@ -13,6 +13,12 @@
 
 namespace delassus::inner {
 
+/// The same place of the same body.
+inline bool is_same_end(const Anchor& a, const Anchor& b) {
+  return a.block == b.block && a.set == b.set && a.generation == b.generation && a.owner == b.owner && a.local == b.local &&
+         a.frame.coeffs() == b.frame.coeffs();
+}
+
 /// The coordinate of each axis of a machine, by joint, in turns that somebody knows.
 class KnownTurns {
  public:
@@ -24,15 +30,11 @@ class KnownTurns {
     if (a.is_world() && b.is_world()) return;
     for (std::size_t j = 0; j < machine_.axes.size(); ++j) {
       const model::Axis& axis = machine_.axes[j];
-      if (axis.kind == kind && is_same(axis.b, b) && is_same(axis.a, a)) position = coordinates_[j];
+      if (axis.kind == kind && is_same_end(axis.b, b) && is_same_end(axis.a, a)) position = coordinates_[j];
     }
   }
 
  private:
-  static bool is_same(const Anchor& a, const Anchor& b) {
-    return a.block == b.block && a.set == b.set && a.generation == b.generation && a.owner == b.owner &&
-           a.local == b.local && a.frame.coeffs() == b.frame.coeffs();
-  }
   const Machine& machine_;
   const std::vector<double> coordinates_;
 };

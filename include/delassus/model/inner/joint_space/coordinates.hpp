@@ -72,11 +72,23 @@ struct Saved {
   }
 };
 
-/// Gauss-Newton from the last q, with steps that are halved until they lead nearer.
+/// Whether a step turns a joint by more than half a turn: near a pose in which two hinges are parallel it could be any number of turns.
+inline bool is_wild(const Tree& tree, const Place& body, const Vec<6>& x) {
+  Index k = 0;
+  for (Index i = body.first; i < body.last; ++i)
+    for (Index j = v_count(tree.nodes[std::size_t(i)].kind); j > 0; --j, ++k)
+      if (tree.nodes[std::size_t(i)].kind != JointKind::slide && !(std::abs(x[k]) <= std::numbers::pi)) return true;
+  return false;
+}
+
+/// Gauss-Newton from the last q, with steps that are halved until they lead nearer, and that of Levenberg and Marquardt where a step
+/// is wild.
 inline void solve_along_axes(const Tree& tree, const Place& body, const Pose& goal, std::span<double> q) {
   Vec<6> left = step_to(tree, body, q, goal);
   for (int iteration = 0; iteration < 50; ++iteration) {
-    const Vec<6> x = nearest_rates(axes_of(tree, body, q), left);
+    const Axes axes = axes_of(tree, body, q);
+    Vec<6> x = nearest_rates(axes, left);
+    if (is_wild(tree, body, x)) x = nearest_rates(axes, left, squared_norm(left));
     const Saved saved(tree, body, q);
     double share = 1;
     for (int halving = 0; halving < 12; ++halving, share /= 2) {

@@ -26,12 +26,13 @@ inline Axes axes_of(const Tree& tree, const Place& body, std::span<const double>
 }
 
 /// x that makes |Σ columns x − motion|² least, m and rad alike. A freedom that moves the body as others
-/// before it do has the rate 0.
-inline Vec<6> nearest_rates(const Axes& axes, const Vec<6>& motion) {
+/// before it do has the rate 0. `damping` is added for each x²: it bounds x where freedoms move the body nearly alike.
+inline Vec<6> nearest_rates(const Axes& axes, const Vec<6>& motion, double damping = 0) {
   Mat<6, 6> N = zero<Mat<6, 6>>();
   Vec<6> b = zero<Vec<6>>();
   for (Index i = 0; i < axes.count; ++i) {
     for (Index j = 0; j <= i; ++j) N(i, j) = dot(axes.columns[i], axes.columns[j]);
+    N(i, i) += damping;
     b[i] = dot(axes.columns[i], motion);
   }
   return solve_positive(N, b);
