@@ -4,6 +4,7 @@ import gc
 import math
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -12,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, sys.argv[1])
+MODULE = Path(sys.argv[1]).resolve()
+sys.path.insert(0, str(MODULE))
 import delassus  # noqa: E402
 
 G = 9.81
@@ -33,6 +35,23 @@ PARTS = """<mujoco><option gravity="0 0 0"/><worldbody>
 <body name="hull"><freejoint name="root"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
 <body name="head"><joint name="neck" type="ball"/><inertial pos="0 0 0" mass="1" diaginertia="0.25 0.25 0.25"/></body></body>
 </worldbody><actuator><motor name="engine" joint="turn"/></actuator></mujoco>
+"""
+
+
+# Two rods in a row, the second with a rotor.
+DOUBLE = """<mujoco><worldbody><body name="upper"><joint name="shoulder" axis="0 1 0"/><inertial pos="0 0 -0.5" mass="1" diaginertia="0.08 0.08 0.01"/>
+<body name="lower" pos="0 0 -1"><joint name="elbow" axis="0 1 0" armature="0.05"/><inertial pos="0 0 -0.5" mass="1" diaginertia="0.08 0.08 0.01"/></body></body></worldbody></mujoco>
+"""
+
+
+# A body that flies with another on a ball joint.
+FLYING = """<mujoco><option gravity="0 0 0"/><worldbody><body><freejoint/><inertial pos="0.1 0 0.05" mass="1" diaginertia="0.3 0.2 0.15"/>
+<body pos="0.5 0 0"><joint type="ball" pos="-0.2 0 0"/><inertial pos="0.1 0.1 0" mass="0.7" diaginertia="0.05 0.07 0.06"/></body></body></worldbody></mujoco>
+"""
+LIFTED = """<mujoco><worldbody><body gravcomp="GRAVCOMP"><joint name="b" type="ball" stiffness="STIFFNESS"/><inertial pos="0.3 0 0" mass="1" diaginertia="0.1 0.1 0.1"/></body></worldbody></mujoco>
+"""
+THREE = """<mujoco><option gravity="0 0 0"/><worldbody><body><joint axis="1 0 0"/><joint axis="0 1 0"/><joint axis="0 0 1"/>
+<inertial pos="0.1 0.2 0.3" mass="1" diaginertia="0.2 0.3 0.4"/></body></worldbody></mujoco>
 """
 
 
@@ -93,15 +112,16 @@ def check_throw(folder):
 
 def check_contacts(folder):
     """A box at rest: its contacts carry it, also where the steps are the library's."""
-    for options in ({"dt": 2e-3}, {"accuracy": 1e-3}):
-        machine = delassus.Machine(write(folder, "box.xml", BOX), ground=True, height=0.01, tolerance=1e-9, **options)
-        machine.step(1000)
+    for options in ({"dt": 2e-3, "height": 0.01}, {"accuracy": 1e-3, "height": 0.01}, {"accuracy": 1e-3, "height": 0.1}):
+        machine = delassus.Machine(write(folder, "box.xml", BOX), ground=True, tolerance=1e-9, **options)
+        impulse = sum((machine.step(), machine.contact_forces.sum(axis=0)[2] * machine.dt)[1] for _ in range(300))
+        expect(abs(impulse - 1.5 * (G * machine.time + machine.v[2])) < 1e-3 * impulse, f"impulses of all steps: {impulse} {options}")
+        machine.step(700)
         count = len(machine.contact_gaps)
-        on_box = np.where(machine.contact_links[:, 1] == 0, 1, -1)[:, None]  # forces and normals are on and to the second link
-        forces, normals = on_box * machine.contact_forces, on_box * machine.contact_normals
+        forces, normals = machine.contact_forces, machine.contact_normals
         expect(count >= 3 and forces.shape == (count, 3) and machine.contact_points.shape == (count, 3), f"contacts: {count}")
         expect(np.allclose(forces.sum(axis=0), [0, 0, 1.5 * G], atol=1e-5), f"weight {forces.sum(axis=0)} {options}")
-        expect({*machine.contact_links.flatten()} == {-1, 0} and np.all(machine.contact_links.sum(axis=1) == -1), f"links {machine.contact_links}")
+        expect(np.array_equal(machine.contact_links, [[-1, 0]] * count), f"links {machine.contact_links}")
         expect(np.allclose(normals, [0, 0, 1]) and np.all(forces[:, 2] >= 0), f"normals {normals}")
         expect(np.allclose(machine.contact_points[:, 2], 0, atol=1e-4), "points")
 
@@ -110,6 +130,7 @@ def check_forces(folder):
     """Torque times time over inertia; what pushes a ball joint pushes its parent back."""
     machine = delassus.Machine(write(folder, "parts.xml", PARTS), dt=1e-3)
     turn, root, neck = (machine.v_index[name] for name in ("turn", "root", "neck"))
+    expect(machine.joints == ["turn", "root", "neck"] == list(machine.v_index) and len(machine.v) == 10, f"joints {machine.joints}")
     machine.forces[turn] = 0.5
     machine.controls[machine.actuators.index("engine")] = 1.5
     machine.forces[neck + 1] = 0.2
@@ -117,7 +138,7 @@ def check_forces(folder):
     expect(abs(machine.v[turn] - 2 / 0.5) < 1e-6, f"wheel: {machine.v[turn]}")
     # 0.2 N m turn the head one way and the hull the other, apart by 0.2 (1 / 0.25 + 1 / 1) rad/s after 1 s.
     expect(abs(machine.v[neck + 1] - 1) < 1e-6 and abs(machine.v[root + 4] + 0.2) < 1e-6, f"neck and hull: {machine.v}")
-    machine.forces[:] = 0
+    machine.forces = np.zeros(10)
     machine.controls[:] = 0
     machine.forces[root] = 3
     before = machine.q[machine.q_index["turn"]]
@@ -150,6 +171,66 @@ def check_state(folder):
     expect(abs(machine.q[0] - 0.3) < 1e-9, f"held: {machine.q}")
 
 
+def check_no_change(folder):
+    """What is set to what it is goes on as it was: bodies end a step with rates that no v has, and v must keep their momentum."""
+    arm = write(folder, "double.xml", DOUBLE)
+    for tolerance, options in ((1e-4, {}), (1e-2, {"integrator": "midpoint"})):
+        machines = [delassus.Machine(arm, dt=1e-3, tolerance=1e-12, **options) for _ in range(2)]
+        for machine in machines:
+            machine.set_state([1, 0.5], [5, -3])
+        for _ in range(1000):
+            machines[0].set_state(machines[0].q, machines[0].v)
+            for machine in machines:
+                machine.step()
+        apart = abs(machines[0].q - machines[1].q).max()
+        expect(apart < tolerance and abs(machines[0].q[0] - 1) > 1, f"set to what it is, {apart} rad apart after 1 s: {options}")
+
+
+def check_order(folder):
+    """Forces act along the axes halfway through a step: half of it has a quarter of the error."""
+    def end(dt):
+        machine = delassus.Machine(write(folder, "flying.xml", FLYING), dt=dt, integrator="midpoint", tolerance=1e-12)
+        machine.set_state(machine.q, [1, 2, 3, 4, -5, 3, 2, 1, 0.5])
+        machine.forces = [0.1, 0.2, 0.3, 1, 2, 3, 0.5, -1, 0.4]
+        machine.step(round(0.5 / dt))
+        return machine.q.copy()
+
+    coarse, middle, fine, exact = (end(dt) for dt in (4e-3, 2e-3, 1e-3, 1e-4))
+    ratios = [np.abs(a - exact).max() / np.abs(b - exact).max() for a, b in ((coarse, middle), (middle, fine))]
+    expect(all(3.4 < ratio < 4.6 for ratio in ratios), f"errors fall by {ratios}")
+
+
+def check_weights(folder):
+    """What holds a machine at rest is what acts on it: weight taken off without an actuator, and no spring of a ball joint."""
+    lifted = delassus.Machine(write(folder, "lifted.xml", LIFTED.replace("GRAVCOMP", "1").replace("STIFFNESS", "0")), dt=1e-3)
+    lifted.set_state([0.8, 0, 0.6, 0], [0, 0, 0])
+    lifted.step(500)
+    expect(np.all(lifted.gravity_compensation() == 0) and np.abs(lifted.v).max() < 1e-9, f"a lifted link: {lifted.v}")
+    sprung = delassus.Machine(write(folder, "sprung.xml", LIFTED.replace("GRAVCOMP", "0").replace("STIFFNESS", "10")), dt=1e-3)
+    sprung.set_state([0.8, 0, 0.6, 0], [0, 0, 0])
+    sprung.forces = sprung.gravity_compensation()
+    sprung.step(500)
+    expect(np.abs(sprung.v).max() < 1e-9, f"a ball joint with a spring that does not act: {sprung.v}")
+
+
+def check_lock(folder):
+    """Three hinges where the first and the third are all but parallel: angles go on by what can be, not by thousands of turns."""
+    machine = delassus.Machine(write(folder, "three.xml", THREE), dt=1e-3)
+    machine.set_state([0.3, math.pi / 2 - 1e-6, 0.1], [1, 0, 0.2])
+    machine.forces[0] = 1
+    machine.step()
+    expect(np.abs(machine.q).max() < 8, f"three hinges: {machine.q}")
+
+
+def check_end(folder):
+    """A program may end while a thread of it steps."""
+    write(folder, "pendulum.urdf", PENDULUM)
+    program = ("import sys, threading, time; sys.path.insert(0, sys.argv[1]); import delassus; m = delassus.Machine('pendulum.urdf', dt=1e-6); "
+               "threading.Thread(target=m.step, args=(10**12,), daemon=True).start(); time.sleep(0.2); print('ends')")
+    done = subprocess.run([sys.executable, "-c", program, str(MODULE)], cwd=folder, capture_output=True, text=True, timeout=60)
+    expect(done.returncode == 0 and done.stdout == "ends\n", f"a program that ends while a thread steps: {done}")
+
+
 def check_arrays(folder):
     machine = delassus.Machine(write(folder, "pendulum.urdf", PENDULUM), dt=1e-3)
     q = machine.q
@@ -157,6 +238,14 @@ def check_arrays(folder):
     machine.step()
     expect(machine.q is q and q[0] != before, "q is one array, which follows")
     expect_refused("read-only", q.__setitem__, 0, 1.0)
+    for array in (q, machine.forces, machine.positions):
+        expect_refused("does not own its data", array.resize, (0,), refcheck=False)
+    many = np.array([[0.1, 5.0], [0.2, 6.0]])
+    arm = delassus.Machine(write(folder, "double.xml", DOUBLE))
+    arm.set_state(many[:, 0], many[::-1, 1])
+    expect(np.allclose(arm.q, [0.1, 0.2]) and np.allclose(arm.v, [6, 5]), f"numbers that are not next to each other: {arm.q} {arm.v}")
+    arm.forces += 1
+    expect(np.all(arm.forces == 1), "forces are added to")
     del machine
     gc.collect()
     expect(math.isfinite(q[0]), "an array outlives its machine")
@@ -217,11 +306,12 @@ def check_refusals(folder):
                           ("--height", {"height": 1}), ("second order", {"accuracy": 1e-3, "integrator": "euler"}), ("--accuracy", {"accuracy": 1e-3, "dt": 1e-3}),
                           ("free or fixed", {"base": "loose"}), ("no joint 'elbow'", {"at": {"elbow": 1}}), ("--hold", {"hold": [1, 2, 3]}), ("NAME=FOLDER", {"package": "x"})):
         expect_refused(said, delassus.Machine, pendulum, **options)
-    expect_refused("no file", delassus.Machine, folder / "none.xml")
+    expect_refused("none.xml", delassus.Machine, folder / "none.xml")
     expect_refused("broken.xml", delassus.Machine, write(folder, "broken.xml", "<mujoco><worldbody>"))
     expect_refused("keyframe 'down'", delassus.Machine, box, key="down")
     machine = delassus.Machine(write(folder, "parts.xml", PARTS), dt=1e-3)
     expect_refused("1 or more", machine.step, 0)
+    expect_refused("broadcast", setattr, machine, "forces", [1, 2, 3])
     expect_refused("q must have 12 numbers", machine.set_state, machine.q[1:], machine.v)
     expect_refused("", machine.set_state, np.full(12, np.nan), machine.v)
     before = machine.q.copy()
@@ -235,7 +325,7 @@ def check_refusals(folder):
 
 def main():
     with tempfile.TemporaryDirectory() as name:
-        for check in (check_pendulum, check_throw, check_contacts, check_forces, check_state, check_arrays, check_threads, check_interrupt, check_page, check_refusals):
+        for check in (check_pendulum, check_throw, check_contacts, check_forces, check_state, check_no_change, check_order, check_weights, check_lock, check_end, check_arrays, check_threads, check_interrupt, check_page, check_refusals):
             check(Path(name))
     print("check_delassus_python: all holds")
 

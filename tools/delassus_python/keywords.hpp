@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
+#include <locale.h>
 
 namespace delassus_run {
 
@@ -17,7 +18,8 @@ inline Options options_of(const pybind11::dict& keywords) {
   static constexpr const char* known[] = {"accuracy", "at", "base", "dt", "friction", "ground", "height", "hold", "integrator", "key", "meshes", "package", "push_apart", "strict", "threads", "tolerance"};
   const auto text = [](const py::handle& value) -> std::string { return py::str(value); };
   std::vector<std::string> words;
-  for (const auto& [key, value] : keywords) {
+  for (const auto& [key, given] : keywords) {
+    const py::object value = py::hasattr(given, "tolist") ? given.attr("tolist")() : py::reinterpret_borrow<py::object>(given);  // NumPy's
     std::string name = text(key), list;
     if (std::find(std::begin(known), std::end(known), name) == std::end(known)) {
       for (const char* one : known) list += (list.empty() ? "" : ", ") + std::string(one);
@@ -42,13 +44,16 @@ inline Options options_of(const pybind11::dict& keywords) {
   describe(app, options);
   app.get_option("MODEL")->required(false);
   std::reverse(words.begin(), words.end());  // it takes them from the end
+  const locale_t plain = newlocale(LC_NUMERIC_MASK, "C", nullptr), before = uselocale(plain);  // Python writes 0.5 wherever it runs
+  std::string why;
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {
-    inner::refuse("Machine: " + std::string(error.what()));
+    why = error.what();
   }
-  check_machine(options);
-  return options;
+  uselocale(before), freelocale(plain);
+  if (!why.empty()) inner::refuse(why);
+  return check_machine(options), options;
 }
 
 }  // namespace delassus_run

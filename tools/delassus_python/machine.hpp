@@ -3,12 +3,11 @@
 
 #include "../delassus_run/start.hpp"
 
-#include <delassus/model/joint_space.hpp>
+#include <delassus/model/joint_reader.hpp>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,11 +20,10 @@ struct Steps {
   double residual = 0, joint_gap = 0, overlap = 0;  ///< the largest; m for the last two
 };
 
-/// Its arrays belong to Python and are written while the lock of the interpreter is held: they stay as large as they are, and live
-/// as long as somebody has them.
+/// Its arrays are written while the lock of the interpreter is held. They keep their size, and live as long as somebody has them.
 class PythonMachine {
  public:
-  using Numbers = pybind11::array_t<double>;
+  using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
   PythonMachine(const std::string& path, const pybind11::dict& keywords);
 
@@ -37,37 +35,34 @@ class PythonMachine {
   void set_state(const Numbers& q, const Numbers& v);
   Numbers gravity_compensation();
 
-  std::vector<std::string> links, joints, actuators;
-  std::map<std::string, Index> q_index, v_index;  ///< where the numbers of a joint, or of a free root without one, begin
-  std::vector<std::string> notes;  ///< what was not read or is not done, and what the user should know of the start
+  std::vector<std::string> links, joints, actuators;  ///< joints that move, and free roots without one
+  pybind11::dict q_index, v_index;  ///< where the numbers of one of `joints` begin
+  std::vector<std::string> notes;   ///< what was not read or is not done, and what the user should know of the start
   Numbers q, v;                    ///< see `JointSpace`
   Numbers positions, orientations, velocities, angular_velocities;  ///< of the frames of links, world: n × 3, n × 4 (w x y z)
   Numbers controls, forces;        ///< Python writes them: of the actuators; τ of the joints, to v
   Numbers contact_points, contact_normals, contact_forces, contact_gaps;  ///< of the last step, new ones each time
-  pybind11::array_t<int> contact_links;  ///< n × 2; −1: the world
+  pybind11::array_t<int> contact_links;  ///< n × 2; −1, which stands first: the world
   double time = 0, dt;             ///< s; `dt` is what `step` goes on by
 
  private:
   class Turn;
   struct Freedom {
     model::JointKind kind;
-    Index link, joint, at;  ///< −1: no joint; where its v begins
+    Index link, joint;  ///< −1: no joint
+    Index q, v;         ///< where its numbers begin
   };
 
   void run(long most, Steps& steps);
   void push();
-  void read_places();
-  void read_rates();
   void write_arrays();
 
   Model model_;
   Options options_;
   std::unique_ptr<Start> start_;
   std::unique_ptr<Motion> motion_;
-  std::unique_ptr<JointSpace> space_;
+  std::unique_ptr<JointReader> reader_;
   std::vector<Freedom> freedoms_;
-  std::vector<Pose> poses_;        ///< of the world, then of the links
-  std::vector<Vec<6>> twists_;     ///< likewise
   std::vector<double> q_, v_, tau_;
   bool is_busy_ = false;  ///< read and written with the lock
 };

@@ -3,7 +3,7 @@
 
 #include <delassus/bodies/world.hpp>
 #include <delassus/bodies/rigid_bodies.hpp>
-#include <delassus/model/joint_space.hpp>
+#include <delassus/model/joint_reader.hpp>
 #include <delassus/model/machine.hpp>
 #include <delassus/schemes/error_report.hpp>
 #include <delassus/step/contact_result.hpp>
@@ -52,6 +52,7 @@ class Motion {
   virtual double time() const = 0;
   /// As `set_joint_state`.
   virtual void set_joints(JointSpace& space, std::span<const double> q, std::span<const double> v) = 0;
+  virtual void read_joints(JointReader& reader, std::span<double> q, std::span<double> v) const = 0;
   virtual std::span<const ContactResult> contacts() const = 0;
   virtual void each_joint(const EachJoint& f) const = 0;
   /// Of the steps so far, where `Asked::audits`; joints have the names of the links that they hold.

@@ -28,6 +28,11 @@ void MachineIn<Loop>::place(Loop& loop, Machine& machine, JointSpace& space, std
   set_joint_state(loop, machine, space, q, v);
 }
 
+template <class Loop>
+void MachineIn<Loop>::read(const Loop& loop, const Machine& machine, JointReader& reader, std::span<double> q, std::span<double> v) {
+  reader.read(loop, machine, q, v);
+}
+
 /// The first link at an end that moves, or else at the other; −1: none.
 inline Index link_at(const Machine& machine, const Anchor& end, const Anchor& other) {
   for (const Anchor& anchor : {end, other})

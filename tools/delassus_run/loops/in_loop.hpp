@@ -23,12 +23,13 @@ class InLoop final : public Motion {
   }
 
   StepReport step(double h) override {
-    if (!machine.actuators.empty()) MachineIn<Loop>::drive(loop_, machine, h);
+    if (!machine.actuators.empty() || !machine.lifts.empty()) MachineIn<Loop>::drive(loop_, machine, h);
     return loop_.step(h);
   }
   World<RigidBodies>& world() override { return loop_.world(); }
   double time() const override { return loop_.time(); }
   void set_joints(JointSpace& space, std::span<const double> q, std::span<const double> v) override { MachineIn<Loop>::place(loop_, machine, space, q, v); }
+  void read_joints(JointReader& reader, std::span<double> q, std::span<double> v) const override { MachineIn<Loop>::read(loop_, machine, reader, q, v); }
   std::span<const ContactResult> contacts() const override { return loop_.contacts(); }
   void each_joint(const EachJoint& f) const override {
     loop_.each_joint([&](const Anchor& a, const Anchor& b) { f(a, b); });

@@ -22,6 +22,7 @@ struct MachineIn {
   static void drive(Loop& loop, Machine& machine, double h);
   /// As `set_joint_state`.
   static void place(Loop& loop, Machine& machine, JointSpace& space, std::span<const double> q, std::span<const double> v);
+  static void read(const Loop& loop, const Machine& machine, JointReader& reader, std::span<double> q, std::span<double> v);
   /// With the names of joints and links in place of numbers.
   static AuditReport audit(const Loop& loop, const Machine& machine, const Names& names);
 };
