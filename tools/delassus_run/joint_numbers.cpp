@@ -14,7 +14,7 @@ namespace {
 /// What --at says: a number for some of the joints.
 using Places = std::vector<std::optional<double>>;
 
-Places places_of(const Model& model, const Options& options) {
+Places asked_places(const Model& model, const Options& options) {
   Places places(model.joints.size());
   for (const std::string& words : options.places) {
     const std::size_t equals = words.rfind('=');
@@ -104,7 +104,7 @@ const model::Keyframe* keyframe(const Model& model, const Options& options) {
 
 JointNumbers joint_numbers(const Model& model, Base base, const Options& options) {
   const model::Keyframe* const key = keyframe(model, options);
-  const Places places = places_of(model, options);
+  const Places places = asked_places(model, options);
   const JointSpace space(model, base);
   JointNumbers numbers{.q = std::vector<double>(std::size_t(space.q_size())), .v = std::vector<double>(std::size_t(space.v_size()), 0), .notes = {}};
   space.reference(numbers.q);
