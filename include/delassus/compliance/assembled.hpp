@@ -129,8 +129,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
   void show(const Rows& rows, RowView<T>& view, SetBlocksView<T>*, BlockRowsView<T>* out) const {
     view.diagonal = own_.matrix.diagonal(p).data();
     const T* impulses[pools];
-    for_each_index<pools>([&](auto b) __attribute__((always_inline)) { impulses[b] = rows.template pool<b>().lambda.numbers.data(); });
-    constexpr int heights[] = {R...};
+    find_impulses(rows, impulses);
     const auto add = [&](int b) {
       const auto& W = own_.matrix.blocks(p, b);
       out[view.block_rows++] = {W.start.data(), W.column.data(), W.numbers.data(), impulses[b], heights[b]};
@@ -177,6 +176,7 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
  private:
   template <int p>
   static constexpr int R_of = Rows::template rows_of<p>;
+  static constexpr int heights[] = {R..., 0};
 
   template <int r>
   static Vec<r, T> vector_of(const double* x) {
@@ -184,16 +184,16 @@ class BasicAssembledCompliance<Inverse>::Operator<RowSystem<T, Widths<w...>, R..
     for (int k = 0; k < r; ++k) out[k] = T(x[k]);
     return out;
   }
+  /// r = (d + W λ)_i without W_ii.
   template <int p>
   void sum_others(const Rows& rows, Index i, double* r) const {
-    const auto& d = rows.template pool<p>().d[i];
-    for (int k = 0; k < R_of<p>; ++k) r[k] = double(d[k]);
-    for_each_index<pools>([&](auto b) {
-      const auto& W = own_.matrix.blocks(p, b);
-      const T* x = rows.template pool<b>().lambda.numbers.data();
-      if (R_of<p> == R_of<b>) inner::add_row<R_of<p>>(r, W.start[i], W.start[i + 1], W.numbers.data(), W.column.data(), x);
-      else inner::add_wide_row<R_of<p>>(r, W.start[i], W.start[i + 1], W.numbers.data(), W.column.data(), x, R_of<b>);
-    });
+    const T* impulses[pools];
+    find_impulses(rows, impulses);
+    own_.template sum_others<R_of<p>>(p, i, rows.template pool<p>().d.numbers.data(), impulses, heights, r);
+  }
+  /// λ of each pool.
+  [[gnu::noinline]] static void find_impulses(const Rows& rows, const T** out) {
+    rows.pools.each([&](const auto& pool) __attribute__((always_inline)) { *out++ = pool.lambda.numbers.data(); });
   }
 
   template <class Set>

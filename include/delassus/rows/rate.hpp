@@ -6,8 +6,6 @@
 #include <delassus/rows/pool_rows.hpp>
 #include <delassus/rows/row_system.hpp>
 
-#include <tuple>
-
 namespace delassus::inner {
 
 /// H x of item i of a pool.
@@ -25,18 +23,6 @@ Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const World& world, co
 /// H v_next.
 auto next_rate(const auto& pool, Index i, const auto& world) {
   return rate(pool, i, world, [](const auto& set) -> const auto& { return set.v_next; });
-}
-
-/// The same of arrays x, one for each set.
-template <int R, class T, int... w, class... Arrays>
-Vec<R, T> rate(const PoolRows<R, T, w...>& pool, Index i, const std::tuple<Arrays...>& x) {
-  auto u = zero<Vec<R, T>>();
-  for_each_index<int(sizeof...(Arrays))>([&](auto s) {
-    const auto& blocks = inner::part<s>(pool.sets);
-    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-      u += blocks.H[e] * std::get<s>(x)[blocks.block[e]];
-  });
-  return u;
 }
 
 }  // namespace delassus::inner

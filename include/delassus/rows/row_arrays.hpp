@@ -6,6 +6,7 @@
 #include <delassus/core/slice.hpp>
 #include <delassus/math/linear.hpp>
 #include <delassus/rows/pool_rows.hpp>
+#include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/soft.hpp>
 
@@ -104,7 +105,30 @@ struct RowArrays {
   void close() const {
     for (int s = 0; s < sets; ++s) set[s].offset->push_back(Index(set[s].block->size()));
   }
+  /// Exchanges the rows of two pools of the same sizes.
+  void swap(const RowArrays& other) const {
+    for (int s = 0; s < sets; ++s) {
+      const SetArrays<T>&mine = set[s], &its = other.set[s];
+      mine.offset->swap(*its.offset), mine.block->swap(*its.block), mine.H->swap(*its.H), mine.G->swap(*its.G);
+    }
+    phi->swap(*other.phi), stiffness->swap(*other.stiffness), damping->swap(*other.damping), bias->swap(*other.bias);
+    compliance->swap(*other.compliance), relative_compliance->swap(*other.relative_compliance), d->swap(*other.d), lambda->swap(*other.lambda);
+  }
 };
+
+namespace inner {
+
+/// u = H v of item i, `v` by set and block.
+template <class T>
+void rate(const RowArrays<T>& pool, Index i, const T* const* v, T* u) {
+  static constexpr T nothing[most_rows] = {};
+  if (pool.sets == 0)
+    for (int k = 0; k < pool.rows; ++k) u[k] = T(0);
+  const T* before = nothing;
+  for (int s = 0; s < pool.sets; ++s, before = u) pool.set[s].products->rate(pool.set[s], i, v[s], before, u);
+}
+
+}  // namespace inner
 
 /// The arrays of rows, with room for what it says of them: `ArraysOf(rows).all()` of a RowSystem, or those
 /// of one pool.

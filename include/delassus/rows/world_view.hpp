@@ -209,12 +209,13 @@ namespace inner {
 template <class World>
 struct BodyVelocities {
   using T = typename World::Scalar;
-  const T *free[World::set_count + 1], *start[World::set_count + 1];
+  const T *free[World::set_count + 1], *start[World::set_count + 1], *next[World::set_count + 1];
 
   explicit BodyVelocities(const World& world) {
     world.each([&](const auto& set, auto s) __attribute__((always_inline)) {
       free[s] = reinterpret_cast<const T*>(set.v_free.data());
       start[s] = reinterpret_cast<const T*>(set.velocity().data());
+      next[s] = reinterpret_cast<const T*>(set.v_next.data());
     });
   }
 };

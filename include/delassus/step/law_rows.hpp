@@ -5,6 +5,7 @@
 #include <delassus/constraints/contact/contact.hpp>
 #include <delassus/constraints/row_past.hpp>
 #include <delassus/core/ranges.hpp>
+#include <delassus/rows/anchor.hpp>
 #include <delassus/rows/contact_place.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
@@ -19,10 +20,17 @@
 
 namespace delassus {
 
+/// Who is called with the two ends of each item that has them.
+struct PairVisitor {
+  void* who;
+  void (*visit)(void* who, const Anchor& a, const Anchor& b);
+};
+
 /// One constant table a law and scalar. `pool` is its Pool of constraints.
 template <class T>
 struct LawSteps {
   const RowKind* kinds;   ///< of the rows of an item
+  bool is_contact;
   bool has_slip;          ///< rows 1 and 2 are friction beside a contact's normal
   bool has_mean_springs;  ///< its springs see the mean velocity of the step
   /// Takes out every item one of whose bodies is gone; null: detection makes them anew.
@@ -30,6 +38,7 @@ struct LawSteps {
   /// Items that remember something of their pose (how often a wheel has turned) see the start of the step; null: none does.
   void (*follow)(void* pool, const WorldView<T>&);
   Index (*count)(const void* pool);  ///< of items
+  void (*each_pair)(const void* pool, const PairVisitor&);  ///< null: contacts, whose ends are no anchors
   /// H and φ of the items first … last − 1 at the present configuration of the world. There is room for their rows; their
   /// entries are appended.
   void (*linearize)(const void* pool, const WorldView<T>&, const RowArrays<T>&, Index first, Index last);
@@ -100,6 +109,12 @@ struct LawRows {
       for (const Index place : of(pool).slots.active()) of(pool).law.follow(of(pool).items[place], world);
   }
   static Index count(const void* pool) { return of(pool).count(); }
+  static void each_pair([[maybe_unused]] const void* at, [[maybe_unused]] const PairVisitor& visitor) {
+    if constexpr (!ContactLaw<Law>) {
+      const Pool<Law>& pool = of(at);
+      for (Index i = 0; i < pool.count(); ++i) delassus::each_pair(pool.item(i), [&](const Anchor& a, const Anchor& b) { visitor.visit(visitor.who, a, b); });
+    }
+  }
   static void linearize(const void* at, const WorldView<T>& world, const RowArrays<T>& rows, Index first, Index last) {
     const Pool<Law>& pool = of(at);
     for (Index i = first; i < last; ++i) {
@@ -190,11 +205,13 @@ struct LawRows {
 
   static constexpr LawSteps<T> make_table() {
     return {kinds.data(),
+            ContactLaw<Law>,
             inner::has_slip(kinds),
             inner::has_mean_springs<Law>,
             ContactLaw<Law> ? nullptr : drop_stale,
             refines<Law>(refine::follow) ? follow : nullptr,
             count,
+            ContactLaw<Law> ? nullptr : each_pair,
             linearize,
             refines<Law>(refine::speed) ? speed : nullptr,
             has_slip ? place : nullptr,

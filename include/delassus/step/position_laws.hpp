@@ -8,15 +8,17 @@
 #include <delassus/solvers/law_set.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <tuple>
 
 namespace delassus::inner {
 
-/// Equalities stay equalities, bounds stay bounds, friction rows are locked at zero.
-template <class Law>
+/// Equalities stay equalities, bounds stay bounds, friction rows are locked at zero. All laws with these rows share it.
+template <int R, std::array<RowKind, std::size_t(R)> of_rows>
 struct PositionLaw {
-  static constexpr int rows = Law::rows;
-  static constexpr auto kinds = row_kinds<Law>();
+  static constexpr int rows = R;
+  static constexpr auto kinds = of_rows;
   static constexpr bool is_contact = true;  // it has no items that a host adds
   static constexpr unsigned refines = refine::natural_map | refine::tangent | refine::clamp;
   struct Item {};
@@ -73,8 +75,10 @@ class PositionLaws;
 template <class... Laws, class T, Needs needs>
 class PositionLaws<Constraints<Laws...>, T, needs> {
   static constexpr int pools = int(sizeof...(Laws));
+  template <class Law>
+  using ForLaw = PositionLaw<Law::rows, row_kinds<Law>()>;
   template <int p>
-  using Law = PositionLaw<std::tuple_element_t<p, std::tuple<Laws...>>>;
+  using Law = ForLaw<std::tuple_element_t<p, std::tuple<Laws...>>>;
 
  public:
   template <class Operator, class Rows>

@@ -179,12 +179,11 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   /// f(a, b) for every constraint with two anchors; `world().point(a)` says where one is now.
   template <class F>
   void each_joint(F&& f) const {
-    each_pool(laws(), [&](auto, const auto& pool) {
-      for (Index i = 0; i < pool.count(); ++i) {
-        const auto& item = pool.item(i);
-        each_pair(item, f);
-      }
-    });
+    using Visit = std::remove_reference_t<F>;
+    const PairVisitor visitor{const_cast<std::remove_const_t<Visit>*>(&f), [](void* who, const Anchor& a, const Anchor& b) { (*static_cast<Visit*>(who))(a, b); }};
+    const PoolsOf<Laws, Scalar> pools(laws());
+    for (const LawPool<Scalar>& pool : pools.all())
+      if (pool.law->each_pair) pool.law->each_pair(pool.pool, visitor);
   }
   /// f(impulse) for every constraint that is no contact, N·s of the last step.
   template <class F>

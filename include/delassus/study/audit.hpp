@@ -7,6 +7,7 @@
 #include <delassus/core/roles.hpp>
 #include <delassus/rows/alive.hpp>
 #include <delassus/rows/body_set.hpp>
+#include <delassus/rows/islands.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/stage.hpp>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -143,26 +145,20 @@ class Audit {
       const auto& pool = problem.laws.template pool<p>();
       using Law = std::remove_cvref_t<decltype(pool.law)>;
       constexpr int R = Law::rows;
-      use.name = inner::type_text<Law>();
-      use.rows = R;
-      use.is_contact = ContactLaw<Law>;
-      use.has_friction = use.is_contact && R >= 3;  // rows n, t₁, t₂
-      use.has_rolling = use.is_contact && R > 3;    // and those of moments
-      for (Index k = 0; k < problem.islands.count(); ++k) {
-        const SolveReport& solved = reports[std::size_t(k)];
-        use.work += double(R) * double(problem.islands.items(p, k).size()) *
-                    std::max(1, solved.sweeps + solved.factorizations);
-      }
+      see_pool(use, R, ContactLaw<Law>, problem.islands, p, reports);
+      if (use.name.empty()) use.name = inner::type_text<Law>();
       const auto& rows = problem.rows.template pool<p>();
       use.items += rows.items();
       for (Index i = 0; i < rows.items(); ++i) {
         const auto& own = problem.W.template diagonal<p>(i);
-        constexpr int along = ContactLaw<Law> ? std::min(R, 3) : R;
+        if constexpr (!ContactLaw<Law>) {
+          see_joint(use, std::size_t(pool.slots.active()[std::size_t(i)]), R, own.data(), rows.lambda[i].data(), threshold);
+          continue;
+        }
+        constexpr int along = std::min(R, 3);
         double w = 0;
         for (int k = 0; k < along; ++k) w += double(own(k, k)) / along;
-        if constexpr (!ContactLaw<Law>) {
-          see_joint(use, pool, rows.lambda[i].template cast<double>().norm(), i, w, threshold);
-        } else {
+        if constexpr (ContactLaw<Law>) {
           if (R > 3) see_rolling(use, own, rows.lambda[i], w, threshold);
           see_contact(use, loop, pool, rows, i, w, threshold);
         }
@@ -175,6 +171,19 @@ class Audit {
         }
       }
     });
+  }
+
+  /// What the solver spent on pool p.
+  template <class T>
+  static void see_pool(inner::PoolUse& use, int rows, bool is_contact, const Islands<T>& islands, int p, std::span<const SolveReport> reports) {
+    use.rows = rows;
+    use.is_contact = is_contact;
+    use.has_friction = is_contact && rows >= 3;  // rows n, t₁, t₂
+    use.has_rolling = is_contact && rows > 3;    // and those of moments
+    for (Index k = 0; k < islands.count(); ++k) {
+      const SolveReport& solved = reports[std::size_t(k)];
+      use.work += double(rows) * double(islands.items(p, k).size()) * std::max(1, solved.sweeps + solved.factorizations);
+    }
   }
 
   template <class Loop, class P, class Rows>
@@ -226,13 +235,14 @@ class Audit {
     use.rolled += std::sqrt(w * turns * square) > threshold;
   }
 
-  template <class P>
-  static void see_joint(inner::PoolUse& use, const P& pool, double lambda, Index i, double w,
-                        double threshold) {
-    const std::size_t place = std::size_t(pool.slots.active()[std::size_t(i)]);
+  /// A joint of R rows, of which W has `own` and the solver found λ.
+  template <class T>
+  static void see_joint(inner::PoolUse& use, std::size_t place, int R, const T* own, const T* lambda, double threshold) {
+    double w = 0, square = 0;
+    for (int k = 0; k < R; ++k) w += double(own[k * (R + 1)]) / R, square += double(lambda[k]) * double(lambda[k]);
     if (use.loaded.size() <= place) use.loaded.resize(place + 1, 0), use.seen.resize(place + 1, 0);
     ++use.seen[place];
-    const bool is_loaded = w * lambda > threshold;
+    const bool is_loaded = w * std::sqrt(square) > threshold;
     use.loaded[place] += is_loaded;
     use.acted += is_loaded;
   }

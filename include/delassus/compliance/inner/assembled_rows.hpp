@@ -6,6 +6,7 @@
 #include <delassus/compliance/inner/incidence.hpp>
 #include <delassus/compliance/inner/nodal_rows.hpp>
 #include <delassus/core/array.hpp>
+#include <delassus/rows/block_row.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_view.hpp>
 
@@ -59,6 +60,18 @@ class AssembledRows {
     bool any = false;
     for (int s = 0; s < views[std::size_t(a)].sets; ++s) any = any || coupled[std::size_t(s)] != HowCoupled::not_at_all;
     return any;
+  }
+
+  /// r = d_i + Σ_{j ≠ i} W_ij λ_j of item i of pool a; `d` of this pool, λ of all, and how many rows an item of each has.
+  template <int height>
+  void sum_others(int a, Index i, const T* d, const T* const* lambda, const int* heights, double* r) const {
+    for (int k = 0; k < height; ++k) r[k] = double(d[std::ptrdiff_t(height) * i + k]);
+    for (int b = 0; b < pools_; ++b) {
+      const auto& W = matrix.blocks(a, b);
+      const Index first = W.start[i], last = W.start[i + 1];
+      if (heights[b] == height) delassus::inner::add_row<height>(r, first, last, W.numbers.data(), W.column.data(), lambda[b]);
+      else inner::add_wide_row<height>(r, first, last, W.numbers.data(), W.column.data(), lambda[b], heights[b]);
+    }
   }
 
   BlockMatrix<T> matrix;

@@ -7,6 +7,7 @@
 #include <delassus/constraints/law.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/world_view.hpp>
 
 #include <cstddef>
@@ -28,12 +29,10 @@ struct CoordinateGradient : JointFrames {
 
 /// The rate of item i of rows of one each, with the velocities of all sets.
 template <class T>
-T rotor_rate(const auto& rows, Index i, const T* const* v) {
-  const T nothing[1] = {};
-  const T* before = nothing;
-  T sum[1] = {};
-  for (int s = 0; s < rows.sets; ++s, before = sum) rows.set[s].products->rate(rows.set[s], i, v[s], before, sum);
-  return sum[0];
+T rotor_rate(const RowArrays<T>& rows, Index i, const T* const* v) {
+  T u[1];
+  rate(rows, i, v, u);
+  return u[0];
 }
 
 }  // namespace inner

@@ -7,7 +7,7 @@
 #include <delassus/math/rotation.hpp>
 #include <delassus/math/twist.hpp>
 #include <delassus/rows/pool_rows.hpp>
-#include <delassus/rows/row_system.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/world_view.hpp>
 
 #include <cstddef>
@@ -115,14 +115,6 @@ struct HeldTurns {
   Array<typename Set::Velocity> moment;  ///< J of the joints, N·s and N·m·s
 };
 
-/// f(p, pool of rows) of the laws whose rows are of the middle: all, or those that are no contacts.
-template <bool contacts, class Laws>
-void each_pool_of_middle(const Laws& laws, auto& rows, auto&& f) {
-  each_pool(rows, [&](auto p, auto& pool) {
-    if constexpr (contacts || !ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) f(p, pool);
-  });
-}
-
 /// Joints whose first rows hold two points together.
 template <class Law>
 concept JoinsPoints = requires { requires Law::acts[0] == 0 && Law::acts[1] == 1 && Law::acts[2] == 2; };
@@ -154,16 +146,18 @@ void act_at_own_points(const Set& set, const Pool<Law>& pool, const WorldView<T>
   }
 }
 
-/// Moments of the rows of one pool in one set turn back to the start.
-template <int R, int w, class T>
-void turn_back(SetBlocks<R, w, T>& blocks, const Array<HeldTurn<T>>& bodies) {
-  for (std::size_t e = 0; e < blocks.block.size(); ++e) {
-    const auto& body = bodies[blocks.block[e]];
+/// Moments of the rows of one pool in set s, of rigid bodies, turn back to the start.
+template <class T>
+void turn_back(const RowArrays<T>& pool, int s, const Array<HeldTurn<T>>& bodies) {
+  const Array<Index>& block = *pool.set[s].block;
+  const std::ptrdiff_t R = pool.rows;
+  for (std::size_t e = 0; e < block.size(); ++e) {
+    const auto& body = bodies[block[e]];
     if (!body.is_held) continue;
-    auto& H = blocks.H[e];
-    for (int k = 0; k < R; ++k) {
-      const Vec<3, T> moment = rotated<T>(body.back, {H(k, 3), H(k, 4), H(k, 5)});
-      for (int c = 0; c < 3; ++c) H(k, c + 3) = moment[c];
+    T* const H = pool.set[s].H->data() + 6 * R * std::ptrdiff_t(e);
+    for (std::ptrdiff_t k = 0; k < R; ++k) {
+      const Vec<3, T> moment = rotated<T>(body.back, {H[k + 3 * R], H[k + 4 * R], H[k + 5 * R]});
+      for (int c = 0; c < 3; ++c) H[k + (c + 3) * R] = moment[c];
     }
   }
 }

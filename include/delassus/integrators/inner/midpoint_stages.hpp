@@ -3,22 +3,27 @@
 
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/owning_array.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/integrators/inner/held_turns.hpp>
-#include <delassus/rows/impulses.hpp>
-#include <delassus/rows/islands.hpp>
 #include <delassus/rows/rate.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/rows/soft.hpp>
 #include <delassus/rows/theta.hpp>
+#include <delassus/rows/world_view.hpp>
+#include <delassus/solvers/island.hpp>
 #include <delassus/solvers/island_problem.hpp>
 #include <delassus/step/bias.hpp>
 #include <delassus/step/correct.hpp>
+#include <delassus/step/law_rows.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/step/middle_contacts.hpp>
 #include <delassus/step/moving_surfaces.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -27,31 +32,23 @@ namespace delassus {
 namespace inner {
 
 /// Whether item i holds a kinematic body that moves: its v is the mean of the step to come.
-template <int R, class T, int... w, class World>
-bool is_led(const PoolRows<R, T, w...>& pool, Index i, const World& world) {
+template <class T, class World>
+bool is_led(const RowArrays<T>& pool, Index i, const World& world) {
   bool is_led = false;
   world.each([&](const auto& set, auto s) {
-    const auto& blocks = inner::part<s>(pool.sets);
-    for (Index e = blocks.offset[i]; e < blocks.offset[i + 1]; ++e)
-      is_led = is_led || (!set.moves(blocks.block[e]) && !is_zero(set.velocity()[blocks.block[e]]));
+    const Array<Index>&offset = *pool.set[s].offset, &block = *pool.set[s].block;
+    for (Index e = offset[i]; e < offset[i + 1]; ++e) is_led = is_led || (!set.moves(block[e]) && !is_zero(set.velocity()[block[e]]));
   });
   return is_led;
 }
 
-/// H v of item i where a step starts; zero where it holds such a body.
-template <int R, class T, int... w, class World>
-Vec<R, T> rate_at_start(const PoolRows<R, T, w...>& pool, Index i, const World& world) {
-  if (is_led(pool, i, world)) return zero<Vec<R, T>>();
-  return rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
-}
-
-/// A tenth of u, H v at the start, less where the rows of the middle have s, H v too, that is smaller: min(1, s²/u²) of it.
-/// Rows that depend on each other in the middle, and not at the start, could follow the rest of u by enormous impulses alone.
-template <class V>
-V joint_velocity_damping(const V& u, const V& s) {
-  using T = typename V::Scalar;
-  const T at_start = squared_norm(u), in_middle = squared_norm(s);
-  return (in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1)) * u;
+/// Which share of u, H v at the start, fades: a tenth, less where the rows of the middle have s, H v too, that is smaller: min(1, s²/u²) of
+/// it. Rows that depend on each other in the middle, and not at the start, could follow the rest of u by enormous impulses alone.
+template <class T>
+T joint_velocity_damping(int rows, const T* u, const T* s) {
+  T at_start = T(0), in_middle = T(0);
+  for (int k = 0; k < rows; ++k) at_start += u[k] * u[k], in_middle += s[k] * s[k];
+  return in_middle < at_start ? T(0.1) * in_middle / at_start : T(0.1);
 }
 
 /// The bodies at q ⊕ h v while it lives, and back where they were after it: also when a law throws. `by_next`: v_next has v.
@@ -79,42 +76,48 @@ class Shifted {
 /// H where `linearize_there` has put the bodies into the middle of the step, φ and λ where it starts. `rows` has the rows of the start
 /// and leaves them in `at_start`; or, `again`, those of the look before and the λ of its solve. Contacts that are not seen in the
 /// middle keep the rows of the start: a point that stays while its body moves would turn the body.
-template <bool contacts, class Laws, class Rows>
-void linearize_at_midpoint(const Laws& laws, Rows& rows, Rows& at_start, bool again, auto&& linearize_there) {
-  const auto swap_start = [](auto& pool, auto& start) { std::swap(pool.phi, start.phi), std::swap(pool.lambda, start.lambda); };
-  if (again) each_pool(rows, [&](auto p, auto& pool) { swap_start(pool, at_start.template pool<p>()); });
-  else std::swap(rows, at_start);
+template <class T>
+void linearize_at_midpoint(bool sees_contacts, AllLaws<T> laws, AllRows<T> rows, AllRows<T> at_start, bool again, auto&& linearize_there) {
+  const auto swap_start = [&](std::size_t p) { rows[p].phi->swap(*at_start[p].phi), rows[p].lambda->swap(*at_start[p].lambda); };
+  for (std::size_t p = 0; p < rows.size(); ++p)
+    if (again) swap_start(p);
+    else rows[p].swap(at_start[p]);
   linearize_there();
-  each_pool(rows, [&](auto p, auto& pool) {
-    auto& start = at_start.template pool<p>();
-    if constexpr (!contacts && ContactLaw<std::remove_cvref_t<decltype(laws.template pool<p>().law)>>) std::swap(pool, start);
-    else swap_start(pool, start);
-  });
+  for (std::size_t p = 0; p < rows.size(); ++p)
+    if (laws[p].law->is_contact && !sees_contacts) rows[p].swap(at_start[p]);
+    else swap_start(p);
 }
+
+/// Of each pool, what fades of the velocity across its rows.
+template <class T>
+using FadesOf = OwningArray<Array<T>>;
 
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there without a tenth
 /// of what it has across the joints at the start (`inner::joint_velocity_damping`), which is of order h² and for which only the rows of
 /// the start will do: d ← d − `fade`. Where that gives energy it is withheld, see `reject_damping`.
-template <class World, class Laws, class Rows>
-void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& at_start, double theta, Impulses<Rows>& fade) {
-  using T = typename Rows::Scalar;
-  fade.resize_like(rows);
-  each_pool(rows, [&](auto p, auto& pool) {
-    using Law = std::remove_cvref_t<decltype(laws.template pool<p>().law)>;
-    constexpr auto kinds = row_kinds<Law>();
+template <class T, class World>
+void fade_joints(const World& world, AllLaws<T> laws, AllRows<T> rows, AllRows<T> at_start, double theta, FadesOf<T>& fade) {
+  fade.resize(rows.size());
+  const inner::BodyVelocities<World> v(world);
+  for (std::size_t p = 0; p < rows.size(); ++p) {
+    const RowArrays<T>& pool = rows[p];
+    fade[p].assign_zeros(pool.phi->size());
+    if (laws[p].law->is_contact) continue;
+    const RowKind* const kinds = laws[p].law->kinds;
+    T u[most_rows], start[most_rows];
     for (Index i = 0; i < pool.items(); ++i) {
-      auto& own = inner::part<p>(fade.pools)[i];
-      set_zero(own);
-      if constexpr (ContactLaw<Law>) continue;
-      const auto u = inner::rate(pool, i, world, [](const auto& set) -> const auto& { return set.velocity(); });
-      const auto fades = inner::joint_velocity_damping(inner::rate_at_start(at_start.template pool<p>(), i, world), u);
-      for (int k = 0; k < Law::rows; ++k) {
-        if (kinds[k] != RowKind::equality || inner::is_spring(pool.stiffness[i][k], pool.damping[i][k])) continue;
-        own[k] = T((1 - theta) / theta) * fades[k];
-        pool.d[i][k] -= own[k];
+      inner::rate(pool, i, v.start, u);
+      if (inner::is_led(at_start[p], i, world)) std::fill(start, start + pool.rows, T(0));
+      else inner::rate(at_start[p], i, v.start, start);
+      const T share = inner::joint_velocity_damping(pool.rows, start, u);
+      for (int k = 0; k < pool.rows; ++k) {
+        const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
+        if (kinds[k] != RowKind::equality || pool.is_soft(row)) continue;
+        fade[p][row] = T((1 - theta) / theta) * (share * start[k]);
+        (*pool.d)[row] -= fade[p][row];
       }
     }
-  });
+  }
 }
 
 /// Contacts in the middle of the step. H v_next + H v ≥ 0 would throw back what hits, and turn round what slides to a stop; H v_next ≥ 0
@@ -127,7 +130,7 @@ void fade_joints(const World& world, const Laws& laws, Rows& rows, const Rows& a
 /// turns with a kinematic body has the circle's way (`turned_away`): −(H − S) v takes H v_next to the start, of which that is told.
 template <class Laws, class Rows, class World>
 void turn_contacts(const World& world, const MovingSurfaces<typename Rows::Scalar>& moving, const Laws& laws,
-                   Rows& rows, const Rows& at_start, double h, double theta) {
+                   Rows& rows, AllRows<typename Rows::Scalar> all, const Rows& at_start, double h, double theta) {
   using T = typename Rows::Scalar;
   const auto v = [](const auto& set) -> const auto& { return set.velocity(); };
   each_contact_pool(laws, [&]<class Law>(auto p, const Pool<Law>& contacts) {
@@ -150,7 +153,7 @@ void turn_contacts(const World& world, const MovingSurfaces<typename Rows::Scala
         for (int k = 1; k < along; ++k) s[k] += T(dot(place.axis(k), Vec3(b.running - a.running)));
       }
       for (int k = 0; k < along; ++k) before += s[k] * s[k];
-      const T share = inner::is_led(pool, i, world) ? T(0) : turned < before ? turned / before : T(1);
+      const T share = inner::is_led(all[p], i, world) ? T(0) : turned < before ? turned / before : T(1);
       for (int k = 0; k < along; ++k) {
         if (inner::is_spring(pool.stiffness[i][k], pool.damping[i][k])) continue;
         if (k > 0 && is_carried) pool.d[i][k] += T(dot(place.axis(k), away)) - turn[k];
@@ -185,22 +188,28 @@ void move_gaps(const World& world, const Laws& laws, Rows& rows, double h) {
 /// is below a hundredth while h √α < 0.2. It is above where rows of the middle depend on each other: where they
 /// see across a chain drawn straight the other way round than those of the start, f makes grow what it should
 /// take. There f is put back into d, and the joints do no work. True: the island has to be solved again.
-template <class Rows, class Operator>
-bool reject_damping(Rows& rows, const Operator& W, const Islands<typename Rows::Scalar>& islands, Index island,
-                   Impulses<Rows>& fade) {
+template <class T>
+bool reject_damping(const Island<T>& island, FadesOf<T>& fade) {
   double work = 0, effort = 0;
-  inner::each_item<Rows::pool_count>(islands, island, [&](auto p, Index i) {
-    work += 0.5 * double(rows.template pool<p>().lambda[i].dot(inner::part<p>(fade.pools)[i]));
-  });
+  const auto each_row = [&](auto&& f) {
+    for (const Span<T>& span : island)
+      for (const Index i : span)
+        for (int k = 0; k < span.pool->rows; ++k) f(*span.pool, std::size_t(i) * std::size_t(span.pool->rows) + std::size_t(k));
+  };
+  each_row([&](const PoolView<T>& pool, std::size_t row) { work += 0.5 * double(pool.lambda[row] * fade[std::size_t(pool.pool)][row]); });
   if (!(work > 0)) return false;
-  inner::each_item<Rows::pool_count>(islands, island, [&](auto p, Index i) {
-    const auto& pool = rows.template pool<p>();
-    effort += 0.5 * double(dot(pool.lambda[i], W.template residual<p>(rows, i) - pool.d[i]));
-  });
+  T u[most_rows];
+  for (const Span<T>& span : island)
+    for (const Index i : span) {
+      island.velocity(span, i, u);
+      const T *lambda = island.impulse(span, i), *d = island.free_of_impulses(span, i);
+      for (int k = 0; k < span.pool->rows; ++k) effort += 0.5 * double(lambda[k] * (u[k] - d[k]));
+    }
   if (!(work > 0.01 * effort)) return false;
-  inner::each_item<Rows::pool_count>(islands, island, [&](auto p, Index i) {
-    rows.template pool<p>().d[i] += inner::part<p>(fade.pools)[i];
-    inner::part<p>(fade.pools)[i].setZero();
+  each_row([&](const PoolView<T>& pool, std::size_t row) {
+    T& fades = fade[std::size_t(pool.pool)][row];
+    pool.d[row] += fades;
+    fades = T(0);
   });
   return true;
 }
@@ -210,7 +219,8 @@ namespace inner {
 template <class P>
 struct MidpointState {
   typename P::Rows at_start;       ///< the rows of the start, where the step has others
-  Impulses<typename P::Rows> fade;  ///< what fades of the velocity across the joints
+  ArraysOf<typename P::Rows> arrays;  ///< of them
+  FadesOf<typename P::World::Scalar> fade;
   typename P::World::template PerSet<HeldTurns> turns;  ///< of bodies that are held
   [[no_unique_address]] std::conditional_t<has_middle_contacts<P>, MiddleContacts, Absent> contacts;
 };
@@ -233,10 +243,10 @@ struct MidpointStages : Base {
     Base::make_bias(step);
     constexpr double share = theta<std::remove_cvref_t<decltype(step.integrator())>>();
     const auto& world = std::as_const(step).world();
-    fade_joints(world, step.laws(), step.rows, own(step).at_start, share, own(step).fade);
+    fade_joints(world, step.pools.all(), step.arrays.all(), own(step).arrays.all(), share, own(step).fade);
     if constexpr (sees_contacts<decltype(step)>) {
       const auto moving = moving_surfaces(world, step.view, step.h);
-      turn_contacts(world, moving, step.laws(), step.rows, own(step).at_start, step.h, share);
+      turn_contacts(world, moving, step.laws(), step.rows, step.arrays.all(), own(step).at_start, step.h, share);
     }
   }
   /// With contacts as often as the integrator looks.
@@ -252,7 +262,7 @@ struct MidpointStages : Base {
   }
   static void solve_island(auto& step, auto& island) {
     Base::solve_island(step, island);
-    if (reject_damping(step.rows, step.W, step.islands, island.island(), own(step).fade)) Base::solve_island(step, island);
+    if (reject_damping(island, own(step).fade)) Base::solve_island(step, island);
   }
   static void advance(auto& step) {
     constexpr bool are_displaced = requires { step.template state<role::Stabilisation>().displacement; };
@@ -271,17 +281,18 @@ struct MidpointStages : Base {
   static void look(auto& step, bool again) {
     const bool are_slender = begin_turns(step, again);
     auto& world = step.world();
-    linearize_at_midpoint<sees_contacts<decltype(step)>>(step.laws(), step.rows, own(step).at_start, again, [&] {
+    own(step).arrays.attach(own(step).at_start);
+    linearize_at_midpoint(sees_contacts<decltype(step)>, step.pools.all(), step.arrays.all(), own(step).arrays.all(), again, [&] {
       const Shifted moved(world, step.h / 2, again);
       if constexpr (sees_contacts<decltype(step)>) own(step).contacts.see(step);
-      delassus::linearize(std::as_const(world), step.laws(), step.rows);
+      delassus::linearize(step.view, step.pools.all(), step.arrays.all());
     });
     if (are_slender) {
       const Shifted moved(world, step.h / 2, again);
       act_at_own_points(step);
     }
     each_turning_set(step, [&](auto&, auto& held, auto s) {
-      each_middle_pool(step, [&](auto, auto& pool) { turn_back(inner::part<s>(pool.sets), held.bodies); });
+      each_middle_pool(step, [&](const auto& pool) { turn_back(pool, s, held.bodies); });
     });
   }
   /// After a solve: what the mean velocity of the step is makes another middle, and all that follows of it.
@@ -305,7 +316,13 @@ struct MidpointStages : Base {
     Stages::build(step);
   }
 
-  static void each_middle_pool(auto& step, auto&& f) { each_pool_of_middle<sees_contacts<decltype(step)>>(step.laws(), step.rows, f); }
+  /// f(rows) of the pools whose rows are of the middle: all, or those that are no contacts.
+  static void each_middle_pool(auto& step, auto&& f) {
+    const auto laws = step.pools.all();
+    const auto rows = step.arrays.all();
+    for (std::size_t p = 0; p < rows.size(); ++p)
+      if (sees_contacts<decltype(step)> || !laws[p].law->is_contact) f(rows[p]);
+  }
   static auto& own(auto& step) { return step.template state<role::Integrator>(); }
 
   static void each_turning_set(auto& step, auto&& f) {
@@ -329,8 +346,8 @@ struct MidpointStages : Base {
       set.state().given_turn.resize(set.blocks());
       for (auto& body : held.bodies) body.is_held = false;
       for (auto& turn : set.state().given_turn) turn.is_given = false;
-      each_middle_pool(step, [&](auto, auto& pool) {
-        for (const Index b : inner::part<s>(pool.sets).block)
+      each_middle_pool(step, [&](const auto& pool) {
+        for (const Index b : *pool.set[s].block)
           if (auto& body = held.bodies[b]; !body.is_held && set.moves(b)) {
             begin_turn(set, b, body, T(step.h));
             if (again) turn_by_mean(set, b, body, Vec<3, T>(angular_part(set.v_next[b])), T(step.h));
@@ -342,22 +359,20 @@ struct MidpointStages : Base {
   }
   static void act_at_own_points(auto& step) {
     each_turning_set(step, [&](auto& set, auto& held, auto s) {
-      each_middle_pool(step, [&](auto p, auto& rows) {
-        const auto& pool = step.laws().template pool<p>();
-        if constexpr (JoinsPoints<std::remove_cvref_t<decltype(pool.law)>>)
-          inner::act_at_own_points(set, pool, step.view, inner::part<s>(rows.sets), held.bodies);
+      each_pool(step.laws(), [&]<class Law>(auto p, const Pool<Law>& pool) {
+        if constexpr (JoinsPoints<Law> && (sees_contacts<decltype(step)> || !ContactLaw<Law>))
+          inner::act_at_own_points(set, pool, step.view, inner::part<s>(step.rows.template pool<p>().sets), held.bodies);
       });
     });
   }
   /// Hᵀ λ of what holds them.
   static void sum_moments(auto& step) {
-    const auto all = step.arrays.all();
     each_turning_set(step, [&](auto& set, auto& held, auto s) {
       using T = typename std::remove_cvref_t<decltype(set)>::Scalar;
       for (auto& x : held.moment) set_zero(x);
-      each_middle_pool(step, [&](auto p, auto& pool) {
-        const SetArrays<T>& blocks = all[p].set[s];
-        blocks.products->add_impulse(blocks, pool.items(), all[p].lambda->data(), reinterpret_cast<T*>(held.moment.data()));
+      each_middle_pool(step, [&](const auto& pool) {
+        const SetArrays<T>& blocks = pool.set[s];
+        blocks.products->add_impulse(blocks, pool.items(), pool.lambda->data(), reinterpret_cast<T*>(held.moment.data()));
       });
     });
   }

@@ -86,11 +86,9 @@ class CloseJoints {
   /// λ = 0, and d of the rows that hold: φ, or where the velocities `v` are given the rate. Open bounds are φ away, or φ/h.
   template <class T>
   static void aim(const RowKind* kinds, const RowArrays<T>& pool, const T* const* v, double h) {
-    static constexpr T nothing[most_rows] = {};
     T u[most_rows];
     for (Index i = 0; i < pool.items(); ++i) {
-      const T* before = nothing;
-      for (int s = 0; v && s < pool.sets; ++s, before = u) pool.set[s].products->rate(pool.set[s], i, v[s], before, u);
+      if (v) rate(pool, i, v, u);
       for (int k = 0; k < pool.rows; ++k) {
         const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
         const T phi = (*pool.phi)[row];

@@ -3,13 +3,15 @@
 
 #include <delassus/compliance/compliance.hpp>
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
+#include <delassus/core/fixed_array.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/show_rows.hpp>
-#include <delassus/rows/soft.hpp>
 #include <delassus/rows/world_view.hpp>
 #include <delassus/solvers/inner/joint_system.hpp>
+#include <delassus/step/law_rows.hpp>
 #include <delassus/step/row_types.hpp>
 
 #include <algorithm>
@@ -39,9 +41,7 @@ class CloseGaps {
   using Laws = typename P::Laws;
   using Rows = typename P::Rows;
   using T = typename World::Scalar;
-  static constexpr int sets = Rows::set_count;
-  template <int p>
-  using Law = std::remove_cvref_t<decltype(std::declval<const Laws&>().template pool<p>().law)>;
+  static constexpr int pools = Laws::pool_count, sets = Rows::set_count;
 
  public:
   /// Leaves no gap above `tolerance` (m, rad), if `passes` do; a pass that widens the worst one is taken
@@ -61,60 +61,44 @@ class CloseGaps {
   }
 
  private:
-  /// f(p, rows of pool p) for the laws that can gape and have items.
-  void each_pool_that_can_gape(auto&& f) {
-    for_each_index<Laws::pool_count>([&](auto p) {
-      if constexpr (can_gape<Law<p>>())
-        if (auto& pool = rows_.template pool<p>(); pool.items() > 0) f(p, pool);
-    });
-  }
-
   /// H and φ of where the bodies are; returns the largest |φ| of a rigid row.
   double write(auto& step) {
-    const auto laws = step.pools.all();
+    const AllLaws<T> laws = step.pools.all();
+    arrays_.attach(rows_);
     double worst = 0;
-    for_each_index<Laws::pool_count>([&](auto p) {
-      if constexpr (can_gape<Law<p>>()) {
-        const Index items = laws[p].law->count(laws[p].pool);
-        auto& pool = rows_.template pool<p>();
-        if (items == 0 && pool.items() == 0) return;
-        const ArraysOf<std::remove_cvref_t<decltype(pool)>> arrays(pool);
-        arrays.reset(items);
-        laws[p].law->linearize(laws[p].pool, step.view, arrays, 0, items);
-        for (Index i = 0; i < items; ++i)
-          for (int k = 0; k < pool.rows; ++k) {
-            if (is_spring(pool.stiffness[i][k], pool.damping[i][k]))
-              pool.relative_compliance[i][k] = yields, pool.phi[i][k] = T(0);
-            else
-              worst = std::max(worst, double(std::abs(pool.phi[i][k])));
-          }
+    for (int p = 0; p < pools; ++p) {
+      if (!gapes[p]) continue;
+      const LawPool<T>& law = laws[std::size_t(p)];
+      const RowArrays<T>& pool = arrays_.all()[std::size_t(p)];
+      const Index items = law.law->count(law.pool);
+      pool.reset(items);
+      law.law->linearize(law.pool, step.view, pool, 0, items);
+      for (std::size_t row = 0; row < pool.phi->size(); ++row) {
+        if (pool.is_soft(row)) (*pool.relative_compliance)[row] = yields, (*pool.phi)[row] = T(0);
+        else worst = std::max(worst, double(std::abs((*pool.phi)[row])));
       }
-    });
+    }
     return worst;
   }
 
   /// w of all bodies.
   bool find(auto& step) {
     joints_.begin();
-    each_pool_that_can_gape([&](auto p, auto& pool) {
-      step.world().each([&](const auto& set, auto s) {
-        auto& blocks = part<s>(pool.sets);
-        blocks.G.resize_for_overwrite(blocks.H.size());
-        apply_inverse<false>(set, blocks, Range{0, Index(blocks.H.size())});
-      });
+    step.world().each([&](const auto& set, auto s) { apply_inverse_to_all(set, rows_, s); });
+    const AllRows<T> all = arrays_.all();
+    for (int p = 0; p < pools; ++p) {
       SetBlocksView<T> blocks[sets + 1];
       RowView<T> view;
-      show_rows(pool, p, view, blocks);
+      show_rows(all[std::size_t(p)], p, view, blocks);
       for (Index i = 0; i < view.items; ++i)
-        if (!all_soft(pool, i)) joints_.take_joint(view, i, p);
-    });
+        if (!all_soft(all[std::size_t(p)], i)) joints_.take_joint(view, i, p);
+    }
     if (joints_.parts().empty()) return false;
     joints_.analyse(0);
     if (!joints_.factor(1e-10)) return false;
-    each_pool_that_can_gape([&](auto p, auto& pool) { phi_[p] = pool.phi.numbers.data(); });
     joints_.load([&](const auto& joint, auto& to) {
-      for (int k = 0; k < joint.rows; ++k)
-        to[k] = double(phi_[joint.pool][std::ptrdiff_t(joint.rows) * joint.item + k]);
+      const T* phi = all[std::size_t(joint.pool)].phi->data() + std::ptrdiff_t(joint.rows) * joint.item;
+      for (int k = 0; k < joint.rows; ++k) to[k] = double(phi[k]);
     });
     joints_.solve();
     joints_.keep();
@@ -123,22 +107,18 @@ class CloseGaps {
       w.resize(std::size_t(set.blocks()));
       for (auto& x : w) set_zero(x);
     });
+    for (const RowArrays<T>& pool : all) pool.lambda->assign_zeros(pool.phi->size());
     for (const auto& joint : joints_.parts())
-      each_pool_that_can_gape([&](auto p, auto& pool) {
-        if (joint.pool != p) return;
-        std::remove_cvref_t<decltype(pool.phi[0])> mu;
-        for (int k = 0; k < pool.rows; ++k) mu[k] = T(joint.step[k]);
-        step.world().each([&](const auto&, auto s) {
-          const auto& blocks = part<s>(pool.sets);
-          for (Index e = blocks.offset[joint.item]; e < blocks.offset[joint.item + 1]; ++e)
-            std::get<s>(displacement_)[std::size_t(blocks.block[e])] += blocks.G[e] * mu;
-        });
-      });
+      for (int k = 0; k < joint.rows; ++k) (*all[std::size_t(joint.pool)].lambda)[std::size_t(joint.rows * joint.item + k)] = T(joint.step[k]);
+    step.world().each([&](const auto&, auto s) {
+      T* const w = reinterpret_cast<T*>(std::get<s>(displacement_).data());
+      for (const RowArrays<T>& pool : all) pool.set[s].products->add_motion(pool.set[s], pool.items(), pool.lambda->data(), w);
+    });
     return true;
   }
-  static bool all_soft(const auto& pool, Index i) {
+  static bool all_soft(const RowArrays<T>& pool, Index i) {
     for (int k = 0; k < pool.rows; ++k)
-      if (!is_spring(pool.stiffness[i][k], pool.damping[i][k])) return false;
+      if (!pool.is_soft(std::size_t(i * pool.rows + k))) return false;
     return true;
   }
 
@@ -151,11 +131,16 @@ class CloseGaps {
   }
 
   static constexpr T yields = T(1e12);  ///< of a soft row beside rigid ones, in units of its W_kk
+  template <class... L>
+  static constexpr FixedArray<bool, sizeof...(L)> which_gape(std::type_identity<Constraints<L...>>) {
+    return {can_gape<L>()...};
+  }
+  static constexpr auto gapes = which_gape(std::type_identity<Laws>{});
 
-  Rows rows_;
+  Rows rows_;  ///< of the laws that can gape
+  ArraysOf<Rows> arrays_;
   JointSystem<rows_of_a_node<Rows>, std::max(1, Rows::widest)> joints_;
   typename World::template PerSet<VelocitiesOf> displacement_;
-  const T* phi_[Laws::pool_count + 1] = {};
 };
 
 }  // namespace delassus::inner
