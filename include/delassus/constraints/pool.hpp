@@ -98,6 +98,11 @@ struct Pool {
     if constexpr (refines<Law>(refine::breaks)) archive(broken);
   }
 
+  /// The item of a constraint that is there; refuses another.
+  Item& item_of(ConstraintHandle<Law> h) {
+    DELASSUS_EXPECT(contains(h), "item: " + stale(h, "this constraint was removed"));
+    return items[h.index];
+  }
   /// The item behind the i-th rows of this step.
   const Item& item(Index i) const { return items[slots.active()[i]]; }
   Index count() const { return Index(slots.active().size()); }

@@ -89,9 +89,7 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
   /// What a constraint was added with: its numbers may be changed at any time, its anchors may not.
   template <class Law>
   auto& item(ConstraintHandle<Law> constraint) {
-    auto& pool = laws().template of<Law>();
-    DELASSUS_EXPECT(pool.contains(constraint), "item: " + pool.stale(constraint, "this constraint was removed"));
-    return pool.items[constraint.index];
+    return laws().template of<Law>().item_of(constraint);
   }
   /// The impulse (N·s, N·m·s) of a constraint's rows in the last step.
   template <class Law>

@@ -4,6 +4,7 @@
 #include <delassus/constraints/constraints.hpp>
 #include <delassus/core/expect.hpp>
 #include <delassus/core/handle.hpp>
+#include <delassus/core/type_text.hpp>
 #include <delassus/rows/body_set.hpp>
 #include <delassus/rows/row_system.hpp>
 #include <delassus/step/drop_constraints.hpp>
@@ -92,6 +93,35 @@ template <class World, class Item>
     if (!first) first = &a, second = &b;
   });
   refuse_still_ends(law, first ? name_of_end(world, first) + " and " + name_of_end(world, second) : std::string());
+}
+
+/// Adds a constraint to the pool of its law; see `AnimationLoop::add`.
+template <bool is_sound, class World, class Laws, class Item>
+auto add_constraint(World& world, Laws& laws, bool is_under_way, Item& item) {
+  using Law = typename Laws::template law_of<Item>::type;
+  static_assert(!std::is_void_v<Law>,
+                "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
+  static_assert(std::is_void_v<Law> || HasEnds<Item>,
+                "delassus: the Item of a law that is added to a loop needs two ends, `Anchor a, b`; one in the world is "
+                "world_anchor({0, 0, 0})");
+  if constexpr (!std::is_void_v<Law>) {
+    if (is_under_way) refuse_during_step(type_text<Law>());
+    if constexpr (is_sound) who_refines<refine::check>(laws.template of<Law>().law).check(item);
+    if constexpr (HasEnds<Item>) {
+      constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
+                                    "constraint, second end's carrier"};
+      int k = 0;
+      each_end(item, [&](Anchor& end) { world.resolve(end, names[HasParts<Item> ? k++ & 1 : k++]); });
+      each_pair(item, [&](const Anchor& a, const Anchor& b) {
+        if (a.is_world() && b.is_world()) refuse_no_body(type_text<Law>());
+      });
+      if (none_moves(world, item)) refuse_still_item(type_text<Law>(), world, item);
+      each_pair(item, [&](const Anchor& a, const Anchor& b) {
+        if (!a.is_world() && are_on_one_body(a, b)) refuse_one_body(type_text<Law>(), name_of_body(world, a));
+      });
+    }
+    return laws.template of<Law>().add(item);
+  }
 }
 
 /// Items that were read speak of the sets of this world.

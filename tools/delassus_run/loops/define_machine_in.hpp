@@ -1,4 +1,4 @@
-/// Defines machine_in.hpp, for <type>_machine.cpp.
+/// Defines machine_in.hpp, for machine_in_<laws>.cpp.
 #pragma once
 
 #include "loop_of.hpp"  // before all else
@@ -13,24 +13,24 @@
 
 namespace delassus_run {
 
-template <class Loop>
-Machine MachineIn<Loop>::put(Loop& loop, const Model& model, const Pose& pose, Base base, bool has_one_friction) {
-  return add(loop, model, pose, base, LeaveOut{.surfaces = has_one_friction});
+template <class Scene>
+Machine MachineIn<Scene>::put(const Scene& scene, const Model& model, const Pose& pose, Base base, bool has_one_friction) {
+  return add(scene, model, pose, base, LeaveOut{.surfaces = has_one_friction});
 }
 
-template <class Loop>
-void MachineIn<Loop>::drive(Loop& loop, Machine& machine, double h) {
-  actuate(loop, machine, h);
+template <class Scene>
+void MachineIn<Scene>::drive(const Scene& scene, Machine& machine, double h) {
+  actuate(scene, machine, h);
 }
 
-template <class Loop>
-void MachineIn<Loop>::place(Loop& loop, Machine& machine, JointSpace& space, std::span<const double> q, std::span<const double> v) {
-  set_joint_state(loop, machine, space, q, v);
+template <class Scene>
+void MachineIn<Scene>::place(const Scene& scene, Machine& machine, JointSpace& space, std::span<const double> q, std::span<const double> v) {
+  set_joint_state(scene, machine, space, q, v);
 }
 
-template <class Loop>
-void MachineIn<Loop>::read(const Loop& loop, const Machine& machine, JointReader& reader, std::span<double> q, std::span<double> v) {
-  reader.read(loop, machine, q, v);
+template <class Scene>
+void MachineIn<Scene>::read(const Scene& scene, const Machine& machine, JointReader& reader, std::span<double> q, std::span<double> v) {
+  reader.read(scene, machine, q, v);
 }
 
 /// The first link at an end that moves, or else at the other; −1: none.
@@ -41,28 +41,42 @@ inline Index link_at(const Machine& machine, const Anchor& end, const Anchor& ot
   return -1;
 }
 
-template <class Loop>
-AuditReport MachineIn<Loop>::audit(const Loop& loop, const Machine& machine, const Names& names) {
-  AuditReport report = loop.template get<AuditWhereAsked>().audit.report();
-  each_pool(loop.data().laws(), [&](auto, const auto& pool) {
-    const std::string law = inner::type_text<std::remove_cvref_t<decltype(pool.law)>>();
-    if constexpr (requires { pool.slots; pool.item(0).a; })
-      for (EffectUse& use : report.uses)
-        if (use.effect == Effect::joint && use.name == law)
-          for (Index i = 0; i < pool.count(); ++i)
-            if (int(pool.slots.active()[std::size_t(i)]) == use.place) {
-              const Index link = link_at(machine, pool.item(i).b, pool.item(i).a);
-              use.name += " of " + (link < 0 ? "the world" : names.joints[std::size_t(link)]);
-            }
+/// The ends of the i-th item of a pool.
+struct Ends {
+  const Anchor &a, &b;
+};
+using EndsOf = Ends (*)(const void* pool, Index i);
+
+/// Names the joints of one law.
+inline void name_joints(AuditReport& report, const std::string& law, const Slots& slots, const Machine& machine, const Names& names,
+                        const void* pool, EndsOf ends_of) {
+  for (EffectUse& use : report.uses)
+    if (use.effect == Effect::joint && use.name == law)
+      for (std::size_t i = 0; i < slots.active().size(); ++i)
+        if (int(slots.active()[i]) == use.place) {
+          const Ends ends = ends_of(pool, Index(i));
+          const Index link = link_at(machine, ends.b, ends.a);
+          use.name += " of " + (link < 0 ? "the world" : names.joints[std::size_t(link)]);
+          break;
+        }
+}
+
+template <class Scene>
+void MachineIn<Scene>::name_uses(const Scene& scene, const Machine& machine, const Names& names, AuditReport& report) {
+  each_pool(scene.laws(), [&]<class Law>(auto, const Pool<Law>& pool) {
+    if constexpr (requires { pool.item(0).a; })
+      name_joints(report, inner::type_text<Law>(), pool.slots, machine, names, &pool, [](const void* of, Index i) {
+        const auto& item = static_cast<const Pool<Law>*>(of)->item(i);
+        return Ends{item.a, item.b};
+      });
   });
-  const RigidBodies& set = bodies<RigidBodies>(loop.world());
+  const RigidBodies& set = bodies<RigidBodies>(scene.world());
   for (EffectUse& use : report.uses)
     for (std::size_t b = 0; use.effect == Effect::body && b < machine.parts.size(); ++b)
       if (!machine.parts[b].is_world && use.name == set.who(machine.parts[b].body.index)) {
         use.name = names.links[b];
         break;
       }
-  return report;
 }
 
 }  // namespace delassus_run

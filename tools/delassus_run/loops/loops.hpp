@@ -1,4 +1,4 @@
-/// The types of loops that delassus_run has, each compiled in two files of its own: few, since each takes long.
+/// The types of loops that delassus_run has, each compiled in a file of its own: few, since each takes long.
 #pragma once
 
 #include "../motion.hpp"

@@ -3,7 +3,6 @@
 
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/core/if_it_has.hpp>
-#include <delassus/core/type_text.hpp>
 #include <delassus/loop/animation_loop.hpp>
 #include <delassus/loop/inner/look_at_start.hpp>
 #include <delassus/loop/inner/step_under_way.hpp>
@@ -57,30 +56,7 @@ StepReport AnimationLoop<Args...>::step(double seconds) {
 template <class... Args>
 template <class Item>
 auto AnimationLoop<Args...>::add(Item item) {
-  using Law = typename Laws::template law_of<Item>::type;
-  static_assert(!std::is_void_v<Law>,
-                "delassus: this AnimationLoop stores no constraints of this type; list its law in Constraints{...}");
-  static_assert(std::is_void_v<Law> || HasEnds<Item>,
-                "delassus: the Item of a law that is added to a loop needs two ends, `Anchor a, b`; one in the world is "
-                "world_anchor({0, 0, 0})");
-  if constexpr (!std::is_void_v<Law>) {
-    if (this->is_under_way) inner::refuse_during_step(inner::type_text<Law>());
-    if constexpr (is_sound) inner::who_refines<refine::check>(laws().template of<Law>().law).check(item);
-    if constexpr (HasEnds<Item>) {
-      constexpr const char* names[]{"constraint, first end", "constraint, second end", "constraint, first end's carrier",
-                                    "constraint, second end's carrier"};
-      int k = 0;
-      each_end(item, [&](Anchor& end) { world().resolve(end, names[HasParts<Item> ? k++ & 1 : k++]); });
-      each_pair(item, [&](const Anchor& a, const Anchor& b) {
-        if (a.is_world() && b.is_world()) inner::refuse_no_body(inner::type_text<Law>());
-      });
-      if (inner::none_moves(world(), item)) inner::refuse_still_item(inner::type_text<Law>(), world(), item);
-      each_pair(item, [&](const Anchor& a, const Anchor& b) {
-        if (!a.is_world() && inner::are_on_one_body(a, b)) inner::refuse_one_body(inner::type_text<Law>(), inner::name_of_body(world(), a));
-      });
-    }
-    return laws().template of<Law>().add(item);
-  }
+  return inner::add_constraint<is_sound>(world(), laws(), this->is_under_way, item);
 }
 
 }  // namespace delassus
