@@ -70,7 +70,8 @@ void check(const Backend& backend) {
   for (int k = 0; k < 20; ++k) alone.step(0.01);
   REQUIRE(alone.report().contacts > 50);
   for (const int count : {1, 2, 3, 8}) {
-    auto shared = contacts_by(backend, WorkerThreads{{}, count});
+    int lists = 0;
+    auto shared = contacts_by(backend, CountedThreads{{{}, count}, &lists});
     add_swarm(shared);
     for (int k = 0; k < 20; ++k) shared.step(0.01);
     CHECK(state_hash(shared) == state_hash(alone));
