@@ -20,7 +20,7 @@ struct Stirring {
     for (int wall = 0; wall < 4; ++wall) {
       const double angle = 1.5707963267948966 * wall;
       const Vec3 inward{-std::cos(angle), -std::sin(angle), 0};
-      set.add_fixed(HalfSpace{}, -0.22 * inward, Quat::FromTwoVectors(Vec3::UnitZ(), inward));
+      set.add_fixed(HalfSpace{inward, -0.22});
     }
     for (int k = 0; k < 27; ++k)
       set.add({.position = {0.11 * (k % 3 - 1), 0.11 * (k / 3 % 3 - 1), 0.05 + 0.11 * (k / 9)}, .mass = 0.1, .shape = Sphere{0.05}});

@@ -19,10 +19,7 @@ TEST_CASE("Eigen's transforms and factorizations are there after the library") {
   Eigen::Matrix3d A;
   A << 2, 1, 0, 1, 3, 1, 0, 1, 4;
   CHECK((A * A.ldlt().solve(x) - x).norm() < 1e-14);
-  CHECK((A * A.fullPivLu().solve(x) - x).norm() < 1e-14);
-  CHECK((A * A.completeOrthogonalDecomposition().solve(x) - x).norm() < 1e-13);
   CHECK((A * A.jacobiSvd(Eigen::ComputeFullU | Eigen::ComputeFullV).solve(x) - x).norm() < 1e-13);
-  CHECK((A * A.bdcSvd(Eigen::ComputeFullU | Eigen::ComputeFullV).solve(x) - x).norm() < 1e-13);
   const Eigen::Hyperplane<double, 3> plane(Vec3::UnitZ(), Vec3(0, 0, 1));
   CHECK(plane.signedDistance(x) == Approx(3));
   CHECK(Eigen::umeyama(Eigen::Matrix3d(A), Eigen::Matrix3d(A), false).isIdentity(1e-12));

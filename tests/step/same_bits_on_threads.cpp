@@ -30,7 +30,7 @@ void add_balls(RigidBodies& set, int side, double speed) {
   for (int wall = 0; wall < 4; ++wall) {
     const double angle = 1.5707963267948966 * wall;
     const Vec3 inward{-std::cos(angle), -std::sin(angle), 0};
-    set.add_fixed(HalfSpace{}, -half * inward, Quat::FromTwoVectors(Vec3::UnitZ(), inward));
+    set.add_fixed(HalfSpace{inward, -half});
   }
   for (int n = 0; n < side * side * side; ++n) {
     const int i = n % side, j = n / side % side, k = n / (side * side);
