@@ -181,8 +181,8 @@ struct StepData : std::conditional_t<P::has_rows, RowData<P>, NoRowData> {
   void each_joint(F&& f) const {
     using Visit = std::remove_reference_t<F>;
     const PairVisitor visitor{const_cast<std::remove_const_t<Visit>*>(&f), [](void* who, const Anchor& a, const Anchor& b) { (*static_cast<Visit*>(who))(a, b); }};
-    const PoolsOf<Laws, Scalar> pools(laws());
-    for (const LawPool<Scalar>& pool : pools.all())
+    const PoolsOf<Laws, Scalar> of_laws(laws());
+    for (const LawPool<Scalar>& pool : of_laws.all())
       if (pool.law->each_pair) pool.law->each_pair(pool.pool, visitor);
   }
   /// f(impulse) for every constraint that is no contact, N·s of the last step.
