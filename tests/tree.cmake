@@ -64,8 +64,12 @@ delassus_tree_test(tree/front_page ${Python3_EXECUTABLE} ${scripts}/front_page.p
 # --- the mutants of scripts/mutants.py still find what they replace --------------------------------------------------
 delassus_tree_test(tree/mutants ${Python3_EXECUTABLE} ${scripts}/mutants.py --check)
 
-# --- every header by itself -----------------------------------------------------------------------------------------
-delassus_tree_test(tree/headers_alone ${Python3_EXECUTABLE} ${scripts}/check_headers.py ${PROJECT_SOURCE_DIR}
+# --- every header by itself, in ./run test those that users include --------------------------------------------------
+set(which "")
+if(NOT DELASSUS_TEST_ALL)
+  set(which --but-inner)
+endif()
+delassus_tree_test(tree/headers_alone ${Python3_EXECUTABLE} ${scripts}/check_headers.py ${PROJECT_SOURCE_DIR} ${which}
   --cache ${PROJECT_BINARY_DIR}/headers_alone --compiler ${compilers} --system ${include_dirs} --absent ${absent})
 delassus_tree_test(tree/headers_alone_self_test ${Python3_EXECUTABLE} ${scripts}/check_headers.py --self-test
   --compiler ${compilers})
