@@ -71,7 +71,9 @@ void each_local(Problem<Laws, Rows, Operator>& problem, F&& f) {
   NoObserver nobody;
   for (Index k = 0; k < problem.islands.count(); ++k) {
     const double length = IslandProblem(book, problem.rows, problem.W, problem.islands, k, problem.h, nobody).length();
-    each_item<decltype(problem.rows)::pool_count>(problem.islands, k, [&](auto p, Index i) { f(p, i, book.natural_error(p, i, length), length); });
+    for_each_index<Rows::pool_count>([&](auto p) {
+      for (const Index i : problem.islands.items(p, k)) f(p, i, book.natural_error(p, i, length), length);
+    });
   }
 }
 

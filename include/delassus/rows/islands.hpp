@@ -157,16 +157,4 @@ class Islands {
   OwningArray<Items> pools_;
 };
 
-namespace inner {
-
-/// f(p, i) for every item of an island.
-template <int pools, class T, class F>
-void each_item(const Islands<T>& islands, Index island, F&& f) {
-  for_each_index<pools>([&](auto p) {
-    for (const Index i : islands.items(p, island)) f(p, i);
-  });
-}
-
-}  // namespace inner
-
 }  // namespace delassus

@@ -118,12 +118,10 @@ struct RowArrays {
 
 namespace inner {
 
-/// u = H v of item i, `v` by set and block.
+/// u = H v of item i, `v` by set and block. There is a set.
 template <class T>
 void rate(const RowArrays<T>& pool, Index i, const T* const* v, T* u) {
   static constexpr T nothing[most_rows] = {};
-  if (pool.sets == 0)
-    for (int k = 0; k < pool.rows; ++k) u[k] = T(0);
   const T* before = nothing;
   for (int s = 0; s < pool.sets; ++s, before = u) pool.set[s].products->rate(pool.set[s], i, v[s], before, u);
 }

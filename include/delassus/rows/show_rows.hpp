@@ -3,7 +3,6 @@
 
 #include <delassus/core/index.hpp>
 #include <delassus/rows/pool_rows.hpp>
-#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_view.hpp>
 
 namespace delassus::inner {
@@ -28,25 +27,6 @@ void show_rows(PoolRows<R, T, w...>& rows, int pool, RowView<T>& view, SetBlocks
   view.set = sets;
   view.sets = int(sizeof...(w));
   rows.sets.each([&](const auto& s) __attribute__((always_inline)) { show_set(s, *sets++); });
-}
-
-/// The same of arrays of numbers.
-template <class T>
-void show_rows(const RowArrays<T>& rows, int pool, RowView<T>& view, SetBlocksView<T>* sets) {
-  view.pool = pool;
-  view.rows = rows.rows;
-  view.items = rows.items();
-  view.lambda = rows.lambda->data();
-  view.d = rows.d->data();
-  view.bias = rows.bias->data();
-  view.compliance = rows.compliance->data();
-  view.relative_compliance = rows.relative_compliance->data();
-  view.set = sets;
-  view.sets = rows.sets;
-  for (int s = 0; s < rows.sets; ++s) {
-    const SetArrays<T>& set = rows.set[s];
-    sets[s] = {set.offset->data(), set.block->data(), set.H->data(), set.G->size() == set.H->size() ? set.G->data() : nullptr, nullptr, set.width};
-  }
 }
 
 }  // namespace delassus::inner

@@ -8,7 +8,7 @@
 #include <delassus/core/fixed_array.hpp>
 #include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
-#include <delassus/rows/show_rows.hpp>
+#include <delassus/rows/row_view.hpp>
 #include <delassus/rows/world_view.hpp>
 #include <delassus/solvers/inner/joint_system.hpp>
 #include <delassus/step/law_rows.hpp>
@@ -31,6 +31,25 @@ constexpr bool can_gape() {
 template <class... Laws>
 consteval bool some_can_gape(std::type_identity<Constraints<Laws...>>) {
   return (can_gape<Laws>() || ...);
+}
+
+/// As `show_rows` of the rows themselves.
+template <class T>
+void show_rows(const RowArrays<T>& rows, int pool, RowView<T>& view, SetBlocksView<T>* sets) {
+  view.pool = pool;
+  view.rows = rows.rows;
+  view.items = rows.items();
+  view.lambda = rows.lambda->data();
+  view.d = rows.d->data();
+  view.bias = rows.bias->data();
+  view.compliance = rows.compliance->data();
+  view.relative_compliance = rows.relative_compliance->data();
+  view.set = sets;
+  view.sets = rows.sets;
+  for (int s = 0; s < rows.sets; ++s) {
+    const SetArrays<T>& set = rows.set[s];
+    sets[s] = {set.offset->data(), set.block->data(), set.H->data(), set.G->size() == set.H->size() ? set.G->data() : nullptr, nullptr, set.width};
+  }
 }
 
 /// Newton's method for φ(q ⊕ w) = 0 over all rigid rows of all joints: w = A⁻¹ Hᵀ μ, H w = −φ, with H of
