@@ -2,6 +2,8 @@
 // the largest of 20 000 ticks, with the load of the machine beside them, and how far the force is from the converged one.
 #include "scenes.hpp"
 
+#include <delassus/haptics/haptic_channel.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>

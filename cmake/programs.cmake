@@ -27,27 +27,37 @@ target_compile_options(delassus_warnings INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=100;--param=ggc-min-heapsize=800000>
   $<$<BOOL:${DELASSUS_WARNINGS_AS_ERRORS}>:-Werror>)
 
-# What the tests share is compiled once, and g++ reads the headers of all once (clang 14 ends in a fault of its own on
-# precompiled lambdas). Not for the benchmarks and the demonstration, which must compile with what they include
-# themselves; an example includes the umbrella, and nothing comes to it unasked.
+# What the tests share is compiled once, optimized whatever the tests are, and its headers are read once. Not for the benchmarks and the
+# demonstration, which must compile with what they include themselves; an example includes the umbrella, and nothing comes to it unasked.
 option(DELASSUS_COMPILE_ONCE "Compile once what the tests share, with headers precompiled" OFF)
 if(DELASSUS_COMPILE_ONCE)
   target_link_libraries(delassus_compiled PRIVATE delassus_warnings)
+  target_compile_options(delassus_compiled PRIVATE -O2)
+  target_compile_definitions(delassus_compiled PUBLIC EIGEN_RUNTIME_NO_MALLOC)  # of the tests that count allocations
   set_target_properties(delassus_compiled PROPERTIES CXX_EXTENSIONS ${CMAKE_CXX_EXTENSIONS})  # it is older than the variable
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_precompile_headers(delassus_compiled PRIVATE <delassus/compiled.hpp>)
-  endif()
 endif()
 
-# delassus_compile_once(<target>): its sources see delassus/compiled.hpp first, and it links what that leaves out.
+# delassus_read_once(<name> <option> <header>...): compiles the headers for programs with these options.
+function(delassus_read_once name option)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "")
+  add_library(${name} STATIC ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE delassus::compiled delassus_warnings)
+  target_compile_options(${name} PRIVATE ${option})
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+endfunction()
+
+# delassus_compile_once(<target> [<what delassus_read_once made>]): its sources see delassus/compiled.hpp first, and it links what that leaves out.
 function(delassus_compile_once target)
   if(DELASSUS_COMPILE_ONCE AND TARGET ${target})
-    target_link_libraries(${target} PRIVATE delassus::compiled)
-    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_precompile_headers(${target} REUSE_FROM delassus_compiled)
-    else()
-      target_compile_options(${target} PRIVATE "SHELL:-include delassus/compiled.hpp")
+    set(headers ${ARGN})
+    if(NOT headers)
+      set(headers delassus_read)
+      if(NOT TARGET ${headers})
+        delassus_read_once(${headers} "" <delassus/compiled.hpp>)
+      endif()
     endif()
+    target_link_libraries(${target} PRIVATE delassus::compiled)
+    target_precompile_headers(${target} REUSE_FROM ${headers})
   endif()
 endfunction()
 

@@ -1,6 +1,7 @@
 // A hand presses a tool 1 cm into a stiff wall through a simulated device: the loop runs at 30 Hz, the force at 1 kHz.
 // prints: force 2\.3[0-9]* N, at rest to 0\.000 mm, energy given out 0\.000 J
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptics.hpp>
 
 #include <algorithm>
 #include <cstdio>

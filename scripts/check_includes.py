@@ -38,7 +38,7 @@ def why_not(header, target):
     """Why `header` (a path below include/delassus) may not include the delassus header `target`; None if it may."""
     if target in FREE and header != "version.hpp":
         return None
-    if header in AROUND and (target in AROUND | {"delassus.hpp"} or LEVELS.get(room_of(target), 99) <= LEVELS["haptics"]):
+    if header in AROUND and (target in AROUND | {"delassus.hpp"} or LEVELS.get(room_of(target), 99) <= LEVELS["listeners"]):
         return None
     if target in AROUND | {"delassus.hpp"}:
         return "the umbrella is for users, not for the library"

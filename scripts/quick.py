@@ -202,7 +202,7 @@ def main():
         print(f"only laws were changed: the traces {', '.join(name for name in traces if name not in LAW_TRACES)} are left out")
         traces = [name for name in traces if name in LAW_TRACES]
     near_tests, left = near(headers, tests, LAW_TESTS if is_law else MOST_TESTS)
-    programs = {**{f"trace_{name}": ("--data", ROOT / "tests/trace/data") for name in traces}, "one_no_allocation": (),
+    programs = {**{f"trace_{name}": ("--data", ROOT / "tests/trace/data") for name in traces}, "one_allocations_plain_steps": (),
                 **{target_of(source): () for source in near_tests}}
     examples = [f"example_{path.stem}" for path in sorted((ROOT / "examples").glob("*.cpp"))] if options.all else []
     began = time.monotonic()

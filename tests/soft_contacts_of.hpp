@@ -27,7 +27,7 @@ void check_soft_contacts() {
   World world{RigidBodies{}, Soft{}};
   auto& rigid = bodies<RigidBodies>(world);
   auto& soft = bodies<Soft>(world);
-  soft.add({.mesh = box_mesh({1, 1, 0.4}, {2, 2, 1}), .elasticity = {.young = 1e5}, .contact_radius = 0.01});
+  soft.add({.mesh = delassus::box_mesh({1, 1, 0.4}, {2, 2, 1}), .elasticity = {.young = 1e5}, .contact_radius = 0.01});
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i)
     corners.push_back({i & 1 ? 0.1 : -0.1, i & 2 ? 0.12 : -0.12, i & 4 ? 0.09 : -0.09});

@@ -2,6 +2,7 @@
 // prints: force [0-9.]+ N from snapshot [1-9]
 #include <delassus/delassus.hpp>
 #include <delassus/adapters/posix.hpp>
+#include <delassus/haptics/haptics.hpp>
 #include <delassus/listeners/real_time_pace.hpp>
 #include <delassus/listeners/spinning_clock.hpp>
 

@@ -1,4 +1,4 @@
-/// Everything up to the loop, its listeners and the haptic device; study/, io/, problems/ and adapters/ have their own headers.
+/// Everything up to the loop and its listeners; haptics/, fem/, study/, io/, problems/ and adapters/ have their own headers.
 #pragma once
 
 #include <delassus/activity/hand_picked.hpp>
@@ -36,9 +36,6 @@
 #include <delassus/constraints/joints/universal.hpp>
 #include <delassus/constraints/joints/virtual_coupling.hpp>
 #include <delassus/constraints/joints/weld.hpp>
-#include <delassus/haptics/haptic_channel.hpp>
-#include <delassus/haptics/passivity_observer.hpp>
-#include <delassus/haptics/simulated_device.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/integrators/implicit_midpoint.hpp>
 #include <delassus/integrators/lie_poisson.hpp>

@@ -4,6 +4,7 @@
 //   effects <apart|stacked> <one|other> <steps>       the other: asleep for awake, at the limit for far from
 //                                                     it, what is recorded or published for what is not
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptic_channel.hpp>
 #include <delassus/io/recorder.hpp>
 #include <delassus/schemes/substeps.hpp>
 #include <delassus/solvers/proximal_newton.hpp>

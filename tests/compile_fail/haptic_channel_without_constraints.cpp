@@ -1,5 +1,6 @@
 // expect: delassus: HapticChannel displays the force of a VirtualCoupling, and this loop has no constraints; add Constraints{VirtualCoupling{}, ...}
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptic_channel.hpp>
 
 using namespace delassus;
 

@@ -1,5 +1,6 @@
 // expect: delassus: HapticChannel solves in another thread and needs W as a matrix, which this compliance never forms; take AssembledCompliance
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptic_channel.hpp>
 
 using namespace delassus;
 

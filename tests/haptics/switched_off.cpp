@@ -1,4 +1,5 @@
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptic_channel.hpp>
 
 #include "catch.hpp"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptic_channel.hpp>
 
 #include <type_traits>
 #include <utility>

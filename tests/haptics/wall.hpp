@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptics.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,6 @@
 
 #include <delassus/math/positive.hpp>
 
-#include <Eigen/Eigenvalues>
-
 #include <random>
 #include <type_traits>
 
@@ -16,9 +14,14 @@ template <int R>
 Mat<R, R> of_condition(double decades, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  Mat<R, R> any;
-  for (int i = 0; i < R * R; ++i) any.data()[i] = normal(random);
-  const Mat<R, R> Q = Eigen::SelfAdjointEigenSolver<Mat<R, R>>(any + any.transpose()).eigenvectors();
+  Mat<R, R> Q;
+  for (int i = 0; i < R * R; ++i) Q.data()[i] = normal(random);
+  // Gram–Schmidt, twice for orthogonality to rounding. Eigen's factorizations take long to compile for every R.
+  for (int k = 0; k < R; ++k) {
+    for (int twice = 0; twice < 2; ++twice)
+      for (int before = 0; before < k; ++before) Q.col(k) -= Q.col(before).dot(Q.col(k)) * Q.col(before);
+    Q.col(k).normalize();
+  }
   Vec<R> values;
   for (int i = 0; i < R; ++i) values[i] = std::pow(10.0, R > 1 ? decades * i / (R - 1) : 0);
   return Q * values.asDiagonal() * Q.transpose();

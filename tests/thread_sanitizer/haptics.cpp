@@ -1,6 +1,7 @@
 // A loop and a device's thread, built with -fsanitize=thread, which tells of a data race. A program of its own: it says what
 // it counted and returns 1 when something went wrong.
 #include <delassus/delassus.hpp>
+#include <delassus/haptics/haptics.hpp>
 
 #include <atomic>
 #include <cmath>

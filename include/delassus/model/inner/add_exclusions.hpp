@@ -27,7 +27,7 @@ void ignore(Builder& builder, auto& filter, Index one, Index other) {
       filter.ignore(world, anchor(builder.set(), body), anchor(builder.set(), still.body));
 }
 
-inline Index root_of(const Model& model, Index body) {
+inline Index root_link_of(const Model& model, Index body) {
   while (model.bodies[std::size_t(body)].parent >= 0) body = model.bodies[std::size_t(body)].parent;
   return body;
 }
@@ -40,7 +40,7 @@ void exclude_what_hangs(Builder& builder, auto& filter) {
     const Index parent = model.bodies[std::size_t(chain.body)].parent;
     if (parent < 0 || !builder.machine().parts[std::size_t(parent)].is_world) continue;
     for (const Still& still : builder.still())
-      if (still.link >= 0 && root_of(model, still.link) == root_of(model, parent))
+      if (still.link >= 0 && root_link_of(model, still.link) == root_link_of(model, parent))
         ignore(builder, filter, chain.body, still.link);
   }
 }

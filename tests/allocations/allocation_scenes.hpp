@@ -1,10 +1,11 @@
-/// Counting allocations in warm steps. For one source of a program only: it replaces operator new.
+/// Counting allocations in warm steps.
 #pragma once
+
+#include "allocations/count_allocations.hpp"
 
 #include "scenes.hpp"
 
 #include "catch.hpp"
-#include "count_allocations.hpp"
 
 using namespace scenes;
 

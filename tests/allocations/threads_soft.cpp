@@ -1,8 +1,9 @@
-// A program of its own: it counts every call of operator new. Warm steps of soft bodies by several workers.
-#define EIGEN_RUNTIME_NO_MALLOC
+// Warm steps of soft bodies by several workers.
+#include "allocations/count_allocations.hpp"
+
 #include <delassus/geometry/box_mesh.hpp>
 
-#include "allocation_scenes.hpp"
+#include "allocations/allocation_scenes.hpp"
 #include "in_turns.hpp"
 #include "soft_scenes.hpp"
 

@@ -1,6 +1,7 @@
-// A program of its own: it counts every call of operator new, in steps and resets of many worlds.
-#define EIGEN_RUNTIME_NO_MALLOC
-#include "allocation_scenes.hpp"
+// Steps and resets of many worlds.
+#include "allocations/count_allocations.hpp"
+
+#include "allocations/allocation_scenes.hpp"
 
 #include <delassus/study/batch.hpp>
 

@@ -1,10 +1,10 @@
-// A program of its own: it counts every call of operator new. Warm steps by several workers, in turns, so
-// that who does what is the same in each run.
-#define EIGEN_RUNTIME_NO_MALLOC
+// Warm steps by several workers, in turns, so that who does what is the same in each run.
+#include "allocations/count_allocations.hpp"
+
 #include <delassus/solvers/coloured.hpp>
 #include <delassus/step/in_parallel.hpp>
 
-#include "allocation_scenes.hpp"
+#include "allocations/allocation_scenes.hpp"
 #include "in_turns.hpp"
 
 TEST_CASE("a warm step of ten stacks by three workers allocates nothing") {

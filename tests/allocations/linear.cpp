@@ -1,4 +1,5 @@
-// A program of its own: it counts every call of operator new.
+#include "allocations/count_allocations.hpp"
+
 #include <delassus/compliance/assembled.hpp>
 #include <delassus/linear/multifrontal_cholesky.hpp>
 #include <delassus/linear/sparse_lu.hpp>
@@ -7,24 +8,23 @@
 
 #include "catch.hpp"
 #include "compliance/coupled_grid.hpp"
-#include "count_allocations.hpp"
 #include "linear/block_graphs.hpp"
 
 using namespace delassus;
 using namespace block_graphs;
 
 TEST_CASE("factoring, solving and compliances allocate nothing the second time") {
-  const auto g = grid<3>(9, 9, 9, 41);
+  const auto graph = grid<3>(9, 9, 9, 41);
   MultifrontalCholesky<3, double> f;
-  f.analyse(g.n, g.pairs, g.positions);
-  std::vector<Vec3> x(g.n, Vec3(1, 2, 3));
+  f.analyse(graph.n, graph.pairs, graph.positions);
+  std::vector<Vec3> x(graph.n, Vec3(1, 2, 3));
   const std::vector<Index> nodes{1, 5, 700, 300};
   std::vector<double> C(144);
   NodeCompliance<3, double> compliance;
   long before = 0;
   for (int n = 0; n < 2; ++n) {
     before = allocations;
-    g.fill(f);
+    graph.fill(f);
     f.factor();
     f.solve(x);
     f.compliance(nodes, C);

@@ -1,6 +1,5 @@
-// A program of its own: it counts every call of operator new, and has Eigen stop at an allocation in a warm
-// step.
-#define EIGEN_RUNTIME_NO_MALLOC
+#include "allocations/count_allocations.hpp"
+
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/native.hpp>
 #include <delassus/collision/with_surfaces.hpp>
@@ -10,7 +9,6 @@
 #include <delassus/solvers/gauss_seidel.hpp>
 
 #include "catch.hpp"
-#include "count_allocations.hpp"
 #include "soft_scenes.hpp"
 
 TEST_CASE(

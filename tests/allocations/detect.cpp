@@ -1,8 +1,8 @@
-// A program of its own: it counts every call of operator new.
+#include "allocations/count_allocations.hpp"
+
 #include "catch.hpp"
 #include "collision/mesh_scene.hpp"
 #include "collision/samples.hpp"
-#include "count_allocations.hpp"
 
 #include <vector>
 

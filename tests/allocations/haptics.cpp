@@ -1,7 +1,8 @@
-// A program of its own: it counts every call of operator new, and has Eigen stop at an allocation in a warm step.
-#define EIGEN_RUNTIME_NO_MALLOC
-#include "allocation_scenes.hpp"
+#include "allocations/count_allocations.hpp"
 
+#include "allocations/allocation_scenes.hpp"
+
+#include <delassus/haptics/haptic_channel.hpp>
 
 namespace {
 

@@ -1,6 +1,6 @@
-// A program of its own: it counts every call of operator new.
+#include "allocations/count_allocations.hpp"
+
 #include "catch.hpp"
-#include "count_allocations.hpp"
 #include "model/one_link.hpp"
 
 #include <delassus/constraints/joints/tendon.hpp>

@@ -1,12 +1,10 @@
-// A program of its own: it counts every call of operator new, and has Eigen stop at an allocation in a warm
-// step.
-#define EIGEN_RUNTIME_NO_MALLOC
+#include "allocations/count_allocations.hpp"
+
 #include <delassus/bodies/world.hpp>
 #include <delassus/integrators/implicit_euler.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
 #include "catch.hpp"
-#include "count_allocations.hpp"
 #include "hexahedral_scenes.hpp"
 
 using namespace delassus;
