@@ -29,7 +29,7 @@ struct Apart {
 
 /// False where the plane between the two, or one that is nearer to both, proves that they stay apart in the step.
 inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, double distance, double h) {
-  return h * (dot(normal, a.velocity - b.velocity) + turning_speed(a) + turning_speed(b)) >= distance;
+  return h * (dot(normal, a.velocity - b.velocity) + turning_speeds(a, b, h)) >= distance;
 }
 
 /// False where the balls about the two, each going its way, prove that they do not come within `target` (m) in the step. By a
@@ -37,7 +37,7 @@ inline bool may_close(const Collider& a, const Collider& b, const Vec3& normal, 
 inline bool may_come_near(const Collider& a, const Collider& b, double h, double target) {
   const Vec3 apart = b.pose.position - a.pose.position, going = b.velocity - a.velocity;
   const bool a_is_plane = a.shape.kind == ShapeKind::half_space;
-  const double speed = norm(going) + turning_speed(a) + turning_speed(b), radii = outer_radius(a.shape) + outer_radius(b.shape),
+  const double speed = norm(going) + turning_speeds(a, b, h), radii = outer_radius(a.shape) + outer_radius(b.shape),
                slack = speed * h / 150 + 1e-9 * radii + 1e-12 * (norm(a.pose.position) + norm(b.pose.position));
   if (a_is_plane || b.shape.kind == ShapeKind::half_space) {
     const Collider &c = a_is_plane ? a : b, &body = a_is_plane ? b : a;
@@ -53,7 +53,7 @@ inline bool may_come_near(const Collider& a, const Collider& b, double h, double
 /// Whether the two may close in by more than the widest margin: then some points of a face may be within it and others not.
 inline bool may_outgrow_margin(const Collider& a, const Collider& b, double scale, double h) {
   if (a.shape.kind == ShapeKind::sphere || b.shape.kind == ShapeKind::sphere) return false;  // one point
-  return h * (norm(Vec3(a.velocity - b.velocity)) + turning_speed(a) + turning_speed(b)) > margin_limit * scale;
+  return h * (norm(Vec3(a.velocity - b.velocity)) + turning_speeds(a, b, h)) > margin_limit * scale;
 }
 
 /// Whether a body turns so much in a step, by 1e-3, that its points are elsewhere than an impact of the last one foresaw.

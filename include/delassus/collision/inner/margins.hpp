@@ -54,10 +54,12 @@ inline Aabb alarm_box(const Collider& c, const Summary& of, double h, const Coll
 /// Which boxes a half-space may touch.
 struct PlaneReach {
   Plane plane;
-  double way, margin, contact_distance;
+  Vec3 pivot;                ///< where the half-space turns about, m
+  double way, turn, margin, contact_distance;  ///< way (m) and turn (rad) of a step
 
   PlaneReach(const Collider& half_space, double h, const CollisionSettings& s)
-      : plane(plane_of(half_space.shape, half_space.pose)), way(norm(half_space.velocity) * h), margin(s.margin), contact_distance(s.contact_distance) {}
+      : plane(plane_of(half_space.shape, half_space.pose)), pivot(half_space.pose.position), way(norm(half_space.velocity) * h),
+        turn(norm(half_space.angular_velocity) * h), margin(s.margin), contact_distance(s.contact_distance) {}
 
   /// False when the box, with all the margin its pair with this half-space can have, lies clear of the solid.
   bool may_touch(const Aabb& box) const {
@@ -65,7 +67,8 @@ struct PlaneReach {
     double reach = 0;
     for (int k = 0; k < 3; ++k) reach += std::abs(plane.normal[k]) * sizes[k];
     const double lowest = dot(plane.normal, centre) - 0.5 * reach;
-    const double share = margin >= 0 ? 0.5 * margin : std::max(way, 0.5 * max_entry(sizes));
+    double share = std::max(way, 0.5 * (margin >= 0 ? margin : max_entry(sizes)));
+    if (turn > 0) share = std::max(share, way + turn * (norm(Vec3(centre - pivot)) + 0.5 * norm(sizes)));
     return lowest - plane.offset <= contact_distance + share;
   }
 };

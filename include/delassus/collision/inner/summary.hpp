@@ -23,9 +23,26 @@ inline std::uint64_t fingerprint(const Shape& s) {
   return sum ^ sum >> 29;
 }
 
-/// No point of the body is faster than this, m/s.
+/// No point of the body is faster than this, m/s: a half-space that turns has points of any speed.
 inline double top_speed(const Collider& c) {
+  if (c.shape.kind == ShapeKind::half_space && !is_zero(c.angular_velocity)) return std::numeric_limits<double>::infinity();
   return norm(c.velocity) + norm(c.angular_velocity) * outer_radius(c.shape);
+}
+
+/// No point at which the two may meet within h s goes faster by the turn of `c` alone, m/s. A ball that turns stays where it is.
+inline double turning_speed(const Collider& c, const Collider& other, double h) {
+  if (c.shape.kind == ShapeKind::sphere || is_zero(c.angular_velocity)) return 0;
+  const double radius = c.shape.kind != ShapeKind::half_space
+                            ? outer_radius(c.shape)
+                            : norm(Vec3(other.pose.position - c.pose.position)) + outer_radius(other.shape) + h * norm(Vec3(other.velocity - c.velocity));
+  return norm(c.angular_velocity) * radius;
+}
+/// The sum of both.
+inline double turning_speeds(const Collider& a, const Collider& b, double h) { return turning_speed(a, b, h) + turning_speed(b, a, h); }
+
+/// No point at which the two may meet within h s is faster than this by the motion of `c`, m/s.
+inline double top_speed(const Collider& c, const Collider& other, double h) {
+  return c.shape.kind == ShapeKind::half_space ? norm(c.velocity) + turning_speed(c, other, h) : top_speed(c);
 }
 
 /// The size that a shape brings to its pairs, m, of which the smaller one counts: a half-space leaves it to

@@ -46,7 +46,7 @@ class SurfacePairs {
     const Collider &a = colliders[job.a], &b = colliders[job.b];
     const bool is_plane = b.shape.kind == ShapeKind::half_space;
     Pair pair(job, a, b, length_scale(is_plane ? a.shape : b.shape), h, settings);
-    if constexpr (KnowsWhoPushed<Filter>) pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b)));
+    if constexpr (KnowsWhoPushed<Filter>) pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b, a, h)));
     if constexpr (KnowsWhoPushed<Filter>) is_new_ = !is_plane && a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
     hit_ = {};
     points_.clear();
@@ -129,7 +129,7 @@ class SurfacePairs {
     Pair(const PairJob& j, const Collider& first, const Collider& second, double size, double step,
          const CollisionSettings& s)
         : job(j), a(first), b(second), scale(size), h(step), settings(s), b_in_a(a.pose.to_local(b.pose)),
-          reach(s.contact_distance + widest_margin(top_speed(a) + top_speed(b), size, step, s)) {}
+          reach(s.contact_distance + widest_margin(top_speed(a) + top_speed(b, a, step), size, step, s)) {}
   };
 
   static bool is_within_margin(const Pair& pair, const PatchPoint& p, const Vec3& n) {
@@ -430,7 +430,7 @@ void SurfacePairs::collide_missed(const Surface& surface, std::span<const Collid
   const Collider &a = colliders[job.a], &b = colliders[job.b];
   if (b.shape.kind == ShapeKind::half_space) return;
   Pair pair(job, a, b, length_scale(b.shape), h, settings);
-  pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b)));
+  pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b, a, h)));
   hit_ = {};
   const auto ask = [&](const ApartTriangle& apart) {
     const Impact hit = impact_on(surface, pair, apart);

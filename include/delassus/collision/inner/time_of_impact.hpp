@@ -5,6 +5,7 @@
 #include <delassus/collision/collider.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/one_point.hpp>
+#include <delassus/collision/inner/summary.hpp>
 #include <delassus/math/rotation.hpp>
 
 #include <algorithm>
@@ -45,12 +46,6 @@ inline double core_of_motion(const Shape& s) {
   }
 }
 
-/// No point of the surface goes faster by the turn alone, m/s. A ball that turns stays where it is.
-inline double turning_speed(const Collider& c) {
-  if (c.shape.kind == ShapeKind::sphere || is_zero(c.angular_velocity)) return 0;
-  return norm(c.angular_velocity) * outer_radius(c.shape);
-}
-
 struct Impact {
   bool is_found = false;
   bool is_now = false;  ///< within the target from the start: not found, but `normal_in_a` holds
@@ -59,14 +54,14 @@ struct Impact {
   Vec3 normal_in_a = zero<Vec3>();
 };
 
-/// How far below the chord of its ends the distance of two bodies may dip within `time` s, m, along a normal that goes from n to m
-/// on a line. That of two points is n · (y − x); its second derivative is
+/// How far below the chord of its ends the distance of two bodies may dip within `time` of the h s of a step, m, along a normal that
+/// goes from n to m on a line. That of two points is n · (y − x); its second derivative is
 ///
 ///   2 ṅ · (v_B − v_A) + n · (a_B − a_A),   |ṅ| = |m − n| / time,   |a| ≤ |ω|² r,
 ///
 /// and the least of many such lies above the chord of its ends as each does.
-[[gnu::always_inline]] inline double dip(const Collider& a, const Collider& b, const Vec3& n, const Vec3& m, double time) {
-  const double turning_a = turning_speed(a), turning_b = turning_speed(b);
+[[gnu::always_inline]] inline double dip(const Collider& a, const Collider& b, const Vec3& n, const Vec3& m, double time, double h) {
+  const double turning_a = turning_speed(a, b, h), turning_b = turning_speed(b, a, h);
   return time * (norm(Vec3(m - n)) * (norm(Vec3(a.velocity - b.velocity)) + turning_a + turning_b) / 4 +
                  time * (norm(a.angular_velocity) * turning_a + norm(b.angular_velocity) * turning_b) / 8);
 }
@@ -83,7 +78,7 @@ struct Impact {
 template <class Distance>
 Impact time_of_impact(const Collider& a, const Collider& b, double h, double target, Vec3 guess, const Distance& distance) {
   Impact hit;
-  const double turning = turning_speed(a) + turning_speed(b);
+  const double turning = turning_speeds(a, b, h);
   double span = h;  // to look ahead by, s
   for (int look = 0; look < 200; ++look) {
     hit.a = pose_after(a, hit.time);
@@ -106,7 +101,7 @@ Impact time_of_impact(const Collider& a, const Collider& b, double h, double tar
     const Pose there = pose_after(a, from + span);
     const SignedPair then = distance(there.to_local(pose_after(b, from + span)), guess);
     const double enough =
-        (1 + 1e-6) * target + dip(a, b, hit.a.rotation * r.normal, there.rotation * then.normal, span);
+        (1 + 1e-6) * target + dip(a, b, hit.a.rotation * r.normal, there.rotation * then.normal, span, h);
     if (!(r.distance > enough && then.distance > enough)) {
       span /= 4;
     } else if (from + span < h) {
