@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compiles every header by itself, with each compiler, two at a time; syntax only.
 
-    scripts/check_headers.py [ROOT] --compiler g++ clang++ --system /usr/include/eigen3 [--absent fcl] [--cache DIR] [--but-inner]
+    scripts/check_headers.py [ROOT] --compiler g++ clang++ --system /usr/include/eigen3 [--absent fcl] [--cache DIR] [--shown]
                              [--only HEADER...]
 
 The first compiler sees the header alone; what the header reaches of Eigen, and no more, it finds precompiled. A clang after it
@@ -9,7 +9,7 @@ is asked for what it alone refuses: it starts from a precompiled Eigen and gets 
 refuses them each by itself.
 
 A header that passed is not compiled again until it, or a delassus header it includes, has changed (--cache).
-Adapters of an absent component are skipped, and counted. --but-inner leaves out what no user includes, the folders inner/.
+Adapters of an absent component are skipped, and counted. --shown takes those alone that README, docs/ and examples/ include.
 """
 import argparse
 import hashlib
@@ -91,11 +91,15 @@ def precompiled(folder, command, version, names):
     return ["-include-pch", str(result)] if is_clang else ["-include", str(source)]
 
 
-def check(include, compilers, system, absent, cache, jobs, only=None, but_inner=False):
+def shown(root):
+    """The headers that pages and examples include."""
+    files = [root / "README.md", *(p for folder in ("docs", "examples") for p in (root / folder).rglob("*.[chm]*"))]
+    return sorted({name for p in files for name in INCLUDE.findall(p.read_text(encoding="utf-8"))})
+
+
+def check(include, compilers, system, absent, cache, jobs, only=None):
     started = time.monotonic()
     headers = only or sorted(p.relative_to(include).as_posix() for p in include.rglob("*.hpp"))
-    if but_inner:
-        headers = [h for h in headers if "/inner/" not in h]
     skipped = [h for h in headers if any(h.startswith(f"delassus/adapters/{name}") for name in absent)]
     headers = [h for h in headers if h not in skipped]
     if cache:
@@ -153,12 +157,12 @@ def main():
     parser.add_argument("--cache", type=Path)
     parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1))
     parser.add_argument("--only", nargs="*", metavar="HEADER", help="as delassus/rows/islands.hpp")
-    parser.add_argument("--but-inner", action="store_true")
+    parser.add_argument("--shown", action="store_true")
     parser.add_argument("--self-test", action="store_true")
     a = parser.parse_args()
     if a.self_test:
         return 1 if self_test(a.compiler) else 0
-    return 1 if check(a.root / "include", a.compiler, a.system, a.absent, a.cache, a.jobs, a.only, a.but_inner) else 0
+    return 1 if check(a.root / "include", a.compiler, a.system, a.absent, a.cache, a.jobs, a.only or (shown(a.root) if a.shown else None)) else 0
 
 
 if __name__ == "__main__":

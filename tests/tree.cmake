@@ -64,10 +64,10 @@ delassus_tree_test(tree/front_page ${Python3_EXECUTABLE} ${scripts}/front_page.p
 # --- the mutants of scripts/mutants.py still find what they replace --------------------------------------------------
 delassus_tree_test(tree/mutants ${Python3_EXECUTABLE} ${scripts}/mutants.py --check)
 
-# --- every header by itself, in ./run test those that users include --------------------------------------------------
+# --- every header by itself, in ./run test those that pages and examples show ----------------------------------------
 set(which "")
 if(NOT DELASSUS_TEST_ALL)
-  set(which --but-inner)
+  set(which --shown)
 endif()
 delassus_tree_test(tree/headers_alone ${Python3_EXECUTABLE} ${scripts}/check_headers.py ${PROJECT_SOURCE_DIR} ${which}
   --cache ${PROJECT_BINARY_DIR}/headers_alone --compiler ${compilers} --system ${include_dirs} --absent ${absent})
@@ -97,18 +97,8 @@ if(DELASSUS_TEST_ALL AND DELASSUS_GXX)
 endif()
 
 # --- wrong programs and the sentence each must print ----------------------------------------------------------------
-# Nearly all of them start with the umbrella header, which takes most of their time: each compiler precompiles it first. A second
-# compiler has its say on one program of each role, and on all in ./run test --all.
-set(one_a_role bodies_of_no_set integrator_without_advance collision_without_detect compliance_without_operator
-  law_without_linearize stabilisation_without_equality solver_without_solve scheme_without_run listener_without_after
-  policy_without_role contact_of_nothing item_without_ends)
-set(fail_compilers ${compilers})
-set(fail_names ${compiler_names})
-if(other AND NOT DELASSUS_TEST_ALL)
-  list(APPEND fail_compilers ${other})
-  list(APPEND fail_names ${other_name})
-endif()
-foreach(compiler compiler_name IN ZIP_LISTS fail_compilers fail_names)
+# Nearly all of them start with the umbrella header, which takes most of their time: each compiler precompiles it first.
+foreach(compiler compiler_name IN ZIP_LISTS compilers compiler_names)
   set(name "compile_fail/precompile (${compiler_name})")
   string(COMPARE EQUAL ${compiler_name} Clang is_clang)
   add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -DCOMPILER=${compiler} -DIS_CLANG=${is_clang}
@@ -119,11 +109,7 @@ foreach(compiler compiler_name IN ZIP_LISTS fail_compilers fail_names)
 endforeach()
 
 function(delassus_compile_fail name source)
-  cmake_path(GET source STEM stem)
-  foreach(compiler compiler_name IN ZIP_LISTS fail_compilers fail_names)
-    if(NOT compiler IN_LIST compilers AND NOT stem IN_LIST one_a_role)
-      continue()
-    endif()
+  foreach(compiler compiler_name IN ZIP_LISTS compilers compiler_names)
     add_test(NAME "${name} (${compiler_name})" COMMAND ${CMAKE_COMMAND} -DSOURCE=${source} -DCOMPILER=${compiler}
       -DINCLUDE=${PROJECT_SOURCE_DIR}/include "-DSYSTEM=${include_dirs}"
       -DPRECOMPILED=${CMAKE_CURRENT_BINARY_DIR}/compile_fail/${compiler_name}
