@@ -1,6 +1,6 @@
 // expect: delassus: JointByJoint takes no RotorInertia; take PlainOrder
-#include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/schemes/joint_by_joint.hpp>
 
 int main() {

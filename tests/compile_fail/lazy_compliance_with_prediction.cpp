@@ -1,6 +1,6 @@
 // expect: LazyCompliance and PrecomputedCompliance take no scheme that overrides stages, such as PredictiveScheme, and no law with restitution, such as Restitution, SequentialRestitution and Limit; use AssembledCompliance
-#include <delassus/compliance/lazy.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/compliance/lazy.hpp>
 #include <delassus/fem/elasticity/linear.hpp>
 #include <delassus/fem/tetrahedral_fem.hpp>
 

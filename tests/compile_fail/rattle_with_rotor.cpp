@@ -1,6 +1,6 @@
 // expect: delassus: of the integrators that make a step at once NewtonMidpoint alone takes a RotorInertia; take it, or ImplicitMidpoint
-#include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/constraints/joints/rotor_inertia.hpp>
 #include <delassus/steppers/rattle.hpp>
 
 int main() {

@@ -1,6 +1,6 @@
 // expect: delassus: UncoupledCompliance takes the mass of each node alone, which this set of bodies does not give (Rods do not); use AssembledCompliance
-#include <delassus/compliance/uncoupled.hpp>
 #include <delassus/delassus.hpp>
+#include <delassus/compliance/uncoupled.hpp>
 #include <delassus/fem/rods.hpp>
 
 using namespace delassus;
