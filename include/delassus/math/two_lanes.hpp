@@ -13,6 +13,8 @@ inline TwoLanes two_lanes_at(const double* x) {
   std::memcpy(&out, x, sizeof out);
   return out;
 }
+/// In one store: two would keep a load of both waiting.
+inline void put_two_lanes(TwoLanes x, double* to) { std::memcpy(to, &x, sizeof x); }
 inline TwoLanes two_lanes_at(const float* x) { return TwoLanes{double(x[0]), double(x[1])}; }
 
 }  // namespace delassus::inner

@@ -99,15 +99,33 @@ template <int R, class T>
   return u;
 }
 
+template <int R, class T>
+[[gnu::noinline]] void free_velocity_without_blocks(const RowView<T>& view, Index i, double* r) {
+  const Vec<R, double> own = load_square<R>(view.own_diagonal + std::ptrdiff_t(R * R) * i) * load<R>(view.lambda + std::ptrdiff_t(R) * i);
+  store(Vec<R, double>(velocity_without_blocks<R>(view, i) - own), r);
+}
+/// The same where all bodies are rigid: what most matrix-free W are, without a call and what it keeps.
+template <int R, class T>
+[[gnu::always_inline]] inline void free_velocity_of_rigid_bodies(const RowView<T>& view, Index i, double* r) {
+  const T* const lambda = view.lambda + std::ptrdiff_t(R) * i;
+  double own[R] = {};
+  add_square_block<R>(own, view.own_diagonal + std::ptrdiff_t(R * R) * i, lambda);
+  DELASSUS_UNROLL
+  for (int k = 0; k < R; ++k) r[k] = double(view.d[std::ptrdiff_t(R) * i + k]);
+  add_velocity_of_bodies<R>(*view.set, i, r, 6);
+  DELASSUS_UNROLL
+  for (int k = 0; k < R; ++k) r[k] = r[k] + double(view.on_diagonal[std::ptrdiff_t(R) * i + k] * lambda[k]) - own[k];
+}
+
 /// d_i + Σ_{j ≠ i} W_ij λ_j: what the rows would do without this constraint; of a W that is not square blocks.
 template <int R, class T>
 [[gnu::noinline]] void free_velocity_otherwise(const RowView<T>& view, Index i, double* r) {
-  if (view.is_matrix() || (view.form == FormOfW::mixed && !view.crowded[i].is_crowded)) {
+  if (view.form == FormOfW::bodies && view.sets == 1 && view.set->width == 6)
+    free_velocity_of_rigid_bodies<R>(view, i, r);
+  else if (view.is_matrix() || (view.form == FormOfW::mixed && !view.crowded[i].is_crowded))
     sum_of_blocks<R>(view, i, r);
-  } else {
-    const Vec<R, double> own = load_square<R>(view.own_diagonal + std::ptrdiff_t(R * R) * i) * load<R>(view.lambda + std::ptrdiff_t(R) * i);
-    store(Vec<R, double>(velocity_without_blocks<R>(view, i) - own), r);
-  }
+  else
+    free_velocity_without_blocks<R>(view, i, r);
 }
 // What a call writes into has a place in memory, and what the caller makes of it has none: else it would pass through memory
 // where no call is made, too.
@@ -175,7 +193,7 @@ template <int R, int width, class T>
     DELASSUS_UNROLL
     for (int k = 1; k < R; ++k)
       for (int j = 0; j < width / 2; ++j) sum[j] += two_lanes_at(G + 2 * j + width * k) * change[k];
-    for (int j = 0; j < width / 2; ++j) y[2 * j] += sum[j][0], y[2 * j + 1] += sum[j][1];
+    for (int j = 0; j < width / 2; ++j) put_two_lanes(two_lanes_at(y + 2 * j) + sum[j], y + 2 * j);
   }
 }
 /// The same of bodies of any width.
@@ -195,7 +213,7 @@ template <int R, class T>
 
 /// What W hears of a change of λ_i where it is no matrix.
 template <int R, class T>
-[[gnu::noinline]] void tell_change(const RowView<T>& view, Index i, const double* change) {
+[[gnu::noinline]] void tell_change_otherwise(const RowView<T>& view, Index i, const double* change) {
   if (view.form == FormOfW::functions) {
     T numbers[R];
     for (int k = 0; k < R; ++k) numbers[k] = T(change[k]);
@@ -206,6 +224,13 @@ template <int R, class T>
       else add_change_of_bodies_otherwise<R>(*set, i, change);
     }
   }
+}
+template <int R, class T>
+[[gnu::noinline]] void tell_change(const RowView<T>& view, Index i, const double* change) {
+  if (view.form == FormOfW::bodies && view.sets == 1 && view.set->width == 6)
+    add_change_of_bodies<R, 6>(*view.set, i, change);
+  else
+    tell_change_otherwise<R>(view, i, change);
 }
 template <int R, class T>
 [[gnu::always_inline]] inline void impulse_changed(const RowView<T>& view, Index i, const Vec<R, double>& change) {
