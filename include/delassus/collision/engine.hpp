@@ -48,7 +48,7 @@ class CollisionEngine {
     if constexpr (inner::has_execution<Filter>())
       inner::collide_in_parts(worker_, jobs_, slots_, filter, out);
     else
-      for (const Job& job : jobs_) worker_.collide(job, slots_[job.slot], filter, out);
+      for (Job& job : jobs_) inner::collide_listed(worker_, job, slots_[job.slot], filter, out);
     worker_.report.points = Index(out.size());
     return worker_.report;
   }
@@ -208,10 +208,9 @@ class CollisionEngine {
   bool outgrows(Index i, const Collider& c, double h, const CollisionSettings& settings);
   bool comes_near(inner::Slice<const Collider> colliders, const Job& job, double h,
                   const CollisionSettings& settings) const;
-  bool find_who_outgrew(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings);
   /// A pair without contacts is to be asked: at once where it may come near, else when its velocities are
   /// others.
-  void ask(inner::Slice<const Collider> colliders, const Job& job, Job* listed, double h,
+  void ask(inner::Slice<const Collider> colliders, const Job& job, Index listed, double h,
            const CollisionSettings& settings);
   /// A detection without such a filter, as in the middle of a step, may have had other pairs.
   void keep_jobs_of_apart();

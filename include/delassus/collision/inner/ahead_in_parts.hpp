@@ -12,31 +12,6 @@
 
 namespace delassus {
 
-namespace inner {
-
-/// Looks jobs up by their pairs, which are mostly asked in the order of the jobs.
-class JobFinder {
- public:
-  JobFinder(Array<ListedPair>& jobs, std::size_t count) : first_(jobs.data()), count_(count) {}
-  /// −1 where there is none.
-  Index find(std::uint64_t pair) {
-    if (next_ == unknown || (next_ > 0 && !(first_[next_ - 1].pair < pair)))
-      next_ = std::size_t(
-          inner::lower_bound(first_, first_ + count_, pair,
-                             [](const ListedPair& job, std::uint64_t key) { return job.pair < key; }) -
-          first_);
-    while (next_ < count_ && first_[next_].pair < pair) ++next_;
-    return next_ < count_ && first_[next_].pair == pair ? Index(next_) : Index(-1);
-  }
-
- private:
-  static constexpr std::size_t unknown = std::size_t(-1);
-  ListedPair* first_;
-  std::size_t count_, next_ = unknown;
-};
-
-}  // namespace inner
-
 template <class Kernel, class Broad>
 template <class Filter>
 requires(inner::has_execution<Filter>()) void CollisionEngine<Kernel, Broad>::find_outgrown(
@@ -52,7 +27,8 @@ requires(inner::has_execution<Filter>()) void CollisionEngine<Kernel, Broad>::fi
   merged_ = waiting_;
   inner::sort(merged_);
   waiting_.clear();
-  for (const Job& job : merged_) ask(colliders, job, job_of(job.pair, known), h, settings);
+  inner::JobFinder asked_before(jobs_, known);
+  for (const Job& job : merged_) ask(colliders, job, asked_before.find(job.pair), h, settings);
 
   is_grown_.resize(colliders.size());
   std::atomic<bool> is_any{false};
@@ -63,13 +39,6 @@ requires(inner::has_execution<Filter>()) void CollisionEngine<Kernel, Broad>::fi
     if (is_one) is_any.store(true, std::memory_order_relaxed);
   });
   if (is_any) {
-    const auto& apart = worker_.apart_pairs;
-    ranges(Index(apart.size()), least_pairs, [&](inner::Range range) {
-      inner::JobFinder finder(jobs_, known);
-      for (Index k = range.first; k < range.last; ++k)
-        if (const Index listed = finder.find(apart[std::size_t(k)].job.pair); listed >= 0)
-          jobs_[std::size_t(listed)].is_asked = true;
-    });
     // Who is to be asked: its place among the jobs in the place of a slot, and whether the two come near.
     auto& asked = by.room.asked;
     asked.clear();
@@ -78,7 +47,7 @@ requires(inner::has_execution<Filter>()) void CollisionEngine<Kernel, Broad>::fi
       const std::uint64_t pair = pair_key(x.key, y.key);
       const Index at = finder.find(pair);
       const Job* const listed = at < 0 ? nullptr : &jobs_[std::size_t(at)];
-      if (listed ? listed->is_asked || slots_[listed->slot].count > 0
+      if (listed ? listed->is_asked
                  : inner::is_listed(merged_, Job{{pair, i, j}}))
         return;
       if (!may_meet(x, y) || !filter.lets(pair)) return;
@@ -117,30 +86,6 @@ requires(inner::has_execution<Filter>()) void CollisionEngine<Kernel, Broad>::fi
   if (jobs_.size() == known) return;
   inner::sort_and_merge(jobs_, known, merged_);
   slots_.assign(jobs_);
-}
-
-template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::outgrows(Index i, const Collider& c, double h,
-                                              const CollisionSettings& settings) {
-  const double speed = inner::top_speed(c);
-  if (boxes_[i].is_empty() || !std::isfinite(speed) ||
-      speed * h <= 0.5 * inner::margin_share * summary_[i].scale)
-    return false;
-  inner::Summary now = summary_[i];
-  now.speed = std::max(speed, now.speed);
-  const Aabb box = inner::box_of_way(c, now, h, settings);
-  if (speed * h <= inner::longest_way(summary_[i], h, settings) && boxes_[i].contains(box)) return false;
-  summary_[i] = now;
-  boxes_[i].extend(box);
-  return true;
-}
-
-template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::comes_near(inner::Slice<const Collider> colliders, const Job& job,
-                                                double h, const CollisionSettings& settings) const {
-  const double scale = std::min(summary_[job.a].scale, summary_[job.b].scale);
-  return inner::may_come_near(colliders[job.a], colliders[job.b], h,
-                              settings.contact_distance + inner::meeting_share * scale);
 }
 
 }  // namespace delassus

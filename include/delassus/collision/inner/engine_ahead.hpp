@@ -24,37 +24,38 @@ void CollisionEngine<Kernel, Broad>::keep_jobs_of_apart() {
 }
 
 template <class Kernel, class Broad>
-bool CollisionEngine<Kernel, Broad>::find_who_outgrew(inner::Slice<const Collider> colliders, double h,
-                                                      const CollisionSettings& settings) {
-  is_grown_.assign(colliders.size(), 0);
-  bool is_any = false;
-  for (Index i = 0; i < Index(colliders.size()); ++i) {
-    const double speed = inner::top_speed(colliders[i]);
-    if (boxes_[i].is_empty() || !std::isfinite(speed) ||
-        speed * h <= 0.5 * inner::margin_share * summary_[i].scale)
-      continue;
-    inner::Summary now = summary_[i];
-    now.speed = std::max(speed, now.speed);
-    const Aabb box = inner::box_of_way(colliders[i], now, h, settings);
-    if (speed * h <= inner::longest_way(summary_[i], h, settings) && boxes_[i].contains(box)) continue;
-    summary_[i] = now;
-    boxes_[i].extend(box);
-    is_grown_[i] = is_any = true;
-  }
-  return is_any;
+bool CollisionEngine<Kernel, Broad>::outgrows(Index i, const Collider& c, double h,
+                                              const CollisionSettings& settings) {
+  const double speed = inner::top_speed(c);
+  if (boxes_[i].is_empty() || !std::isfinite(speed) ||
+      speed * h <= 0.5 * inner::margin_share * summary_[i].scale)
+    return false;
+  inner::Summary now = summary_[i];
+  now.speed = std::max(speed, now.speed);
+  const Aabb box = inner::box_of_way(c, now, h, settings);
+  if (speed * h <= inner::longest_way(summary_[i], h, settings) && boxes_[i].contains(box)) return false;
+  summary_[i] = now;
+  boxes_[i].extend(box);
+  return true;
 }
 
 template <class Kernel, class Broad>
-void CollisionEngine<Kernel, Broad>::ask(inner::Slice<const Collider> colliders, const Job& job, Job* listed,
-                                         double h, const CollisionSettings& settings) {
+bool CollisionEngine<Kernel, Broad>::comes_near(inner::Slice<const Collider> colliders, const Job& job,
+                                                double h, const CollisionSettings& settings) const {
   const double scale = std::min(summary_[job.a].scale, summary_[job.b].scale);
-  if (listed) listed->is_asked = true;
-  if (!inner::may_come_near(colliders[job.a], colliders[job.b], h,
-                            settings.contact_distance + inner::meeting_share * scale)) {
+  return inner::may_come_near(colliders[job.a], colliders[job.b], h,
+                              settings.contact_distance + inner::meeting_share * scale);
+}
+
+template <class Kernel, class Broad>
+void CollisionEngine<Kernel, Broad>::ask(inner::Slice<const Collider> colliders, const Job& job, Index listed,
+                                         double h, const CollisionSettings& settings) {
+  if (listed >= 0) jobs_[std::size_t(listed)].is_asked = true;
+  if (!comes_near(colliders, job, h, settings)) {
     waiting_.push_back(job);
     return;
   }
-  if (!listed) jobs_.push_back(Job{job, -1, true});
+  if (listed < 0) jobs_.push_back(Job{job, -1, true});
   worker_.apart_pairs.push_back({job, 0, zero<Vec3>()});
 }
 
@@ -67,23 +68,18 @@ void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> 
   merged_ = waiting_;
   inner::sort(merged_);
   waiting_.clear();
-  for (const Job& job : merged_) ask(colliders, job, job_of(job.pair, known), h, settings);
-  if (find_who_outgrew(colliders, h, settings)) {
-    std::size_t next = 0;
-    const auto find = [&](std::uint64_t pair) {  // mostly asked in the order of the jobs
-      if (next > 0 && !(jobs_[next - 1].pair < pair)) return job_of(pair, known);
-      while (next < known && jobs_[next].pair < pair) ++next;
-      return next < known && jobs_[next].pair == pair ? &jobs_[next] : nullptr;
-    };
-    for (const inner::Apart& p : worker_.apart_pairs)
-      if (Job* const listed = find(p.job.pair)) listed->is_asked = true;
-    next = 0;
+  inner::JobFinder finder(jobs_, known);
+  for (const Job& job : merged_) ask(colliders, job, finder.find(job.pair), h, settings);
+  is_grown_.resize(colliders.size());
+  bool is_any = false;
+  for (Index i = 0; i < Index(colliders.size()); ++i)
+    is_any = (is_grown_[i] = outgrows(i, colliders[i], h, settings)) || is_any;
+  if (is_any) {
     const auto see = [&](Index i, Index j) {
       const Collider &x = colliders[i], &y = colliders[j];
       const std::uint64_t pair = pair_key(x.key, y.key);
-      Job* const listed = find(pair);
-      if (listed ? listed->is_asked || slots_[listed->slot].count > 0
-                 : inner::is_listed(merged_, Job{{pair, i, j}}))
+      const Index listed = finder.find(pair);
+      if (listed >= 0 ? jobs_[std::size_t(listed)].is_asked : inner::is_listed(merged_, Job{{pair, i, j}}))
         return;
       if (!may_meet(x, y) || !filter.lets(pair)) return;
       ask(colliders, x.key < y.key ? Job{{pair, i, j}} : Job{{pair, j, i}}, listed, h, settings);

@@ -5,6 +5,7 @@
 #include <delassus/collision/inner/resting_pair.hpp>
 #include <delassus/core/array.hpp>
 #include <delassus/core/index.hpp>
+#include <delassus/core/sort.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +16,31 @@ namespace delassus::inner {
 /// A job with its slot.
 struct ListedPair : PairJob {
   Index slot = -1;
-  bool is_asked = false;  ///< apart, and asked whether it meets in the step
+  bool is_asked = false;  ///< it has contacts, or is apart and asked whether it meets in the step
+};
+
+/// Looks jobs up by their pairs, which are mostly asked in the order of the jobs: the first `count` of a list
+/// that is sorted, and may grow meanwhile.
+class JobFinder {
+ public:
+  JobFinder(Array<ListedPair>& jobs, std::size_t count) : jobs_(jobs), count_(count) {}
+  /// −1 where there is none.
+  Index find(std::uint64_t pair) {
+    ListedPair* const first = jobs_.data();
+    if (next_ == unknown || (next_ > 0 && !(first[next_ - 1].pair < pair)))
+      next_ = std::size_t(inner::lower_bound(first, first + count_, pair,
+                                             [](const ListedPair& job, std::uint64_t key) {
+                                               return job.pair < key;
+                                             }) -
+                          first);
+    while (next_ < count_ && first[next_].pair < pair) ++next_;
+    return next_ < count_ && first[next_].pair == pair ? Index(next_) : Index(-1);
+  }
+
+ private:
+  static constexpr std::size_t unknown = std::size_t(-1);
+  Array<ListedPair>& jobs_;
+  std::size_t count_, next_ = unknown;
 };
 
 /// A memory is large and most pairs stay from step to step: lists of pairs change, memories do not move.

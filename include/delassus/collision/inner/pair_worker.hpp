@@ -252,7 +252,7 @@ class PairWorker {
 /// Contacts of all listed pairs by the threads that the filter brings; the worker is left as if it had made
 /// them all.
 template <class Kernel, class Filter>
-void collide_in_parts(PairWorker<Kernel>& worker, const Array<ListedPair>& jobs, PairSlots& slots,
+void collide_in_parts(PairWorker<Kernel>& worker, Array<ListedPair>& jobs, PairSlots& slots,
                       const Filter& filter, std::vector<ContactPoint>& out);
 
 template <class Kernel>
@@ -385,6 +385,15 @@ bool PairWorker<Kernel>::meet(const Collider& a, const Collider& b, const Job& j
   hold_cores(a, b, job, out);
   sort_last(int(out.size() - first), out);
   return true;
+}
+
+/// Contacts of a listed pair; the list keeps what is known of it.
+template <class Kernel, class Filter>
+void collide_listed(PairWorker<Kernel>& worker, ListedPair& job, RestingPair& pair, const Filter& filter,
+                    std::vector<ContactPoint>& out) {
+  const std::size_t apart = worker.apart_pairs.size();
+  worker.collide(job, pair, filter, out);
+  job.is_asked = pair.count > 0 || worker.apart_pairs.size() > apart;
 }
 
 }  // namespace delassus::inner

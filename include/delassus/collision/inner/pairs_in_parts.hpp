@@ -73,7 +73,7 @@ struct DetectionInParts {
 
 /// What was in `out` is written over.
 template <class Kernel, class Filter>
-void collide_in_parts(PairWorker<Kernel>& worker, const Array<ListedPair>& jobs, PairSlots& slots,
+void collide_in_parts(PairWorker<Kernel>& worker, Array<ListedPair>& jobs, PairSlots& slots,
                       const Filter& filter, std::vector<ContactPoint>& out) {
   constexpr Index least_pairs = 32;
   const auto& with = parts_of(filter);
@@ -86,8 +86,8 @@ void collide_in_parts(PairWorker<Kernel>& worker, const Array<ListedPair>& jobs,
     part.out.clear();
     part.worker.begin(worker);
     for (Index k = range.first; k < range.last; ++k) {
-      const ListedPair& job = jobs[std::size_t(k)];
-      part.worker.collide(job, slots[job.slot], filter, part.out);
+      ListedPair& job = jobs[std::size_t(k)];
+      collide_listed(part.worker, job, slots[job.slot], filter, part.out);
     }
   });
   std::size_t count = 0;
