@@ -29,17 +29,41 @@ struct FreeImpulse {
   }
 };
 
+/// Residuals of conjugate gradients, as far as there are no more than `most`. They are orthogonal, but for what rounding leaves; a
+/// search that is not told of it goes the same ways again and again.
+struct PastResiduals {
+  static constexpr std::size_t most = 64;
+  Array<double> unit;  ///< of length 1, one after the other
+
+  void clear() { unit.clear(); }
+  void add(const Array<double>& r, double square) {
+    if (unit.size() >= most * r.size()) return;
+    const double over = 1 / std::sqrt(square);
+    for (const double number : r) unit.push_back(over * number);
+  }
+  /// What r has of them goes.
+  void take_from(Array<double>& r) const {
+    for (const double *q = unit.data(), *end = q + unit.size(); q != end; q += r.size()) {
+      double along = 0;
+      for (std::size_t n = 0; n < r.size(); ++n) along += q[n] * r[n];
+      for (std::size_t n = 0; n < r.size(); ++n) r[n] -= along * q[n];
+    }
+  }
+};
+
 /// Room for the search, reserved once.
 template <class T>
 struct LeastImpulsesSpace {
   Array<T> solved, target;  ///< impulses that are set aside
   Array<FreeImpulse<T>> free;
   Array<double> x, b, r, p, q;  ///< of the unknowns
+  PastResiduals past;
 
   void reserve(Index rows) {
     const std::size_t room = std::size_t(rows);
     for (auto* impulses : {&solved, &target}) impulses->reserve(room);
     for (auto* v : {&x, &b, &r, &p, &q}) v->reserve(room);
+    past.unit.reserve(room * std::min(room, PastResiduals::most));
     free.reserve(room);
   }
 };
@@ -92,7 +116,7 @@ class LeastImpulses {
   /// friction following along the slip. That moves what slips, so that the problem must be solved again from here. By
   /// conjugate gradients on G Gᵀ y = b, x = Gᵀ y, G = Pᵀ W B, b = G x*. Returns how far λ went, of its size.
   double share(int products) {
-    auto& [solved, target, free, x, b, r, p, q] = work_;
+    auto& [solved, target, free, x, b, r, p, q, past] = work_;
     gather();
     b = x;
     multiply(x, false, r, true);
@@ -100,12 +124,15 @@ class LeastImpulses {
     multiply(r, true, p, false);
     double square = sum_of_products(r, r);
     const double goal = 1e-20 * square;
+    past.clear();
     for (int k = 0; square > goal && k < products; ++k) {
       const double curvature = sum_of_products(p, p);
       if (!(curvature > 0)) break;
       const double alpha = square / curvature;
+      past.add(r, square);
       multiply(p, false, q, true);
       for (std::size_t n = 0; n < x.size(); ++n) x[n] += alpha * p[n], r[n] -= alpha * q[n];
+      past.take_from(r);
       const double next = sum_of_products(r, r), beta = next / square;
       multiply(r, true, q, false);
       for (std::size_t n = 0; n < x.size(); ++n) p[n] = q[n] + beta * p[n];
@@ -197,19 +224,22 @@ class LeastImpulses {
 
   /// x in the range of Bᵀ W B with its product b.
   bool find_in_range(int products) {
-    auto& [solved, target, free, x, b, r, p, q] = work_;
+    auto& [solved, target, free, x, b, r, p, q, past] = work_;
     x.assign_zeros(x.size());
     r = b;
     p = b;
     double square = sum_of_products(r, r);
     const double goal = 1e-26 * square;
+    past.clear();
     for (int k = 0; square > goal; ++k) {
       if (k == products) return false;
       multiply(p, false, q, false);
       const double curvature = sum_of_products(p, q);
       if (!(curvature > 0)) return square <= 1e-20 * sum_of_products(b, b);
       const double alpha = square / curvature;
+      past.add(r, square);
       for (std::size_t n = 0; n < x.size(); ++n) x[n] += alpha * p[n], r[n] -= alpha * q[n];
+      past.take_from(r);
       const double next = sum_of_products(r, r), beta = next / square;
       for (std::size_t n = 0; n < x.size(); ++n) p[n] = r[n] + beta * p[n];
       square = next;
