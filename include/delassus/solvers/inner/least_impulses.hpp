@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace delassus::inner {
 
@@ -123,7 +124,7 @@ class LeastImpulses {
     x.assign_zeros(x.size());
     multiply(r, true, p, false);
     double square = sum_of_products(r, r);
-    const double goal = 1e-20 * square;
+    const double goal = std::max(1e-20, least_square) * square;
     past.clear();
     for (int k = 0; square > goal && k < products; ++k) {
       const double curvature = sum_of_products(p, p);
@@ -220,6 +221,9 @@ class LeastImpulses {
     }
   }
 
+  /// The square of a residual that is rounding, which W does not reach: answers to it would be large.
+  static constexpr double rounding = 64 * double(std::numeric_limits<T>::epsilon()), least_square = rounding * rounding;
+
   // --- the search -----------------------------------------------------------------------------------------------------
 
   /// x in the range of Bᵀ W B with its product b.
@@ -229,13 +233,13 @@ class LeastImpulses {
     r = b;
     p = b;
     double square = sum_of_products(r, r);
-    const double goal = 1e-26 * square;
+    const double goal = std::max(1e-26, least_square) * square;
     past.clear();
     for (int k = 0; square > goal; ++k) {
       if (k == products) return false;
       multiply(p, false, q, false);
       const double curvature = sum_of_products(p, q);
-      if (!(curvature > 0)) return square <= 1e-20 * sum_of_products(b, b);
+      if (!(curvature > 0)) return square <= std::max(1e-20, least_square) * sum_of_products(b, b);
       const double alpha = square / curvature;
       past.add(r, square);
       for (std::size_t n = 0; n < x.size(); ++n) x[n] += alpha * p[n], r[n] -= alpha * q[n];
