@@ -6,6 +6,8 @@
 #include "catch.hpp"
 #include "scenes.hpp"
 
+#include <Eigen/Cholesky>
+
 namespace minimum_norm_tests {
 
 using namespace scenes;
@@ -165,6 +167,65 @@ TEST_CASE("the loads of a box on many balls are the smallest in every step, howe
   }
   CAPTURE(error);
   CHECK(error <= 1e-8 * 10 * g);
+}
+
+// Six contacts between each two of a row of three bodies of 1, 30 and 900 kg and on a fixed one: 54 numbers of which 18 decide
+// the motion. λ* with d = −W λ* solves it as it stands, and the smallest with that motion is x = √w λ, projected on the range of
+// K = w^-½ H A^-½. Without rounding conjugate gradients need a product for each of the 18.
+TEST_CASE("as many products as there are unknowns find the smallest λ, of bodies of any masses") {
+  using Matrix = Eigen::MatrixXd;
+  std::minstd_rand random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  constexpr int bodies = 3, each = 6, contacts = bodies * each, rows = 3 * contacts;
+  double worst = 0, change = 0;
+  int asked = 0;
+  for (int n = 0; n < 60; ++n) {
+    Matrix H = Matrix::Zero(rows, 6 * bodies), inverse = Matrix::Zero(6 * bodies, 6 * bodies);
+    const double mass[bodies] = {1, 30, 900};
+    for (int k = 0; k < 6 * bodies; ++k) inverse(k, k) = (k % 6 < 3 ? 1 : 5) / mass[k / 6];
+    for (int i = 0; i < contacts; ++i) {
+      const int body = i / each;
+      for (int below = 0; below < (body > 0 ? 2 : 1); ++below) {
+        const Vec3 arm(any(random), any(random), 0.2);
+        Eigen::Matrix<double, 3, 6> J;  // normal, then the two directions across
+        J << 0, 0, 1, arm.y(), -arm.x(), 0, 1, 0, 0, 0, arm.z(), -arm.y(), 0, 1, 0, -arm.z(), 0, arm.x();
+        H.block<3, 6>(3 * i, 6 * (body - below)) = below ? Matrix(-J) : Matrix(J);
+      }
+    }
+    const Matrix W = H * inverse * H.transpose();
+    Eigen::VectorXd start(rows), root(rows);
+    for (int i = 0; i < contacts; ++i) {
+      start.segment<3>(3 * i) = Vec3(1 + 0.3 * any(random), 0.05 * any(random), 0.05 * any(random));
+      root.segment<3>(3 * i).setConstant(std::sqrt(W.block<3, 3>(3 * i, 3 * i).trace() / 3));
+    }
+    const Eigen::VectorXd free = -W * start;
+    std::vector<Vec3> d;
+    std::vector<GivenBlock> blocks;
+    for (int i = 0; i < contacts; ++i) {
+      d.push_back(free.segment<3>(3 * i));
+      for (int j = 0; j < contacts; ++j) blocks.push_back({i, j, W.block<3, 3>(3 * i, 3 * j)});
+    }
+    FrictionProblem p = make_friction_problem(std::vector<double>(contacts, 3.0), d, blocks);
+    auto& lambda = p.rows.pool<0>().lambda;
+    for (int i = 0; i < contacts; ++i) lambda[std::size_t(i)] = start.segment<3>(3 * i);
+
+    const Matrix K = root.cwiseInverse().asDiagonal() * H * inverse.cwiseSqrt();
+    const Eigen::VectorXd along = (K.transpose() * K).llt().solve(K.transpose() * (root.asDiagonal() * start));
+    const Eigen::VectorXd least = root.cwiseInverse().asDiagonal() * (K * along);
+    bool is_inside = true;
+    for (int i = 0; i < contacts; ++i) is_inside = is_inside && least.segment<2>(3 * i + 1).norm() < 2.9 * least[3 * i];
+    if (!is_inside) continue;
+    ++asked;
+    REQUIRE(solve(p, MinimumNorm{sweeps, rows}).status == Status::converged);
+    for (int i = 0; i < contacts; ++i) {
+      worst = std::max(worst, (lambda[std::size_t(i)] - least.segment<3>(3 * i)).norm());
+      change = std::max(change, (lambda[std::size_t(i)] - start.segment<3>(3 * i)).norm());
+    }
+  }
+  CAPTURE(asked);
+  CHECK(asked > 10);
+  CHECK(change > 0.1);
+  CHECK(worst < 1e-7);  // 1e-13 of λ*, where the search ends, times the condition of KᵀK, up to 1e5
 }
 
 // Two rods side by side: in a loop, over many steps, each carries half of 1 kg × g.
