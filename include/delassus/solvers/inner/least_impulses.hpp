@@ -30,15 +30,16 @@ struct FreeImpulse {
   }
 };
 
-/// Residuals of conjugate gradients, as far as there are no more than `most`. They are orthogonal, but for what rounding leaves; a
-/// search that is not told of it goes the same ways again and again.
+/// Residuals of conjugate gradients: all of them where the unknowns are few, else the first. They are orthogonal, but for what
+/// rounding leaves; a search that is not told of it goes the same ways again and again.
 struct PastResiduals {
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most_numbers = 1 << 16;
   Array<double> unit;  ///< of length 1, one after the other
 
+  void reserve(std::size_t unknowns) { unit.reserve(unknowns < 256 ? unknowns * unknowns : most_numbers); }
   void clear() { unit.clear(); }
   void add(const Array<double>& r, double square) {
-    if (unit.size() >= most * r.size()) return;
+    if (unit.size() + r.size() > most_numbers) return;
     const double over = 1 / std::sqrt(square);
     for (const double number : r) unit.push_back(over * number);
   }
@@ -64,7 +65,7 @@ struct LeastImpulsesSpace {
     const std::size_t room = std::size_t(rows);
     for (auto* impulses : {&solved, &target}) impulses->reserve(room);
     for (auto* v : {&x, &b, &r, &p, &q}) v->reserve(room);
-    past.unit.reserve(room * std::min(room, PastResiduals::most));
+    past.reserve(room);
     free.reserve(room);
   }
 };
