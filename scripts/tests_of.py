@@ -94,7 +94,7 @@ def tests_of(headers):
 
 
 def build(targets, preset="quick"):
-    """Builds these targets; returns those that did not."""
+    """Builds these targets; returns those that do not build, and what else does not."""
     folder = ROOT / "build" / preset
     if not (folder / "build.ninja").exists():
         subprocess.run(["cmake", "--preset", preset], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
@@ -107,10 +107,20 @@ def build(targets, preset="quick"):
     if not here:
         return []
     jobs = os.environ.get("DELASSUS_JOBS", str(os.cpu_count() or 1))
-    if subprocess.run(["ninja", "-C", str(folder), "-k", "0", "-j", jobs, *here], cwd=ROOT).returncode == 0:
+    failed = []
+    with subprocess.Popen(["ninja", "-C", str(folder), "-k", "0", "-j", jobs, *here], cwd=ROOT, text=True, stdout=subprocess.PIPE) as ninja:
+        for line in ninja.stdout:
+            print(line, end="", flush=True)
+            if line.startswith("FAILED: "):
+                failed += line.split()[1:]
+    if ninja.returncode == 0:
         return []
-    left = subprocess.run(["ninja", "-C", str(folder), "-n", *here], text=True, capture_output=True, check=False).stdout
-    return [target for target in here if re.search(rf"Linking CXX executable \S*\b{target}$", left, re.MULTILINE)]
+
+    def is_of(place, target):
+        return place.endswith(f"/{target}") or f"/{target}.dir/" in place
+
+    others = [place for place in failed if not any(is_of(place, target) for target in here)]  # what several targets need
+    return [target for target in here if any(is_of(place, target) for place in failed)] + others or here
 
 
 def main():
