@@ -34,6 +34,24 @@ TEST_CASE("a body that is off stays, and goes on with its velocity when it is on
   REQUIRE((set.velocity(ball) - velocity - Vec3(0, 0, -g * h)).norm() <= 1e-15);
 }
 
+TEST_CASE("a force acts in the next step, which a body that is off misses") {
+  auto loop = new_loop();
+  auto& set = rigid_bodies(loop);
+  set.gravity = {0, 0, 0};
+  const auto ball = set.add({.mass = 1.0, .shape = Sphere{0.1}});
+  loop.switch_off(ball);
+  set.apply_force(ball, {60, 0, 0});
+  loop.step(h);
+  loop.switch_on(ball);
+  loop.step(h);
+  REQUIRE(set.velocity(ball) == Vec3(0, 0, 0));
+  set.apply_force(ball, {60, 0, 0});
+  loop.switch_off(ball);
+  loop.switch_on(ball);  // no step was missed
+  loop.step(h);
+  REQUIRE(set.velocity(ball).x() == Approx(1).epsilon(1e-12));
+}
+
 TEST_CASE("who is off is an obstacle that no impulse moves") {
   auto loop = new_loop();
   auto& set = rigid_bodies(loop);

@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <delassus/bodies/bounds.hpp>
+#include <delassus/io/checkpoint.hpp>
 
 #include "catch.hpp"
 
@@ -199,6 +200,75 @@ TEST_CASE("a joint that is added or taken out wakes both its ends") {
   loop.remove(hook);
   for (int n = 0; n < 30; ++n) loop.step(h);
   REQUIRE(set.position(hung).z() < 2.5);
+}
+
+namespace {
+
+/// A body hangs asleep 2 m below a kinematic one, or lies on the floor and a slack string of 3 m leads there.
+template <class Joint>
+struct Held {
+  AnimationLoop<World<RigidBodies>, Constraints<Contact<Coulomb>, Joint>, Sleeping> loop{
+      World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.5}}, Joint{}}, Sleeping{}};
+  RigidBodies::Handle hook, body;
+
+  template <class MakeItem>
+  Held(bool is_hung, bool has_shape, const MakeItem& make_item) {
+    auto& set = rigid_bodies(loop);
+    if (!is_hung) set.add_fixed(HalfSpace{});
+    RigidBody held{.position = {0, 0, 0.5}, .mass = 1.0, .inertia = 0.1 * Mat3::Identity()};
+    if (has_shape) held.shape = Box{1, 1, 1};
+    body = set.add(held);
+    hook = set.add({.position = {0, 0, 2.5}, .motion = Motion::kinematic});
+    loop.add(make_item(set, hook, body));
+    for (int n = 0; n < 60; ++n) loop.step(h);
+    REQUIRE(loop.dormant().bodies().size() == 1);
+  }
+  Held(const Held&) = delete;
+  double height() { return rigid_bodies(loop).position(body).z(); }
+  void lift(double speed, int steps) {
+    for (int n = 1; n <= steps; ++n) {
+      rigid_bodies(loop).move_to(hook, {0, 0, 2.5 + speed * h * n}, Quat::Identity());
+      loop.step(h);
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("who hangs on a joint wakes when its other end is moved, given a velocity, placed or taken out") {
+  const auto rod = [](auto& set, auto hook, auto body) { return DistanceJoint::Item{anchor(set, hook), anchor(set, body), 2}; };
+  for (const bool has_shape : {true, false}) {
+    Held<DistanceJoint> moved(true, has_shape, rod), driven(true, has_shape, rod), placed(true, has_shape, rod), lost(true, has_shape, rod);
+    moved.lift(0.5, 1);
+    REQUIRE(moved.height() == Approx(0.5 + 0.5 * h).epsilon(1e-6));  // in this very step
+    moved.lift(0.5, 60);
+    REQUIRE(moved.height() == Approx(1).epsilon(1e-6));
+    rigid_bodies(driven.loop).set_velocity(driven.hook, {0, 0, 0.5});
+    for (int n = 0; n < 60; ++n) driven.loop.step(h);
+    REQUIRE(driven.height() == Approx(1).epsilon(1e-6));
+    rigid_bodies(placed.loop).place(placed.hook, {0, 0, 2.6}, Quat::Identity());
+    for (int n = 0; n < 60; ++n) placed.loop.step(h);
+    REQUIRE(placed.height() == Approx(0.6).epsilon(1e-3));
+    lost.loop.remove(lost.hook);
+    for (int n = 0; n < 30; ++n) lost.loop.step(h);
+    REQUIRE(rigid_bodies(lost.loop).velocity(lost.body).z() == Approx(-30 * h * g).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a string that grows taut draws a sleeper along") {
+  Held<Limit<Length>> scene(false, true, [](auto& set, auto hook, auto body) {
+    return Limit<Length>::Item{.a = anchor(set, hook), .b = anchor(set, body), .upper = 3};
+  });
+  scene.lift(0.5, 240);  // the hook goes 2 m up, and 1 m is slack
+  REQUIRE(scene.height() == Approx(1.5).epsilon(1e-6));
+}
+
+TEST_CASE("sleepers on a joint wake after a checkpoint too") {
+  const auto rod = [](auto& set, auto hook, auto body) { return DistanceJoint::Item{anchor(set, hook), anchor(set, body), 2}; };
+  Held<DistanceJoint> first(true, true, rod), second(true, true, rod);
+  restore(second.loop, checkpoint(first.loop));
+  second.lift(0.5, 60);
+  REQUIRE(second.height() == Approx(1).epsilon(1e-6));
 }
 
 TEST_CASE("an island on a moving kinematic body stays awake, and all can be woken by hand") {

@@ -68,11 +68,14 @@ class SwitchedOff {
   // --- what the stages call ----------------------------------------------------------------------------------------
 
   void begin(World& world, Laws& laws, double) {
-    // A body taken out while it was off leaves the list.
+    // A body taken out while it was off leaves the list; the others miss the step for which they were given a force.
     for (std::size_t k = 0; k < dormant_.bodies().size();) {
       const auto body = dormant_.bodies()[k];
       bool is_there = false;
-      world.visit(body.set, [&](const auto& set, auto) { is_there = Dormant<World, Laws>::is_same(set, body); });
+      world.each([&](auto& set, auto s) {
+        if (s != body.set || !(is_there = Dormant<World, Laws>::is_same(set, body))) return;
+        if constexpr (requires { set.loads(); }) set_zero(set.loads()[body.block]);
+      });
       if (is_there) ++k;
       else dormant_.wake(world, laws, [&](Index g) { return g == body.group; });
     }

@@ -30,7 +30,7 @@ class Sleepers;
 ///
 ///   1. When an awake body touches it or will within the step, in time for that step.
 ///   2. When the host gives one of its bodies a force, a velocity or another place, or changes the gravity.
-///   3. When a body it lies on or near, fixed or kinematic, is moved, added or taken out.
+///   3. When a body it lies on or near or is joined to, fixed or kinematic, is moved, added or taken out.
 ///   4. When one of its own bodies or joints is taken out, or gets a new joint.
 ///
 /// An edit of a law's own numbers or of materials wakes nobody: Call `loop.wake_all()`.
@@ -88,7 +88,11 @@ class Sleepers {
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
       world.visit(body.set, [&](const auto& set, auto) {
-        if (!Dormant<World, Laws>::is_same(set, body) || is_stirred(set, body)) call(body.group);
+        if (!Dormant<World, Laws>::is_same(set, body) || has_moved(set, body) || !is_null(set.load(body.block))) call(body.group);
+      });
+    for (const auto& hold : dormant_.holds())
+      world.visit(hold.set, [&](const auto& set, auto) {
+        if (!Dormant<World, Laws>::is_there(set, hold) || has_moved(set, hold)) call(hold.group);
       });
     look_at_items(laws);
     answer(world, laws);
@@ -236,11 +240,12 @@ class Sleepers {
     return true;
   }
 
+  /// Whether it has a velocity, or another pose than it had then.
   template <class Set, class Body>
-  static bool is_stirred(const Set& set, const Body& body) {
-    const Pose now = set.pose(body.block);
-    return !is_null(set.velocity()[body.block]) || !is_null(set.load(body.block)) ||
-           !is_equal(now.position, body.pose.position) || !is_equal(now.rotation, body.pose.rotation);
+  static bool has_moved(const Set& set, const Body& then) {
+    const Pose now = set.pose(then.block);
+    return !is_null(set.velocity()[then.block]) || !is_equal(now.position, then.pose.position) ||
+           !is_equal(now.rotation, then.pose.rotation);
   }
   /// Whether all bits are the same, or all but those of signs zero; without a branch for each number there are vectors
   /// of them.

@@ -85,7 +85,7 @@ struct BouncingRow {
   /// the free motion holds if it is smaller still. Where the row pushed, this is what it
   /// was before.
   double acceleration() const {
-    if (past && past->impulse > 0) return past->acceleration;
+    if (was_held()) return past->acceleration;
     const double last = (velocity - last_velocity) / last_h, before = (last_velocity - earlier) / earlier_h;
     const double falling = (free - velocity) / h;
     if (!std::isfinite(last)) return falling;
@@ -93,9 +93,14 @@ struct BouncingRow {
     const bool was_hit = std::abs(last - before) > 0.5 * std::max(std::abs(last), std::abs(before));
     return was_hit && std::abs(falling) < std::abs(smaller) ? falling : smaller;
   }
+  bool was_held() const { return past && past->impulse > 0; }
   /// For θ = 1, v is the velocity of the middle of the last step, and moves the row. For θ = ½ it is that of the end, and the mean
-  /// with u moves the row.
-  double now(double acceleration) const { return velocity + (theta - 0.5) * last_h * acceleration; }
+  /// with u moves the row. Steps that grow shorter must not make who rests bounce. So a row that was held counts as if it had been for
+  /// no longer than this step, and one that left the surface in a longer step and was held in the next comes back no faster than it left.
+  double now(double acceleration) const {
+    const bool hopped = was_held() && last_velocity > 0 && last_h < earlier_h;
+    return (hopped ? std::max(velocity, -last_velocity) : velocity) + (theta - 0.5) * (was_held() ? std::min(h, last_h) : last_h) * acceleration;
+  }
   double height(double acceleration) const { return gap + (1 - theta) * (h * velocity + 0.25 * h * h * acceleration); }
   /// Or comes to the surface at the end of the step: which side of it is rounding, and another one for each corner of a face.
   bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < -1e-9 * h * velocity; }
@@ -107,8 +112,7 @@ struct BouncingRow {
   double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + velocity)); }
   /// It fell into an overlap and does not bounce: it comes back to the surface, with no more than falling for a step gives.
   double comes_back(double acceleration) const {
-    const bool flew = !past || !(past->impulse > 0);
-    return flew && gap < 0 ? std::min(-gap / h, -h * std::min(0.0, acceleration)) : 0;
+    return !was_held() && gap < 0 ? std::min(-gap / h, -h * std::min(0.0, acceleration)) : 0;
   }
 };
 

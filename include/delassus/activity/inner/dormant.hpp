@@ -33,9 +33,16 @@ class Dormant {
     Index pool, place, group;
     std::uint32_t generation;
   };
+  /// A body that answers to nothing, fixed or kinematic, and has a dormant item's other end, as it was then.
+  struct Hold {
+    Index set, block, group;
+    std::uint32_t generation;
+    Pose pose;
+  };
 
   const std::vector<Body>& bodies() const { return bodies_; }
   const Array<Item>& items() const { return items_; }
+  const std::vector<Hold>& holds() const { return holds_; }
   Index new_group() { return groups_++; }
 
   /// The group of a block, or `awake`.
@@ -71,6 +78,10 @@ class Dormant {
           if (!holds_one || is_held) continue;
           items_.push_back({p, place, group, pool.slots.generation(place)});
           pool.slots.set_awake(place, false);
+          each_end(item, [&](const Anchor& end) {
+            if (group_of(end.set, end.block) == group) return;
+            world.visit(end.set, [&](const auto& set, auto) { holds_.push_back({end.set, end.block, group, end.generation, set.pose(end.block)}); });
+          });
         }
       }
     }
@@ -100,12 +111,18 @@ class Dormant {
         if (i->pool == p && pool.slots.is_current(i->place, i->generation)) pool.slots.set_awake(i->place, true);
     });
     items_.erase(idle, items_.end());
+    std::erase_if(holds_, [&](const Hold& h) { return is_chosen(h.group); });
   }
 
   /// Whether this is still the body that became dormant.
   template <class Set>
   static bool is_same(const Set& set, const Body& b) {
-    return set.is_alive(b.block) && !set.is_awake(b.block) && set.handle(b.block).generation == b.generation;
+    return !set.is_awake(b.block) && is_there(set, b);
+  }
+  /// Whether a `Body` or a `Hold` was not taken out.
+  template <class Set>
+  static bool is_there(const Set& set, const auto& b) {
+    return set.is_alive(b.block) && set.handle(b.block).generation == b.generation;
   }
 
   template <class Set>
@@ -121,11 +138,12 @@ class Dormant {
     return Aabb(box.min() - more, box.max() + more);
   }
 
-  void memory(auto& archive) { archive(bodies_, items_, group_, groups_); }
+  void memory(auto& archive) { archive(bodies_, items_, holds_, group_, groups_); }
 
  private:
   std::vector<Body> bodies_;
   Array<Item> items_;
+  std::vector<Hold> holds_;
   std::array<Array<Index>, World::set_count> group_;
   Index groups_ = 0;
 };
