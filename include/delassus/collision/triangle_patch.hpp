@@ -44,8 +44,8 @@ struct Rim {
 /// The internal edges of a surface are no edges to touch. A normal may lean out over an edge as far as the surface bends away
 /// there, and not at all where it is flat or hollow.
 inline bool is_allowed(const Triangle& t, const Rim& rim, const Vec3& n) {
-  if (rim.count == 3) return true;
   if (dot(n, t.normal) < -1e-6) return false;
+  if (rim.count == 3) return true;
   for (int k = 0; k < 3; ++k) {
     const bool from = rim.has[k], to = rim.has[(k + 1) % 3];
     const bool touches = rim.count == 2 ? from && to : from || to;

@@ -7,6 +7,7 @@
 #include <delassus/collision/half_space.hpp>
 #include <delassus/collision/inner/ahead.hpp>
 #include <delassus/collision/inner/fallback_normal.hpp>
+#include <delassus/collision/inner/keep_side.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/name_points.hpp>
 #include <delassus/collision/inner/one_point.hpp>
@@ -232,6 +233,7 @@ class PairWorker {
     report.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
     if (is_moved) r.distance -= dot(r.normal, shift), r.point_b -= r.normal * dot(r.normal, shift);
+    if (r.status == PairStatus::near) keep_side(a.shape, b.shape, b_in_a, guess, r);
     if (r.status == PairStatus::near)
       now.owner = snap_normal_to_face(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;

@@ -117,7 +117,7 @@ struct HeldTurns {
 
 /// Joints whose first rows hold two points together.
 template <class Law>
-concept JoinsPoints = requires { requires Law::acts[0] == 0 && Law::acts[1] == 1 && Law::acts[2] == 2; };
+concept JoinsPoints = Law::rows >= 3 && requires { requires Law::acts[0] == 0 && Law::acts[1] == 1 && Law::acts[2] == 2; };
 
 /// The point at which both ends of a joint act, m: JointRows' own, unless the law says where.
 template <class Law>
