@@ -1,9 +1,11 @@
 #include <delassus/collision/contact_area.hpp>
+#include <delassus/collision/inner/face_pieces.hpp>
 #include <delassus/collision/native.hpp>
 
 #include "catch.hpp"
 #include "collision/scene.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -42,6 +44,22 @@ TEST_CASE("a square's points lie 0.3826 of its side from its middle") {
     CHECK(std::abs(area.size - a * a) < 1e-13);
     CHECK((area.middle - at).norm() < 1e-13);
     CHECK(std::abs(area.mean_distance - right) < 1e-13);
+  }
+}
+
+// Sides that run to the middle, or past it by next to nothing, add next to nothing: not a logarithm of 0.
+TEST_CASE("a square cut into triangles about a point near its middle has the same mean distance") {
+  const double a = 0.7, right = a / 6 * (std::sqrt(2.0) + std::log(1 + std::sqrt(2.0)));
+  const Vec3 n(0, 0, 1);
+  const std::vector<Vec3> corners{{-0.5 * a, -0.5 * a, 0}, {0.5 * a, -0.5 * a, 0}, {0.5 * a, 0.5 * a, 0}, {-0.5 * a, 0.5 * a, 0}};
+  for (double off = 1e-14; off < 0.2; off *= 3) {
+    inner::FacePieces pieces;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::array<Vec3, 3> piece{Vec3(off, -0.4 * off, 0), corners[k], corners[(k + 1) % 4]};
+      pieces.add(3, [&](int i) -> const Vec3& { return piece[std::size_t(i)]; }, n, 0);
+    }
+    CAPTURE(off);
+    CHECK(std::abs(pieces.area(n, 1).mean_distance - right) < 1e-9);  // sides at less than 1e-9 of their length are none
   }
 }
 

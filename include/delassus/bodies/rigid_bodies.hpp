@@ -215,6 +215,7 @@ class BasicRigidBodies : public inner::BodyStorage<BasicRigidBodies<T>, T, 6> {
             .velocity = converted<double>(linear_part(v_[b])),
             .turn = converted<double>(angular_part(v_[b])),
             .running = surfaces_.are_any() ? surface_velocity(b, point) : Vec3(zero<Vec3>()),
+            .running_turn = surfaces_.are_any() ? Vec3(converted<double>(state_.R[b]) * surfaces_.turn(b)) : Vec3(zero<Vec3>()),
             .is_led = motion_[b] != Motion::dynamic,
             .is_rigid = true};
   }

@@ -47,8 +47,10 @@ class AreaSum {
     if (!(length > 0)) return;
     const double h = dot(n_, cross(to_p, along)) / length, s = dot(to_p, along) / length, t = s + length;
     const double at_s = std::sqrt(h * h + s * s), at_t = std::sqrt(h * h + t * t);
-    if (std::abs(h) > 1e-9 * length)  // else the triangle is none
-      distance_ += sign * h / 6 * (t * at_t - s * at_s + h * h * std::log((t + at_t) / (s + at_s)));
+    if (!(std::abs(h) > 1e-9 * length)) return;  // the triangle is none
+    // Of x + ρ, x < 0, nothing is left beside a small h: h²/(ρ − x) is the same.
+    const auto sum = [&](double x, double rho) { return -x > 1e3 * std::abs(h) ? h * h / (rho - x) : x + rho; };
+    distance_ += sign * h / 6 * (t * at_t - s * at_s + h * h * std::log(sum(t, at_t) / sum(s, at_s)));
   }
   double size() const { return size_; }
   Vec3 middle() const { return from_ + moment_ / size_; }

@@ -11,6 +11,7 @@ struct SurfaceMotion {
   Vec3 velocity = zero<Vec3>();  ///< of the centre, m/s
   Vec3 turn = zero<Vec3>();      ///< rad/s
   Vec3 running = zero<Vec3>();   ///< of the surface beside the body, m/s at the point that was asked for
+  Vec3 running_turn = zero<Vec3>();  ///< of the surface beside the body, rad/s
   bool is_led = false;           ///< nothing pushes it: kinematic or fixed
   bool is_rigid = false;         ///< its body turns as one, and the numbers above are known
 };

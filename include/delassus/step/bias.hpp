@@ -119,7 +119,7 @@ void make_bias(const LawPool<T>& of, const RowArrays<T>& pool, Range range, cons
       pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
       start = of_start;
     }
-    if (sees_surfaces) see_moving_surfaces(moving, law.place(of.pool, i), h, theta, of_start, d);
+    if (sees_surfaces) see_moving_surfaces(moving, law.place(of.pool, i), height, h, theta, of_start, d);
     make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta, turns_slip);
     if (law.speed) drive(pool, first, law.speed(of.pool, i), h);
     const T* const bias = pool.bias->data() + first;

@@ -14,7 +14,7 @@ namespace delassus {
 template <class T>
 struct MovingSurfaces {
   const WorldView<T>* world = nullptr;
-  bool turn = false;  ///< a kinematic body turns
+  bool turn = false;  ///< a kinematic body turns, or a surface
   bool run = false;   ///< a body has a surface velocity
 
   explicit operator bool() const { return turn || run; }
@@ -27,7 +27,7 @@ MovingSurfaces<typename World::Scalar> moving_surfaces(const World& world, const
   world.each([&](const auto& set, auto) {
     if constexpr (requires { set.surface_velocities(); }) {
       moving.run = moving.run || set.surface_velocities().are_any();
-      moving.turn = moving.turn || set.has_turning_carriers(h);
+      moving.turn = moving.turn || set.has_turning_carriers(h) || set.surface_velocities().may_turn();
     }
   });
   return moving;
@@ -66,6 +66,13 @@ inline bool turn_alike(const SurfaceMotion& a, const SurfaceMotion& b) {
   return 4 * squared_norm(Vec3(b.turn - a.turn)) <= std::max(squared_norm(a.turn), squared_norm(b.turn));
 }
 
+/// The surface at the point x as if its body went with it.
+inline SurfaceMotion with_running(SurfaceMotion s, const Vec3& x) {
+  s.velocity += s.running - cross(s.running_turn, x - s.centre);
+  s.turn += s.running_turn;
+  return s;
+}
+
 /// Rows hold for velocities of the start of the step, u = v_b − v_a at the contact. While the step lasts the carrier turns, and
 /// u changes by −ω × (way of b − way of a), half of it in the mean of the step. Where the bodies turn alike they stay together,
 /// and that way is known: the circle's.
@@ -80,20 +87,26 @@ inline Vec3 turned_away(SurfaceMotion a, SurfaceMotion b, const ContactPlace& c,
   return (-0.5 * h / theta) * cross(turn, b.velocity - a.velocity);
 }
 
-/// Adds to the friction rows of one contact. d: its velocities without impulses; start: H v, where the step begins.
+/// Adds to the friction rows of one contact, and to those of its turns. d: its velocities without impulses; start: H v, where the step begins.
 template <class T>
-void see_moving_surfaces(const MovingSurfaces<T>& moving, const ContactPlace& c, double h, double theta, T* start, T* d) {
-  const SurfaceMotion a = moving.world->surface(c.record->a, *c.point), b = moving.world->surface(c.record->b, *c.point);
+void see_moving_surfaces(const MovingSurfaces<T>& moving, const ContactPlace& c, int rows, double h, double theta, T* start, T* d) {
+  const Vec3 at = c.friction_point();
+  const SurfaceMotion a = moving.world->surface(c.record->a, at), b = moving.world->surface(c.record->b, at);
   Vec3 away = zero<Vec3>();
   if (moving.turn) {
     const Vec3 u = double(start[0]) * c.axis(0) + double(start[1]) * c.axis(1) + double(start[2]) * c.axis(2);
-    away = turned_away(a, b, c, u, h, theta);
+    away = turned_away(with_running(a, at), with_running(b, at), c, u, h, theta);
   }
   const Vec3 running = b.running - a.running;
   for (int k = 1; k < 3; ++k) {
     const double runs = dot(c.axis(k), running);
     start[k] += T(runs);
     d[k] += T(runs + dot(c.axis(k), away));
+  }
+  for (int k = 3; k < rows; ++k) {
+    const T turns = T(dot(c.axis((k - 2) % 3), Vec3(b.running_turn - a.running_turn)));
+    start[k] += turns;
+    d[k] += turns;
   }
 }
 

@@ -11,6 +11,7 @@ namespace delassus::inner {
 class SurfaceVelocities {
  public:
   bool are_any() const { return running_ > 0; }
+  bool may_turn() const { return are_any() && turns_; }  ///< one of them had an angular one
   bool runs(Index b) const { return b < Index(by_body_.size()) && by_body_[b].runs; }
 
   /// m/s and rad/s.
@@ -20,6 +21,7 @@ class SurfaceVelocities {
     while (Index(by_body_.size()) <= b) by_body_.push_back({});
     by_body_[b] = {linear, angular, true};
     ++running_;
+    turns_ = turns_ || !is_zero(angular);
   }
   void drop(Index b) {
     if (!runs(b)) return;
@@ -33,7 +35,10 @@ class SurfaceVelocities {
     return by_body_[b].linear + cross(by_body_[b].angular, arm);
   }
 
-  void memory(auto& archive) { archive(by_body_, running_); }
+  /// rad/s.
+  Vec3 turn(Index b) const { return runs(b) ? by_body_[b].angular : Vec3(zero<Vec3>()); }
+
+  void memory(auto& archive) { archive(by_body_, running_, turns_); }
 
  private:
   struct Motion {
@@ -42,6 +47,7 @@ class SurfaceVelocities {
   };
   Array<Motion> by_body_;
   Index running_ = 0;  ///< how many
+  bool turns_ = false;
 };
 
 }  // namespace delassus::inner

@@ -146,10 +146,11 @@ void turn_contacts(const World& world, const MovingSurfaces<typename Rows::Scala
       const ContactPlace place{item.record, &item.point, &item.frame};
       for (int k = 0; k < along; ++k) turn[k] = u[k] - s[k], turned += turn[k] * turn[k];
       if (along > 1 && moving) {
-        const SurfaceMotion a = moving.world->surface(item.record->a, item.point);
-        const SurfaceMotion b = moving.world->surface(item.record->b, item.point);
-        is_carried = moving.turn && a.is_rigid && b.is_rigid && inner::turn_alike(a, b);
-        if (is_carried) away = inner::turned_away(a, b, place, away, h, theta);
+        const Vec3 at = place.friction_point();
+        const SurfaceMotion a = moving.world->surface(item.record->a, at), b = moving.world->surface(item.record->b, at);
+        const SurfaceMotion of_a = inner::with_running(a, at), of_b = inner::with_running(b, at);
+        is_carried = moving.turn && a.is_rigid && b.is_rigid && inner::turn_alike(of_a, of_b);
+        if (is_carried) away = inner::turned_away(of_a, of_b, place, away, h, theta);
         for (int k = 1; k < along; ++k) s[k] += T(dot(place.axis(k), Vec3(b.running - a.running)));
       }
       for (int k = 0; k < along; ++k) before += s[k] * s[k];
