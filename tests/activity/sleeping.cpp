@@ -271,6 +271,24 @@ TEST_CASE("sleepers on a joint wake after a checkpoint too") {
   REQUIRE(second.height() == Approx(1).epsilon(1e-6));
 }
 
+TEST_CASE("where all sleep, a restored loop and new bodies far off disturb nobody") {
+  Asleep scene;
+  auto& set = scene.set();
+  scene.run(1);
+  Asleep restored;
+  restore(restored.loop, checkpoint(scene.loop));
+  for (int k = 0; k < 50; ++k) {
+    const auto far = set.add({.position = {50.0 + 2 * k, 0, 0}, .shape = Box{1, 1, 1}, .motion = Motion::kinematic});
+    set.set_velocity(far, {100, 0, 0});
+  }
+  const auto first = restored.set().add({.position = {50, 0, 0}, .shape = Box{1, 1, 1}, .motion = Motion::kinematic});
+  restored.set().set_velocity(first, {100, 0, 0});
+  scene.run(5);
+  restored.run(5);
+  REQUIRE(scene.sleepers() == 3);
+  REQUIRE(restored.sleepers() == 3);
+}
+
 TEST_CASE("an island on a moving kinematic body stays awake, and all can be woken by hand") {
   Asleep scene;
   const Vec3 start = scene.set().position(scene.stack[0]);

@@ -88,6 +88,8 @@ class SwitchedOff {
       });
     return true;
   }
+  /// Always: true.
+  bool has_looked() const { return true; }
   /// Contacts switch nobody on: false.
   bool wake_touched(const auto&...) const { return false; }
   /// All are obstacles: false.

@@ -108,6 +108,9 @@ class Sleepers {
     return true;
   }
 
+  /// Whether somebody who can move was awake then.
+  bool has_looked() const { return !near_.is_empty(); }
+
   /// Whether the solved motion comes near sleepers that were no obstacles.
   bool lacks_obstacles(const ContactCache& book, double h) {
     const Aabb before = near_;

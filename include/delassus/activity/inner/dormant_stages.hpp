@@ -9,7 +9,7 @@
 
 namespace delassus::inner {
 
-/// For an activity whose state has begin, add_obstacles, lacks_obstacles, wake_touched, wake_met, drop_points, watch and settle (see `Sleepers`).
+/// For an activity whose state has begin, add_obstacles, has_looked, lacks_obstacles, wake_touched, wake_met, drop_points, watch and settle (see `Sleepers`).
 template <class Base>
 struct DormantStages : Base {
   static void begin(auto& step, double h) {
@@ -34,6 +34,7 @@ struct DormantStages : Base {
   }
   /// A sleeper that is met wakes, and the step begins anew with it; so it does where one comes near that was no obstacle.
   static bool find_missed(auto& step) {
+    if (!own(step).has_looked()) return false;  // nor has detection seen these bodies
     const bool is_any = Base::find_missed(step);
     ContactCache& book = step.contact_cache;
     const bool begins_anew = is_any ? own(step).wake_met(step.world(), step.laws(), book) : own(step).lacks_obstacles(book, step.h);

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <delassus/constraints/constraints.hpp>
+#include <delassus/core/array.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/index.hpp>
 #include <delassus/core/owning_array.hpp>
 #include <delassus/core/wrapping.hpp>
 #include <delassus/integrators/inner/held_turns.hpp>
@@ -24,6 +27,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -41,6 +45,47 @@ bool is_led(const RowArrays<T>& pool, Index i, const World& world) {
   });
   return is_led;
 }
+
+/// Velocities at the start of the step: v, and of a body that is led, whose v is the mean of a step, the mean of this step's and the
+/// last one's.
+template <class Set>
+class LedMotion {
+  using Velocity = typename Set::Velocity;
+  using T = typename Set::Scalar;
+
+ public:
+  /// Null where nobody of the set is led, and NaN where the last step is not known.
+  const T* begin(const Set& set) {
+    bool is_any = false;
+    for (const Index b : set.active()) is_any = is_any || is_led(set, b);
+    if (!is_any) return nullptr;
+    const auto& v = set.velocity();
+    start_.resize(v.size());
+    for (std::size_t b = 0; b < v.size(); ++b) assign(start_[b], v[b]);
+    for (const Index b : set.active()) {
+      if (!is_led(set, b)) continue;
+      if (b < Index(last_.size())) start_[b] = T(0.5) * (v[b] + last_[b]);
+      else set_all(start_[b], std::numeric_limits<T>::quiet_NaN());
+    }
+    return reinterpret_cast<const T*>(start_.data());
+  }
+  /// The step is over.
+  void end(const Set& set) {
+    bool is_any = false;
+    for (const Index b : set.active()) is_any = is_any || is_led(set, b);
+    last_.resize(is_any ? set.velocity().size() : 0);
+    for (std::size_t b = 0; b < last_.size(); ++b) {
+      if (set.is_alive(Index(b)) && is_led(set, Index(b))) assign(last_[b], set.velocity()[b]);
+      else set_all(last_[b], std::numeric_limits<T>::quiet_NaN());
+    }
+  }
+  void memory(auto& archive) { archive(last_); }
+
+ private:
+  static bool is_led(const Set& set, Index b) { return !set.moves(b) && !is_zero(set.velocity()[b]); }
+
+  Array<Velocity> last_, start_;  ///< NaN in `last_`: not led then
+};
 
 /// Which share of u, H v at the start, fades: a tenth, less where the rows of the middle have s, H v too, that is smaller: min(1, s²/u²) of
 /// it. Rows that depend on each other in the middle, and not at the start, could follow the rest of u by enormous impulses alone.
@@ -95,10 +140,9 @@ using FadesOf = OwningArray<Array<T>>;
 /// H v_next = −H v keeps what goes across the joints, and turns it round every step. So v counts there without a tenth
 /// of what it has across the joints at the start (`inner::joint_velocity_damping`), which is of order h² and for which only the rows of
 /// the start will do: d ← d − `fade`. Where that gives energy it is withheld, see `reject_damping`.
-template <class T, class World>
-void fade_joints(const World& world, AllLaws<T> laws, AllRows<T> rows, AllRows<T> at_start, double theta, FadesOf<T>& fade) {
+template <class T>
+void fade_joints(const T* const* v, const T* const* v_at_start, AllLaws<T> laws, AllRows<T> rows, AllRows<T> at_start, double theta, FadesOf<T>& fade) {
   fade.resize(rows.size());
-  const inner::BodyVelocities<World> v(world);
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const RowArrays<T>& pool = rows[p];
     fade[p].assign_zeros(pool.phi->size());
@@ -106,9 +150,10 @@ void fade_joints(const World& world, AllLaws<T> laws, AllRows<T> rows, AllRows<T
     const RowKind* const kinds = laws[p].law->kinds;
     T u[most_rows], start[most_rows];
     for (Index i = 0; i < pool.items(); ++i) {
-      inner::rate(pool, i, v.start, u);
-      if (inner::is_led(at_start[p], i, world)) std::fill(start, start + pool.rows, T(0));
-      else inner::rate(at_start[p], i, v.start, start);
+      inner::rate(pool, i, v, u);
+      inner::rate(at_start[p], i, v_at_start, start);
+      for (int k = 0; k < pool.rows; ++k)
+        if (!std::isfinite(start[k])) std::fill(start, start + pool.rows, T(0));  // who leads it has just begun to move
       const T share = inner::joint_velocity_damping(pool.rows, start, u);
       for (int k = 0; k < pool.rows; ++k) {
         const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
@@ -223,7 +268,9 @@ struct MidpointState {
   ArraysOf<typename P::Rows> arrays;  ///< of them
   FadesOf<typename P::World::Scalar> fade;
   typename P::World::template PerSet<HeldTurns> turns;  ///< of bodies that are held
+  typename P::World::template PerSet<LedMotion> led;
   [[no_unique_address]] std::conditional_t<has_middle_contacts<P>, MiddleContacts, Absent> contacts;
+  void memory(auto& archive) { std::apply([&](auto&... of_set) { (of_set.memory(archive), ...); }, led); }
 };
 
 template <class Base>
@@ -244,7 +291,15 @@ struct MidpointStages : Base {
     Base::make_bias(step);
     constexpr double share = theta<std::remove_cvref_t<decltype(step.integrator())>>();
     const auto& world = std::as_const(step).world();
-    fade_joints(world, step.pools.all(), step.arrays.all(), own(step).arrays.all(), share, own(step).fade);
+    using World = std::remove_cvref_t<decltype(world)>;
+    using T = typename World::Scalar;
+    const BodyVelocities<World> v(world);
+    const T* at_start[World::set_count + 1];
+    world.each([&](const auto& set, auto s) {
+      const T* const led = std::get<s>(own(step).led).begin(set);
+      at_start[s] = led ? led : v.start[s];
+    });
+    fade_joints(v.start, at_start, step.pools.all(), step.arrays.all(), own(step).arrays.all(), share, own(step).fade);
     if constexpr (sees_contacts<decltype(step)>) {
       const auto moving = moving_surfaces(world, step.view, step.h);
       turn_contacts(world, moving, step.laws(), step.rows, step.arrays.all(), own(step).at_start, step.h, share);
@@ -269,6 +324,7 @@ struct MidpointStages : Base {
     constexpr bool are_displaced = requires { step.template state<role::Stabilisation>().displacement; };
     if constexpr (sees_contacts<decltype(step)> && are_displaced)
       move_gaps(std::as_const(step).world(), step.laws(), step.rows, step.h);
+    std::as_const(step).world().each([&](const auto& set, auto s) { std::get<s>(own(step).led).end(set); });
     sum_moments(step);
     each_held(step, [&](auto& set, auto& held, Index b) { end_turn(set, b, held.bodies[b], angular_part(held.moment[b])); });
     Base::advance(step);
