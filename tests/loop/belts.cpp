@@ -199,6 +199,18 @@ TEST_CASE("a belt that starts wakes what sleeps on it") {
   CHECK(set.velocity(parcel).x() == Approx(0.5).epsilon(1e-5));
 }
 
+TEST_CASE("a sleeper whose own surface starts to run drives off") {
+  auto loop = scene(Coulomb{.friction = mu}, Sleeping{});
+  RigidBodies& set = set_of(loop);
+  set.add_fixed(HalfSpace{});
+  const auto cart = add_parcel(set);
+  for (int n = 0; n < 1 / h; ++n) loop.step(h);
+  REQUIRE(loop.dormant().bodies().size() == 1);
+  set.set_surface_velocity(cart, {1, 0, 0});
+  for (int n = 0; n < 2 / h; ++n) loop.step(h);
+  CHECK(set.velocity(cart).x() == Approx(-1).epsilon(1e-6));  // and goes on: it does not fall asleep
+}
+
 TEST_CASE("a surface velocity goes with a copy and a checkpoint, and not to the next body in its place") {
   auto loop = scene(Coulomb{.friction = mu});
   auto& set = set_of(loop);

@@ -29,7 +29,7 @@ class Sleepers;
 /// rows, no pairs and no velocity, and its contacts are not listed; its joints keep their last impulse. It wakes:
 ///
 ///   1. When an awake body touches it or will within the step, in time for that step.
-///   2. When the host gives one of its bodies a force, a velocity or another place, or changes the gravity.
+///   2. When the host gives one of its bodies a force, a velocity, a surface velocity or another place, or changes the gravity.
 ///   3. When a body it lies on or near or is joined to, fixed or kinematic, is moved, added or taken out.
 ///   4. When one of its own bodies or joints is taken out, or gets a new joint.
 ///
@@ -88,7 +88,8 @@ class Sleepers {
     if (dormant_.bodies().empty()) return;
     for (const auto& body : dormant_.bodies())
       world.visit(body.set, [&](const auto& set, auto) {
-        if (!Dormant<World, Laws>::is_same(set, body) || has_moved(set, body) || !is_null(set.load(body.block))) call(body.group);
+        if (!Dormant<World, Laws>::is_same(set, body) || has_moved(set, body) || !is_null(set.load(body.block)) || Supports::runs(set, body.block))
+          call(body.group);
       });
     for (const auto& hold : dormant_.holds())
       world.visit(hold.set, [&](const auto& set, auto) {
@@ -166,7 +167,7 @@ class Sleepers {
         if (!set.moves(b)) continue;
         // Nearly all of gravity must be held; without gravity, what acts must need longer than `after` to reach `speed`.
         const double most = h * (gravity > 0 ? 0.1 * gravity : limits.speed / limits.after);
-        const bool is_quiet = may_sleep && is_slow(set, b, limits) &&
+        const bool is_quiet = may_sleep && !Supports::runs(set, b) && is_slow(set, b, limits) &&
                               (set.v_next[b] - set.velocity()[b]).template head<3>().template cast<double>().norm() <= most;
         quiet[b] = is_quiet ? quiet[b] + h : 0;
         const Index island = islands.island_of(first + b);

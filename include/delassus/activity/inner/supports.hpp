@@ -47,6 +47,13 @@ class Supports {
   }
   void memory(auto& archive) { archive(gravity_, supports_); }
 
+  /// Whether its surface moves though it does not.
+  template <class Set>
+  static bool runs([[maybe_unused]] const Set& set, [[maybe_unused]] Index b) {
+    if constexpr (requires { set.surface_velocities(); }) return set.surface_velocities().runs(b);
+    else return false;
+  }
+
  private:
   struct Support {
     Index set, block;
@@ -55,12 +62,6 @@ class Supports {
     Aabb box;  ///< empty for a half-space
   };
 
-  /// Whether its surface moves though it does not.
-  template <class Set>
-  static bool runs([[maybe_unused]] const Set& set, [[maybe_unused]] Index b) {
-    if constexpr (requires { set.surface_velocities(); }) return set.surface_velocities().runs(b);
-    else return false;
-  }
   static bool before(const Support& x, const Support& y) {
     return std::tie(x.set, x.block, x.generation) < std::tie(y.set, y.block, y.generation);
   }
