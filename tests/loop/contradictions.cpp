@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <delassus/solvers/direct_gauss_seidel.hpp>
+#include <delassus/solvers/proximal_newton.hpp>
 
 #include "catch.hpp"
 
@@ -255,6 +256,47 @@ TEST_CASE("a box at rest on two tiles of different heights is no contradiction")
 }
 
 // In single precision there is no room between a contradiction and a mass ratio: none is claimed.
+// Two shafts on hinges whose axes meet, and a ball joint there: three rows too many, which agree but for the last digits. Nothing
+// else is asked for where nothing pulls.
+TEMPLATE_TEST_CASE("redundant joints that agree are no contradiction where nothing moves", "", AcceleratedGaussSeidel, DirectGaussSeidel,
+                   ProximalNewton) {
+  for (const double rate : {0.0, 2.0})
+    for (const double angle : {0.5, 1.0}) {
+      AnimationLoop loop{World{RigidBodies{}}, Constraints{Hinge{}, BallJoint{}}, TestType{}};
+      auto& set = rigid_bodies(loop);
+      set.gravity = {0, 0, 0};
+      const Quat turn = exponential<double>(Vec3(0, angle, 0));
+      const Vec3 axis = turn * Vec3(0, 0, 1);
+      const auto a = set.add({.position = {0, 0, -1}, .angular_velocity = {0, 0, rate}, .mass = 1, .inertia = Mat3::Identity()});
+      const auto b = set.add({.position = axis, .orientation = turn, .angular_velocity = rate * axis, .mass = 1, .inertia = Mat3::Identity()});
+      loop.add(Hinge::Item{world_anchor({0, 0, -1}), anchor(set, a)});
+      loop.add(Hinge::Item{world_anchor(axis, turn), anchor(set, b)});
+      loop.add(BallJoint::Item{anchor_at(set, a, {0, 0, 0}), anchor_at(set, b, {0, 0, 0})});
+      CAPTURE(rate, angle);
+      for (int n = 0; n < 20; ++n) REQUIRE(loop.step(h).status <= Status::stalled);
+      REQUIRE(set.angular_velocity(a).z() == Approx(rate).epsilon(1e-12));
+    }
+}
+
+// A compromise is bounded by what pushes: a depth of 0.2 m pushed out in a step goes at 20 m/s, and turns the box at 100 rad/s.
+TEST_CASE("a hinge that holds a box in the ground leaves it slow, also where the joints are solved directly") {
+  for (int k = 0; k < 80; ++k) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.6}}, Hinge{}}, DirectGaussSeidel{}};
+    auto& set = rigid_bodies(loop);
+    const int planes = 1 + k % 4;
+    for (int i = 0; i < planes; ++i)
+      set.add_fixed(HalfSpace{Vec3(0.3 * std::sin(7.0 * k + 3 * i), 0.3 * std::cos(5.0 * k + i), 1), -0.05 - 0.03 * ((k + i) % 6)});
+    const auto box = set.add({.mass = 1.0, .shape = Box{0.5, 0.6, 0.5}});
+    const Quat across = frame_along({0, 1, 0});
+    loop.add(Hinge::Item{world_anchor({0, 0, 0}, across), anchor(set, box, {0, 0, 0}, across)});
+    CAPTURE(k);
+    for (int n = 0; n < 6; ++n) {
+      loop.step(1.0 / 60);
+      REQUIRE(set.angular_velocity(box).norm() <= 100);
+    }
+  }
+}
+
 TEST_CASE("nothing is called a contradiction in single precision") {
   AnimationLoop loop{World{RigidBodiesF{}}, Constraints{Contact{Coulomb{.friction = 0.5}}}};
   auto& set = bodies<RigidBodiesF>(loop.world());

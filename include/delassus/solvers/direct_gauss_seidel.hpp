@@ -17,6 +17,8 @@
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace delassus {
@@ -110,6 +112,37 @@ struct DirectGaussSeidel {
         for (int k = 0; k < span.pool->rows; ++k) sum += std::abs(d[k]) + std::abs(lambda[k]);
       }
     return std::isfinite(sum);
+  }
+
+  /// Whether the rows have a thousand times the energy that they would have without impulses, which hold or push away what comes, and
+  /// leave it slower: no tolerance stopped these on their way to infinity.
+  template <class T>
+  static bool runs_away(Island<T>& problem) {
+    double before = 0, after = 0;
+    T u[most_rows];
+    for (const Span<T>& span : problem)
+      for (const Index i : span) {
+        const double weight = span.pool->weight(i);
+        if (!(weight > 0)) continue;
+        problem.velocity(span, i, u);
+        const T* d = problem.free_of_impulses(span, i);
+        before += problem.square_of_velocity(span, d) / weight;
+        after += problem.square_of_velocity(span, u) / weight;
+      }
+    return !(after <= 1e3 * before);
+  }
+
+  /// λ ← 0, and y with it to the last digit: what large impulses left of it is rounding of theirs.
+  template <class T>
+  static void clear(Island<T>& problem) {
+    problem.clear();
+    for (const Span<T>& span : problem)
+      for (int s = 0; s < span.pool->sets; ++s) {
+        const SetBlocksView<T>& set = span.pool->set[s];
+        if (!set.y) continue;
+        for (const Index i : span)
+          for (Index e = set.offset[i]; e < set.offset[i + 1]; ++e) std::fill_n(set.y + std::ptrdiff_t(set.width) * set.block[e], set.width, 0.0);
+      }
   }
 
   /// The bilateral constraints first; false where there are none, or the direct path cannot act.
@@ -235,6 +268,12 @@ SolveReport DirectGaussSeidel::solve(Island<T>& problem, Space& work) const {
   report.ended_by = "factorization";
   const bool is_matrix = work.velocities.show(problem);
   solve_directly(problem, work, report);
+  if (report.status != Status::converged && runs_away(problem)) {
+    clear(problem);
+    const int done = report.factorizations;
+    report = inner::sweeps_of(options(), max_iterations, min_iterations).solve(problem, work.contacts.newton.sweeps);
+    report.factorizations += done;
+  }
   if (is_matrix) work.velocities.put_back(problem);
   return report;
 }

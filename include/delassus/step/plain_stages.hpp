@@ -17,6 +17,7 @@
 #include <delassus/step/middle_contacts.hpp>
 #include <delassus/step/moves_at_once.hpp>
 #include <delassus/step/notify.hpp>
+#include <delassus/step/rounding.hpp>
 #include <delassus/step/solve.hpp>
 #include <delassus/step/stages_without_constraints.hpp>
 #include <delassus/step/warm_start.hpp>
@@ -195,6 +196,9 @@ struct PlainStages : StagesWithoutConstraints {
     using Step = std::remove_reference_t<decltype(step)>;
     SolveReport& report = step.reports[island.island()];
     report = step.solver().solve(island, Step::Stages::solver_workspace(step, island));
+    if ((report.status == Status::infeasible || report.status == Status::max_iterations) &&
+        inner::is_all_rounding(std::as_const(step).world(), static_cast<const Island<typename Step::Scalar>&>(island)))
+      report.status = Status::stalled;
     if constexpr (inner::some_push<typename Step::Laws>) report.undecided_loads = inner::undecided_loads<typename Step::Scalar>(island, report);
   }
   static auto& solver_workspace(auto& step, auto&) { return step.solver_workspace.itself(); }
