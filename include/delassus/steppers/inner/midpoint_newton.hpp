@@ -12,6 +12,7 @@
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/step/linearize.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
+#include <delassus/steppers/inner/speed_of.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -181,7 +182,7 @@ class MidpointNewton {
       integrator.impulse(set, force, h);
       for (const Index b : set.active()) {
         body.begin(set.state(), b, set.velocity()[b], set.moves(b), T(h));
-        speed_ = std::max(speed_, double(linear_part(set.velocity()[b]).norm()));
+        speed_ = std::max(speed_, inner::speed_of(set, b, set.velocity()[b]));
         if (set.moves(b))
           speed_ = std::max(speed_, double(linear_part(set.template solve_block<1>(b, force[b])).norm()));
       }

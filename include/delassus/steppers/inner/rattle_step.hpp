@@ -10,6 +10,7 @@
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/leave_step.hpp>
+#include <delassus/steppers/inner/speed_of.hpp>
 
 #include <limits>
 #include <span>
@@ -75,7 +76,7 @@ class RattleStep {
       for (const Index b : set.active()) {
         path.begin(set.state(), b, set.velocity()[b]);
         if (set.moves(b)) free[b] += set.template solve_block<1>(b, std::get<s>(force_)[b]);
-        speed_ = std::max(speed_, double(linear_part(free[b]).norm()));
+        speed_ = std::max(speed_, inner::speed_of(set, b, free[b]));
       }
     });
     if (!(speed_ > 0)) speed_ = 1;

@@ -10,6 +10,7 @@
 #include <delassus/solvers/solve_report.hpp>
 #include <delassus/steppers/inner/equalities.hpp>
 #include <delassus/steppers/inner/leave_step.hpp>
+#include <delassus/steppers/inner/speed_of.hpp>
 
 #include <array>
 #include <limits>
@@ -86,7 +87,7 @@ class RungeKuttaStep {
       integrator.impulse(set, a, 1);
       for (const Index b : set.active()) {
         const auto& v = set.velocity()[b];
-        speed_ = std::max(speed_, double(linear_part(v).norm()));
+        speed_ = std::max(speed_, inner::speed_of(set, b, v));
         if (set.moves(b)) {
           a[b] += std::get<s>(paths_).gyroscopic(set.state(), b, v);
           a[b] = set.template solve_block<1>(b, a[b]);
