@@ -150,6 +150,12 @@ class BasicContactCache {
     return c;
   }
 
+  /// Whether it is apart, and one of the two answers to no impulse: that one keeps no momentum, so that the other is pushed at its own
+  /// point and not in the middle of the gap, of which friction would make a moment.
+  bool lands(const ContactPoint& p) const {
+    const Collider &a = colliders[p.a], &b = colliders[p.b];
+    return a.is_movable != b.is_movable && is_zero(p.travel) && p.gap > inner::touch_share * inner::pair_scale(a.shape, b.shape);
+  }
   /// Turns points into records.
   void record() {
     results.resize(points.size());
@@ -175,6 +181,7 @@ class BasicContactCache {
       record.material_b = materials_[p.b];
       set_zero(record.friction_arm);
       assign(record.travel, p.travel);
+      if (p.gap > 0 && lands(p)) record.travel = p.point_b - p.point_a;
     }
   }
 

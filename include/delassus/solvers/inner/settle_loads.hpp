@@ -72,7 +72,7 @@ bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tol
   LeastImpulses<T> least(problem, work.least);
   least.sort(report.measure);
   if (least.contacts() < 3) return false;
-  report.are_loads_decided = true;
+  report.are_loads_decided = least.slipping() > 0 || closed.others > 0;
   if (least.slipping() > 0 && work.rounds < most_rounds) {
     if (least.share(most_products) > least_way) {
       ++work.rounds;
