@@ -67,7 +67,7 @@ TEST_CASE("a ball with restitution 1 comes back to 0.3 % of its height a hundred
     REQUIRE(loop.time() < 200);
   }
   REQUIRE(lowest >= 0.997);
-  REQUIRE(highest <= 1.0);
+  REQUIRE(highest <= 1 + 1e-13);  // four roundings a bounce
 }
 
 // A bounce is less than a step early or late, and changes nothing in those that follow. There are

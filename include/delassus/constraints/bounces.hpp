@@ -91,6 +91,7 @@ struct BouncingRow {
     if (!std::isfinite(last)) return falling;
     const double smaller = std::abs(before) < std::abs(last) ? before : last;
     const bool was_hit = std::abs(last - before) > 0.5 * std::max(std::abs(last), std::abs(before));
+    if (was_hit && std::abs(last - falling) <= 1e-3 * std::abs(falling)) return falling;  // it falls, and was hit before
     return was_hit && std::abs(falling) < std::abs(smaller) ? falling : smaller;
   }
   bool was_held() const { return past && past->impulse > 0; }

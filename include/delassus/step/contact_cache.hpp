@@ -150,11 +150,13 @@ class BasicContactCache {
     return c;
   }
 
-  /// Whether it is apart, and one of the two answers to no impulse: that one keeps no momentum, so that the other is pushed at its own
-  /// point and not in the middle of the gap, of which friction would make a moment.
+  /// Whether it is apart by more than the least margin, one of the two answers to no impulse, and the other hits nothing else that moves.
+  /// Who does not answer keeps no momentum, so that the other is pushed at its own point and not in the middle of the gap, of which friction
+  /// would make a moment.
   bool lands(const ContactPoint& p) const {
     const Collider &a = colliders[p.a], &b = colliders[p.b];
-    return a.is_movable != b.is_movable && is_zero(p.travel) && p.gap > inner::touch_share * inner::pair_scale(a.shape, b.shape);
+    return a.is_movable != b.is_movable && (a.is_movable ? a : b).goes_alone && is_zero(p.travel) &&
+           p.gap > inner::margin_share * inner::pair_scale(a.shape, b.shape);
   }
   /// Turns points into records.
   void record() {

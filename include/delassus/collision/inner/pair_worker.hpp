@@ -233,7 +233,7 @@ class PairWorker {
     report.rejects += is_rejected ? 1 : 0;
     SignedPair r = answer;
     if (is_moved) r.distance -= dot(r.normal, shift), r.point_b -= r.normal * dot(r.normal, shift);
-    if (r.status == PairStatus::near) keep_side(a.shape, b.shape, b_in_a, guess, r);
+    if (r.status == PairStatus::near && !is_round_pair(a.shape, b.shape)) keep_side(a.shape, b.shape, b_in_a, guess, r);
     if (r.status == PairStatus::near)
       now.owner = snap_normal_to_face(a.shape, b.shape, b_in_a, scale, last.owner, r);
     return r;
