@@ -105,6 +105,8 @@ struct BouncingRow {
   double height(double acceleration) const { return gap + (1 - theta) * (h * velocity + 0.25 * h * h * acceleration); }
   /// Or comes to the surface at the end of the step: which side of it is rounding, and another one for each corner of a face.
   bool closes(double acceleration) const { return velocity < 0 && gap + h * (velocity + h * acceleration) < -1e-9 * h * velocity; }
+  /// The free motion does not bring it to the surface, by more than what corners of one face differ.
+  bool stays_away() const { return gap > 0 && gap + h * free > 1e-2 * h * std::abs(free); }
   Closing closing(double acceleration, bool may_land) const {
     const double a = std::min(0.0, acceleration), fall = std::max(std::max(0.0, velocity - free), -h * a);
     return {.gap = gap, .velocity = now(a), .acceleration = a, .height = height(a), .least = 0.5 * fall, .h = h, .may_land = may_land};
@@ -173,6 +175,11 @@ void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Isla
             *choice = does.leaves > 0 ? Together::leave_at_once : does.parts > 0 ? Together::land : Together::undecided;
           now.parts = does.parts;
           leaves = does.leaves > 0 || does.parts > 0 ? does.leaves : is.comes_back(now.acceleration);
+        } else if (theta == 1 && is.stays_away() && bounces.choice_of(islands, int(p), i)) {
+          // What bounces beside it may drive it into the surface. It bounces from there in the next step, where it would have lost its speed.
+          (*pool.bias)[row] = T(sign * (plain + 2 * phi / h));
+          (*pool.d)[row] = free[k] + (*pool.bias)[row];
+          continue;
         }
         if (!(leaves > 0)) continue;
         const double bias = std::min(phi < 0 ? plain : 0.0, -leaves);
