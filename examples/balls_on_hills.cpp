@@ -1,5 +1,5 @@
 // Twenty-five balls on a height field of hills roll down until each lies in one of the hollows between.
-// prints: 25 of 25 balls lie in hollows, the lowest at 0\.00 m above its own
+// prints: 25 of 25 balls lie in hollows, the lowest at 0\.0 m above its own
 #include <delassus/collision/with_meshes.hpp>
 #include <delassus/delassus.hpp>
 
@@ -36,5 +36,5 @@ int main() {
     lying += above > -1e-3 && above < 0.05;
     lowest = std::min(lowest, above);
   }
-  std::printf("%.0f of 25 balls lie in hollows, the lowest at %.2f m above its own\n", lying, lowest);
+  std::printf("%.0f of 25 balls lie in hollows, the lowest at %.1f m above its own\n", lying, lowest);
 }
