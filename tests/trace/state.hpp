@@ -5,6 +5,7 @@
 #include <delassus/activity/inner/dormant.hpp>
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/constraints/bounces.hpp>
+#include <delassus/integrators/inner/midpoint_stages.hpp>
 #include <delassus/loop/animation_loop.hpp>
 
 #include <array>
@@ -215,6 +216,10 @@ class Memory {
     if constexpr (requires { b.group; }) text_(b.group);
     part(b.box.min()), part(b.box.max());
   }
+  /// No trace has sleepers on joints of bodies that are led.
+  template <class Hold>
+  requires(requires(Hold h) { h.group, h.pose; } && !requires(Hold h) { h.box; })
+  void part(std::vector<Hold>&) {}
   template <class Item>
   requires requires(Item i) { i.pool, i.place, i.group; }
   void part(Item& i) { text_(i.pool), text_(i.place), text_(i.group), text_(i.generation); }
@@ -277,6 +282,10 @@ class Memory {
   template <class Past>
   requires requires(Past p) { p.first, p.second, p.first.data(); }
   void part(Past& p) { part(p.first), part(p.second); }
+
+  /// No trace has joints on bodies that are led.
+  template <class Set>
+  void part(inner::LedMotion<Set>&) {}
 
   // --- numbers and lists
   // -------------------------------------------------------------------------------------------

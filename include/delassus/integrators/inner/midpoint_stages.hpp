@@ -270,7 +270,7 @@ struct MidpointState {
   typename P::World::template PerSet<HeldTurns> turns;  ///< of bodies that are held
   typename P::World::template PerSet<LedMotion> led;
   [[no_unique_address]] std::conditional_t<has_middle_contacts<P>, MiddleContacts, Absent> contacts;
-  void memory(auto& archive) { std::apply([&](auto&... of_set) { (of_set.memory(archive), ...); }, led); }
+  void memory(auto& archive) { std::apply([&](auto&... of_set) { (archive(of_set), ...); }, led); }
 };
 
 template <class Base>

@@ -9,8 +9,8 @@
 
 namespace delassus::inner {
 
-/// Of its centre, m/s. Where that stands, a thousandth of the speed at the radius of gyration √(tr I/2m): a shaft that turns in its
-/// bearings has a unit too.
+/// Of its centre, m/s. Where that stands, a thousandth of the speed at the radius of gyration √(tr I/2m): a
+/// shaft that turns in its bearings has a unit too.
 template <class Set, class Velocity>
 double speed_of(const Set& set, Index b, const Velocity& v) {
   const double along = norm(linear_part(v));
