@@ -24,7 +24,7 @@ struct ContactRecord {
   /// from the middle of the load, and their normal impulses at their corners.
   Vec3 friction_arm = zero<Vec3>();
   /// From the point of A to the point of B that will touch within the step, m. Zero but where bodies that are apart meet elsewhere than at
-  /// their nearest points.
+  /// their nearest points, or one of them answers to no impulse.
   Vec3 travel = zero<Vec3>();
 
   /// The middle of the contact. Without travel the impulse acts here on both bodies, which keeps the angular momentum exactly.
