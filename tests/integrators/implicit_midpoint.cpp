@@ -109,3 +109,14 @@ TEST_CASE("a rod on a kinematic hinge that is set going turns as its momentum sa
   CHECK(error[0] < 0.03);
   CHECK(error[1] < error[0] / 3);
 }
+
+TEST_CASE("a bead on a wire slides down it under the midpoint rule") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{PointOnLine{}}, ImplicitMidpoint{}, PositionProjection{.rate = 1}};
+  auto& set = bodies<RigidBodies>(loop.world());
+  const Vec3 wire = Vec3(1, 0, -1).normalized();
+  const auto bead = set.add({.mass = 1, .inertia = Mat3::Identity()});
+  loop.add(PointOnLine::Item{world_anchor({0, 0, 0}, frame_along(wire)), anchor(set, bead)});
+  for (int n = 0; n < 60; ++n) loop.step(1.0 / 60);
+  const double way = 0.5 * 9.81 * std::sqrt(0.5);
+  CHECK((set.position(bead) - way * wire).norm() <= 1e-9);
+}
