@@ -82,6 +82,44 @@ TEST_CASE("a table stands on its legs, on a half-space and on a mesh, and its co
   }
 }
 
+// The gap is linear over faces that adjoin in one plane: what is inside of their hull holds nothing that its corners do not.
+TEST_CASE("parts side by side are one face, under a compound and on one") {
+  const auto tiles = [](double drop) {
+    std::vector<CompoundPart> parts;
+    for (int k = 0; k < 9; ++k)
+      parts.push_back({.shape = Box{0.2, 0.2, 0.1}, .position = {0.2 * (k % 3 - 1), 0.2 * (k / 3 - 1), k == 4 ? -drop : 0}});
+    return Compound(parts);
+  };
+  for (const bool is_below : {false, true}) {
+    CompoundScene scene;
+    const Shape shape = scene.collision.add(tiles(0)), plate = Box{0.4, 0.4, 0.1};
+    scene.add(is_below ? shape : Shape(HalfSpace{}), {0, 0, is_below ? -0.05 : 0}, Mat3::Identity(), false);
+    scene.add(is_below ? plate : shape, {0.03, 0.02, 0.0499}, turned(0.3, Vec3::UnitZ()));
+    scene.detect();
+    const double half = is_below ? 0.2 : 0.3, right = 4 * half * half;
+    REQUIRE(scene.contacts.size() == 4);
+    double area = 0;
+    Vec3 middle = Vec3::Zero();
+    for (const ContactPoint& p : scene.contacts) {
+      const Vec3 at = turned(-0.3, Vec3::UnitZ()) * (p.point() - Vec3(0.03, 0.02, p.point().z()));
+      CAPTURE(is_below, at.x(), at.y());
+      CHECK((Vec3(std::abs(at.x()), std::abs(at.y()), 0) - Vec3(half, half, 0)).norm() < 1e-9);
+      area += p.area, middle += p.middle / 4;
+    }
+    CHECK(std::abs(area - right) < 1e-9);
+    CHECK((middle - Vec3(0.03, 0.02, middle.z())).norm() < 1e-9);
+  }
+  // The middle one stands out by 0.01 mm: it alone is deeper, and stays.
+  CompoundScene scene;
+  scene.add(HalfSpace{}, {0, 0, 0}, Mat3::Identity(), false);
+  const Compound uneven = tiles(1e-5);
+  scene.add(scene.collision.add(uneven), {0, 0, 0.0499 + uneven.centre().z()});
+  scene.detect();
+  int deepest = 0;
+  for (const ContactPoint& p : scene.contacts) deepest += std::abs(p.gap + 1.1e-4) < 1e-9;
+  CHECK(deepest == 4);
+}
+
 TEST_CASE("contacts of parts keep their names while bodies come and go before them") {
   CompoundScene scene;
   const Compound compound = table();

@@ -165,6 +165,21 @@ TEST_CASE("a compound that spins flat is braked at the mean distance of all its 
   for (const ConvexHull& w : wedge) wedges.push_back({.shape = w});
   const double annulus = measured(wedges, 0.01);
   CHECK(std::abs(annulus / (2 * (Ro * Ro * Ro - Ri * Ri * Ri) / (3 * (Ro * Ro - Ri * Ri))) - 1) < 0.03);
+  // Where parts meet inside, no load gathers: eight slices of a disc that meet in its middle, nine tiles, an L.
+  wedge.clear(), wedges.clear();
+  for (int k = 0; k < 8; ++k) {
+    std::vector<Vec3> corner{{0, 0, 0}};
+    for (int i = 0; i <= 4; ++i) corner.push_back(regular(32, Ro)[(4 * k + i) % 32]);
+    wedge.push_back(plate(corner));
+  }
+  for (const ConvexHull& w : wedge) wedges.push_back({.shape = w});
+  CHECK(std::abs(measured(wedges, 0.01) / mean_distance(polygon(regular(32, Ro))) - 1) < 0.03);
+  std::vector<CompoundPart> tiles;
+  for (int k = 0; k < 9; ++k) tiles.push_back(box(0.2, 0.2, 0.2 * (k % 3 - 1), 0.2 * (k / 3 - 1)));
+  CHECK(std::abs(measured(tiles, 0.01) / mean_distance(rectangle(0.6, 0.6)) - 1) < 0.03);
+  const double angle = measured({box(0.6, 0.2, 0.1, 0.1), box(0.2, 0.2, -0.1, -0.1)}, 0.01);
+  const Area bent = [](double x, double y) { return (std::abs(x - 0.1) < 0.3 && y > 0 && y < 0.2) || (x > -0.2 && x < 0 && y > -0.2 && y <= 0); };
+  CHECK(std::abs(angle / mean_distance(bent) - 1) < 0.03);
   const double feet = measured({box(0.1, 0.1, 0.25, 0.2), box(0.1, 0.1, -0.25, 0.2), box(0.1, 0.1, 0.25, -0.2), box(0.1, 0.1, -0.25, -0.2)}, 0.01);
   const Area squares = [](double x, double y) { return std::abs(std::abs(x) - 0.25) < 0.05 && std::abs(std::abs(y) - 0.2) < 0.05; };
   CHECK(std::abs(feet / mean_distance(squares) - 1) < 0.03);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <delassus/collision/collider.hpp>
+#include <delassus/collision/inner/join_faces.hpp>
 #include <delassus/collision/inner/margins.hpp>
 #include <delassus/collision/inner/wrapped.hpp>
 #include <delassus/collision/native_engine.hpp>
@@ -118,10 +119,12 @@ struct WithCompounds {
     return at->body_key;
   }
   /// Contacts of parts become those of their bodies.
-  void give_to_bodies(std::span<const Collider> colliders, std::vector<ContactPoint>& contacts) const {
+  void give_to_bodies(std::span<const Collider> colliders, std::vector<ContactPoint>& contacts) {
     const Index bodies = Index(colliders.size());
     if (Index(parts_.size()) == bodies) return;
+    faces_.clear();
     for (ContactPoint& p : contacts) {
+      faces_.name(part_of(p.a, bodies), part_of(p.b, bodies));
       if (p.a < bodies && p.b < bodies) continue;
       // The parts' names are in the contact's: two parts of one body meet another in points of equal names.
       p.feature ^= 0x9e3779b9u * (0x10001u * part_of(p.a, bodies) + 7u * part_of(p.b, bodies) + 1u);
@@ -130,6 +133,7 @@ struct WithCompounds {
       p.pair = pair_key(colliders[p.a].key, colliders[p.b].key);
       if (colliders[p.a].key >= colliders[p.b].key) p.exchange_bodies();
     }
+    faces_.join(contacts);
     inner::sort_by_name(contacts);
     inner::part_equal_names(contacts);
   }
@@ -184,6 +188,7 @@ struct WithCompounds {
   std::uint32_t next_name_ = 0;
   std::vector<Collider> parts_;
   Array<Owner> owners_, by_key_;
+  inner::JoinedFaces faces_;
 };
 
 }  // namespace delassus
