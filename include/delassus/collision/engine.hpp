@@ -195,6 +195,12 @@ class CollisionEngine {
     return at != end && at->pair == pair ? at : nullptr;
   }
 
+  /// Where two that are apart meet by these velocities.
+  inner::Impact impact_of(const inner::Apart& p, const Collider& a, const Collider& b, double h) const;
+  /// Forgets the impacts that the filter says will not be.
+  template <class Filter>
+  void let_go_who_misses(std::span<const Collider> colliders, double h, const Filter& filter);
+
   /// Looks for pairs of the colliders that go farther than `detect` took into account.
   template <class Filter>
   void find_outgrown(inner::Slice<const Collider> colliders, double h, const CollisionSettings& settings,

@@ -47,6 +47,12 @@ struct WithCompounds {
       const auto [a, b] = compounds.bodies_of(pair);
       return filter.pushed(pair_key(a, b));
     }
+    /// Parts are asked for none: what their body's contacts push is known of all of them together.
+    bool misses(std::uint64_t pair, const Collider& a, const Collider& b, const auto& meets) const
+      requires inner::KnowsWhoMisses<Filter>
+    {
+      return a.key < part_key && b.key < part_key && filter.misses(pair, a, b, meets);
+    }
   };
 
   WithCompounds() = default;

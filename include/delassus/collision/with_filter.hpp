@@ -43,6 +43,11 @@ struct WithFilter {
     {
       return filter.pushed(pair);
     }
+    bool misses(std::uint64_t pair, const Collider& a, const Collider& b, const auto& meets) const
+      requires inner::KnowsWhoMisses<Filter>
+    {
+      return filter.misses(pair, a, b, meets);
+    }
   };
 
   WithFilter() = default;

@@ -46,6 +46,11 @@ struct WithSurfaces {
     {
       return filter.pushed(pair);
     }
+    bool misses(std::uint64_t pair, const Collider& a, const Collider& b, const auto& meets) const
+      requires inner::KnowsWhoMisses<Filter>
+    {
+      return filter.misses(pair, a, b, meets);
+    }
   };
 
   WithSurfaces() = default;

@@ -16,6 +16,7 @@
 #include <delassus/rows/contact_record.hpp>
 #include <delassus/step/contact_memory.hpp>
 #include <delassus/step/contact_result.hpp>
+#include <delassus/step/foreseen_impacts.hpp>
 #include <delassus/step/friction_places.hpp>
 #include <delassus/step/step_report.hpp>
 
@@ -87,26 +88,36 @@ class BasicContactCache {
       }
     });
   }
-  /// The motion that was solved for, v_next.
+  /// The motion that was solved for: v + share (v_next − v).
   template <class World>
-  void take_solved_motion(const World& world) {
+  void take_solved_motion(const World& world, double share) {
     Index i = 0;
     world.each([&](const auto& set, auto s) {
       for (; i < Index(colliders.size()) && anchors_[i].set == Index(s); ++i) {
         const Index b = anchors_[i].block;
         if (!colliders[i].is_movable || !is_finite(set.v_next[b])) continue;
-        colliders[i].velocity = converted<double>(linear_part(set.v_next[b]));
-        if constexpr (std::remove_cvref_t<decltype(set)>::width == 6) colliders[i].angular_velocity = converted<double>(angular_part(set.v_next[b]));
+        const auto& v = set.velocity()[b];
+        colliders[i].velocity = part_way(linear_part(v), linear_part(set.v_next[b]), share);
+        if constexpr (std::remove_cvref_t<decltype(set)>::width == 6)
+          colliders[i].angular_velocity = part_way(angular_part(v), angular_part(set.v_next[b]), share);
       }
     });
   }
   /// What detection asks: whether a pair pushed when it was last solved.
   struct Pushed {
     const BasicContactMemory<Scalar>& memory;
+    inner::ForeseenImpacts& foreseen;
     bool lets(std::uint64_t) const { return true; }  ///< all pairs are asked for
     bool pushed(std::uint64_t pair) const { return memory.pushed(pair); }  ///< in the last solve
+    /// Whether it is to lose the contacts of an impact to come.
+    bool misses(std::uint64_t pair, const Collider& a, const Collider& b, const auto& meets) const { return foreseen.misses(pair, a, b, meets); }
   };
-  Pushed who_pushed() const { return {memory_}; }  ///< the filter of a detection
+  Pushed who_pushed() { return {memory_, foreseen}; }  ///< the filter of a detection
+  inner::ForeseenImpacts foreseen;                     ///< of this step
+  /// Asks which of them pushed. Pre: the colliders have the velocities by which the contacts were found.
+  void weigh_foreseen(const auto& world, double h, double share, const auto& each_joint) {
+    foreseen.weigh(world, colliders, points, results, h, share, each_joint);
+  }
 
   int solves = 0;                    ///< of the step, but the first
   StepReport report_of_detect;       ///< as the first solve found it
@@ -249,6 +260,12 @@ class BasicContactCache {
     return at != end && *at == key ? Index(at - first) : Index(-1);
   }
 
+  static Vec3 part_way(const auto& from, const auto& to, double share) {
+    const Vec3 end = converted<double>(to);
+    if (share == 1) return end;
+    const Vec3 start = converted<double>(from);
+    return start + share * (end - start);
+  }
   static bool is_separable(const auto& set) {
     if constexpr (requires { set.is_separable(); }) return set.is_separable();
     else return false;

@@ -72,6 +72,7 @@ struct PlainStages : StagesWithoutConstraints {
     using Step = std::remove_reference_t<decltype(step)>;
     if constexpr (Step::Laws::has_contacts) {
       step.contact_cache.solves = 0;
+      step.contact_cache.foreseen.clear();
       Step::Stages::gather(step);
       if constexpr (requires { Step::Policies::Collision::asks_for_joints; })
         step.collision().refresh(std::as_const(step).world(), [&](const auto& f) { step.each_joint(f); });
@@ -99,10 +100,12 @@ struct PlainStages : StagesWithoutConstraints {
   static bool find_missed(auto& step) {
     if constexpr (inner::asks_who_meets<decltype(step)>) {
       auto& book = step.contact_cache;
-      book.take_solved_motion(std::as_const(step).world());
+      constexpr double share = theta<std::remove_cvref_t<decltype(step.integrator())>>();
+      book.weigh_foreseen(std::as_const(step).world(), step.h, share, [&](const auto& f) { step.each_joint(f); });
+      book.take_solved_motion(std::as_const(step).world(), share);
       std::remove_reference_t<decltype(step)>::Stages::detect_missed(step);
       inner::leave_what_bounces(step);
-      if (book.missed.empty() || !inner::is_worth_solving_again(step)) return false;
+      if (!book.foreseen.drop(book.points) && (book.missed.empty() || !inner::is_worth_solving_again(step))) return false;
       if (++book.solves == inner::most_solves) {
         step.summary.status = worse(step.summary.status, Status::max_iterations);
         return false;

@@ -20,11 +20,12 @@ inline constexpr double meeting_share = 1e-4;
 /// Cosine of the angle, 4.5e-5, within which two normals count as one.
 inline constexpr double same_normal = 1 - 1e-9;
 
-/// A pair without contacts: its distance now, or less, and the normal there. World frame, m.
+/// A pair that is apart: its distance now, or less, and the normal there. World frame, m.
 struct Apart {
   PairJob job;
   double distance;
   Vec3 normal;
+  bool is_foreseen = false;  ///< it has contacts, of the place where it was to meet
 };
 
 /// False where the plane between the two, or one that is nearer to both, proves that they stay apart in the step.

@@ -99,6 +99,30 @@ void CollisionEngine<Kernel, Broad>::find_outgrown(inner::Slice<const Collider> 
 }
 
 template <class Kernel, class Broad>
+inner::Impact CollisionEngine<Kernel, Broad>::impact_of(const inner::Apart& p, const Collider& a, const Collider& b, double h) const {
+  if (!inner::may_close(a, b, p.normal, p.distance, h)) return {};
+  const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale), near = worker_.meeting_distance(scale);
+  if (!inner::may_come_near(a, b, h, near) || inner::stay_apart(a, b, p.normal, h, near)) return {};
+  return inner::time_of_impact(a, b, h, scale, near, transposed_times(a.pose.rotation, p.normal));
+}
+
+template <class Kernel, class Broad>
+template <class Filter>
+void CollisionEngine<Kernel, Broad>::let_go_who_misses(std::span<const Collider> colliders, double h, const Filter& filter) {
+  if constexpr (inner::KnowsWhoMisses<Filter>)
+    for (inner::Apart& p : worker_.apart_pairs) {
+      if (!p.is_foreseen) continue;
+      const auto meets = [&](const Collider& a, const Collider& b) {
+        const inner::Impact hit = impact_of(p, a, b, h);
+        return hit.is_found || hit.is_now;
+      };
+      if (!filter.misses(p.job.pair, colliders[p.job.a], colliders[p.job.b], meets)) continue;
+      p.is_foreseen = false;
+      memory_of(p.job.pair).reset(p.job.pair);
+    }
+}
+
+template <class Kernel, class Broad>
 template <class Filter>
 void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> colliders, double h,
                                                    const CollisionSettings& settings,
@@ -112,13 +136,12 @@ void CollisionEngine<Kernel, Broad>::detect_missed(std::span<const Collider> col
         (flies_by_[i] = inner::flies_by(colliders[i], inner::top_speed(colliders[i]), h)) || any_flies_by;
   find_outgrown(colliders, h, settings, filter);
   worker_.scene = {colliders, summary_.data(), flies_by_.data(), h, settings};
+  let_go_who_misses(colliders, h, filter);
   erase_if(worker_.apart_pairs, [&](const inner::Apart& p) {
+    if (p.is_foreseen) return false;
     const Collider &a = colliders[p.job.a], &b = colliders[p.job.b];
-    if (!inner::may_close(a, b, p.normal, p.distance, h)) return false;
-    const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale),
-                 near = worker_.meeting_distance(scale);
-    if (!inner::may_come_near(a, b, h, near) || inner::stay_apart(a, b, p.normal, h, near)) return false;
-    const inner::Impact hit = inner::time_of_impact(a, b, h, scale, near, transposed_times(a.pose.rotation, p.normal));
+    const double scale = std::min(summary_[p.job.a].scale, summary_[p.job.b].scale);
+    const inner::Impact hit = impact_of(p, a, b, h);
     if (!hit.is_found) return false;
     RestingPair& now = memory_of(p.job.pair);
     if (a.is_movable && b.is_movable) {

@@ -65,7 +65,7 @@ class PairWorker {
   Kernel kernel{};
   PairScene scene;
   CollisionReport report;    ///< queries and rejects
-  Array<Apart> apart_pairs;  ///< without contacts, which may meet yet
+  Array<Apart> apart_pairs;  ///< without contacts, which may meet yet, or with those of an impact to come
   Array<HeldCore> cores;     ///< held in this step
 
   /// Takes part of the work of another.
@@ -355,7 +355,10 @@ bool PairWorker<Kernel>::look_ahead(const Collider& a, const Collider& b, const 
     if (hit.is_found) {
       const bool is_same = dot(hit.a.rotation * hit.normal_in_a, apart.normal) > same_normal;
       if (is_near && is_same && !may_outgrow_margin(a, b, scale, scene.h)) return false;
-      if (meet(a, b, Job{apart.job}, hit, scale, last, now, out)) return true;
+      if (meet(a, b, Job{apart.job}, hit, scale, last, now, out)) {
+        apart_pairs.push_back({apart.job, apart.distance, apart.normal, true});
+        return true;
+      }
     }
   }
   apart_pairs.push_back(apart);

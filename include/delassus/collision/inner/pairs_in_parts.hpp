@@ -41,6 +41,9 @@ struct InParts {
 
   bool lets(std::uint64_t pair) const { return filter.lets(pair); }
   bool pushed(std::uint64_t pair) const requires KnowsWhoPushed<Filter> { return filter.pushed(pair); }
+  bool misses(std::uint64_t pair, const Collider& a, const Collider& b, const auto& meets) const requires KnowsWhoMisses<Filter> {
+    return filter.misses(pair, a, b, meets);
+  }
 };
 
 template <class Filter, class E>

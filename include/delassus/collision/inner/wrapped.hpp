@@ -22,6 +22,13 @@ concept Detects = CollisionBackend<Backend> && Fills<Backend, role::Collision, o
 template <class F>
 concept KnowsWhoPushed = requires(const F& filter, std::uint64_t pair) { bool(filter.pushed(pair)); };
 
+/// One that also says of a pair with contacts of an impact to come whether it is to lose them: it asks meets(a, b) by the velocities
+/// that the two would have without them.
+template <class F>
+concept KnowsWhoMisses = requires(const F& filter, std::uint64_t pair, const Collider& c) {
+  bool(filter.misses(pair, c, c, [](const Collider&, const Collider&) { return true; }));
+};
+
 /// A backend that leaves out pairs which are apart, and finds those of them that meet after all.
 template <class Backend, class Filter>
 concept DetectsMissed = KnowsWhoPushed<Filter> && requires(Backend& backend, std::span<const Collider> colliders, std::vector<ContactPoint>& contacts, const Filter& filter) {
