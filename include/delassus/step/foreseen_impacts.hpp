@@ -35,6 +35,9 @@ class ForeseenImpacts {
              double share, const auto& each_joint) {
     for (Pair& p : pairs_) p.has_pushed = false;
     bool is_any = false;
+    for (const ContactPoint& p : points) is_any = is_any || !is_zero(p.travel);
+    if (!is_any) return;
+    is_any = false;
     each_pair(points, [&](std::size_t first, std::size_t last) {
       bool is_ahead = false, pushes = false;
       for (std::size_t i = first; i < last; ++i) {
@@ -55,14 +58,13 @@ class ForeseenImpacts {
         for (const Anchor* const end : {&a, &b}) p.is_held = p.is_held || (end->set >= 0 && p.has(collider_key(end->set, end->block)));
     });
     each_pair(points, [&](std::size_t first, std::size_t last) {
-      const Pair fresh{.pair = points[first].pair};
-      const bool is_near = std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return p.has(fresh.key_a()) || p.has(fresh.key_b()); });
-      if (!is_near || find(fresh.pair)) {
-        if (Pair* const known = find(fresh.pair); known && !(known->at < never)) known->at = time_of(colliders, points, first, last, h);
-        return;
-      }
+      const std::uint64_t pair = points[first].pair;
+      const auto shares_body = [&](const Pair& p) { return p.has(std::uint32_t(pair >> 32)) || p.has(std::uint32_t(pair)); };
+      if (!std::any_of(pairs_.begin(), pairs_.end(), shares_body)) return;
       const double at = time_of(colliders, points, first, last, h);
-      if (at < 1) pair_of(fresh.pair).at = at;
+      if (!(at < 1)) return;
+      Pair& p = pair_of(pair);
+      if (!(p.at < never)) p.at = at;
     });
   }
 
@@ -108,7 +110,7 @@ class ForeseenImpacts {
   struct Pair {
     std::uint64_t pair = 0;
     Motion a{}, b{};
-    double at = never;  ///< when they were to meet, a share of the step
+    double at = never;  ///< when they were to meet by the motion that was known first, a share of the step
     bool has_pushed = false, is_held = false, is_missed = false, is_new = false;
 
     std::uint32_t key_a() const { return std::uint32_t(pair >> 32); }
