@@ -129,4 +129,25 @@ TEST_CASE("a pair beyond the margin is far, whatever its distance") {
   });
 }
 
+// An ellipsoid sunk into the face z = 0.5 touches it at its lowest point, its support of −z, and the face above that. The bounds of the
+// depth meet to 3e-10 of its size of 0.3 m, e = 9e-11 m; a point of the ellipsoid that lies e above the lowest is within √(2 e R) = 8e-6 m
+// beside it, with the largest radius of curvature R = 0.15²/0.07 m.
+TEST_CASE("a curved body that dips into a face touches it at its lowest point") {
+  const Shape egg = Ellipsoid{0.15, 0.1, 0.07};
+  std::mt19937 random(3);
+  for (int k = 0; k < 1000; ++k)
+    for (const double depth : {1e-7, 1e-6, 1e-4}) {
+      const double side = 1 + k % 20;
+      Sample s{Box{side, side, 1}, egg, {}};
+      s.b_in_a.rotation = any_rotation(random);
+      const Vec3 low = s.b_in_a.rotation * support(egg, Vec3(-s.b_in_a.rotation.row(2).transpose()));
+      s.b_in_a.position = {0.05, 0.02, 0.5 - low[2] - depth};
+      const SignedPair r = ask(s, 1);
+      CAPTURE(k, depth);
+      const Vec3 deepest = s.b_in_a.position + low;
+      CHECK((r.point_b - deepest).norm() < 1e-5);
+      CHECK((r.point_a - deepest - depth * Vec3::UnitZ()).norm() < 1e-5);
+    }
+}
+
 }  // namespace gjk_epa_tests

@@ -139,7 +139,9 @@ EpaResult epa(const D& difference, const Simplex& start, const Vec3& guess) {
     if (!do_bounds_meet && !polytope.extend(q, 1e-14 * size)) polytope.retire(f);
   }
   if (best.h == std::numeric_limits<double>::infinity()) return best;
-  if (!do_bounds_meet) descend(difference, best.normal, pierced_face(polytope, best.normal), tolerance, consider);
+  // The foot h n lies in one triangle of the plane, which need not be the one that gave the plane.
+  best_face = pierced_face(polytope, best.normal);
+  if (!do_bounds_meet) descend(difference, best.normal, best_face, tolerance, consider);
   Simplex carrier{.p = {best_face[0], best_face[1], best_face[2]}, .count = 3};
   nearest_on_triangle(carrier);
   best.point_a = carrier.mix(&DifferencePoint::a);
