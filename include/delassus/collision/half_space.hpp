@@ -47,13 +47,14 @@ inline SignedPair half_space_patch(const Shape& a, const Shape& b, const Pose& b
   const PatchPoint lowest = pair.contact(pair.lowest(), Patch::witness);
   const Face face = face_towards(s, pair.down);
   const bool is_line = face.count == 2;
+  const double most = inner::patch_margin(margin, lowest.gap, scale);
   patch.clear();
   for (int k = 0; k < face.count; ++k) {
     Vec3 corner = face.point[k];
     double way = 0;
     if (is_line && inner::leave_side(s, corner, pair.down, way)) corner += way * pair.down;
     const PatchPoint p = pair.contact(pair.pose.to_world(corner), inner::corner_name(!pair.plane_is_a, face.corner[k]));
-    if (p.gap <= margin) patch.add(p);
+    if (p.gap <= most) patch.add(p);
   }
   inner::drop_twins(scale, patch);
   patch.area = inner::area_of_patch(patch, pair.plane.normal, inner::round_face(s, inner::posed(face, pair.pose), pair.pose.position));

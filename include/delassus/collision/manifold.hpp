@@ -111,6 +111,9 @@ inline void drop_twins(double scale, Patch& patch) {
 /// rests, and of lines.
 inline constexpr double face_slack = 5e-5, line_slack = 1e-10;
 
+/// Up to which gap the corners of a patch at this distance count, m: a face that lies level is in the margin with all its corners.
+inline double patch_margin(double margin, double distance, double scale) { return std::max(margin, distance + face_slack * scale); }
+
 /// Adds the witness when the corners miss its depth by more than `slack` (m); a corner it coincides with goes.
 inline void add_witness(const PatchPoint& witness, double scale, double slack, Patch& patch) {
   int twin = -1;
@@ -134,6 +137,7 @@ inline void add_witness(const PatchPoint& witness, double scale, double slack, P
 inline void contact_patch(const Shape& a, const Shape& b, const Pose& b_in_a, const SignedPair& r,
                           double margin, double scale, Patch& patch) {
   const Vec3& n = r.normal;
+  margin = inner::patch_margin(margin, r.distance, scale);
   patch.clear();
   Face face_a = face_towards(a, n);
   Face face_b = inner::posed(face_towards(b, Vec3(-transposed_times(b_in_a.rotation, n))), b_in_a);
