@@ -98,7 +98,7 @@ inline ContactPoint impact_row(const PairJob& job, const Collider& a, const Coll
 inline bool is_there(const RememberedImpact& impact, const Collider& a, const Collider& b, std::size_t first, const std::vector<ContactPoint>& out,
                      double scale) {
   Vec3 middle = zero<Vec3>();
-  for (std::size_t i = first; i < out.size(); ++i) middle += out[i].point() / double(out.size() - first);
+  for (std::size_t i = first; i < out.size(); ++i) middle += (out[i].area > 0 ? out[i].middle : out[i].point()) / double(out.size() - first);
   const auto beside = [&](const Vec3& x) { return norm(x - middle - dot(impact.normal, Vec3(x - middle)) * impact.normal); };
   return std::min(beside(a.pose.position + impact.arm_a), beside(b.pose.position + impact.arm_b)) <= 1e-2 * scale;
 }

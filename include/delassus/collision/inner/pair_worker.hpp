@@ -162,7 +162,7 @@ class PairWorker {
                   out.push_back(contact_of(job, a.pose, patch_.point[i], now.normal,
                                            scene.settings.contact_distance, id));
                 });
-    if (will_meet) now.impact = impact_of(a, b, now, out);
+    if (will_meet) now.impact = impact_of(a, b, a.pose, b.pose, now, out);
     share_area(now.area, a.pose, now.count, out);
     sort_last(now.count, out);
     if (looks_ahead) hold_cores(a, b, job, out);  // their names are the last
@@ -190,10 +190,14 @@ class PairWorker {
   /// normal that it has now: then its contacts are those of now.
   bool look_ahead(const Collider& a, const Collider& b, const Apart& apart, double scale, bool is_near,
                   const PairMemory& last, RestingPair& now, std::vector<ContactPoint>& out);
-  /// The impact that a pair's last contacts foresee.
-  static RememberedImpact impact_of(const Collider& a, const Collider& b, const RestingPair& pair,
+  /// The impact that a pair's last contacts foresee, where the two meet at these poses: of faces in the middle of their area.
+  static RememberedImpact impact_of(const Collider& a, const Collider& b, const Pose& at_a, const Pose& at_b, const RestingPair& pair,
                                     const std::vector<ContactPoint>& out) {
     const Vec3 n = pair.normal;
+    if (pair.count >= 3 && pair.area.size > 0) {
+      const Vec3 arm_a = at_a.rotation * pair.area.middle;
+      return {n, arm_a, at_a.position + arm_a - at_b.position, (out.data() + out.size() - pair.count)->feature, true};
+    }
     Vec3 middle = zero<Vec3>(), half = zero<Vec3>();
     const ContactPoint* const first = out.data() + out.size() - pair.count;
     for (int k = 0; k < pair.count; ++k)
@@ -386,7 +390,7 @@ bool PairWorker<Kernel>::meet(const Collider& a, const Collider& b, const Job& j
                                          scene.settings.contact_distance, id));
               });
   if (now.count == 0) return false;
-  now.impact = impact_of(a, b, now, out);
+  now.impact = impact_of(a, b, hit.a, hit.b, now, out);
   hold_cores(a, b, job, out);
   sort_last(int(out.size() - first), out);
   return true;

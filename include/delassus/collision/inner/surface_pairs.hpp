@@ -382,7 +382,7 @@ class SurfacePairs {
     };
     name_points(patch_, remembered(n), is_ahead ? hit_.a.to_local(hit_.b) : pair.b_in_a, n, pair.scale, pair.settings.max_points, first_out,
                 out, now, add_point);
-    if (is_ahead || will_meet(n)) remember_impact(pair, first, out);
+    if (is_ahead || will_meet(n)) remember_impact(pair, is_ahead ? hit_.a : pair.a.pose, is_ahead ? hit_.b : pair.b.pose, now.area, first, out);
     if (!is_ahead) share_area(now.area, pair.a.pose, now.count, out);
     next_.push_back(now);
   }
@@ -394,13 +394,15 @@ class SurfacePairs {
   bool will_meet(const Vec3& n) const {
     return is_new_ && !is_among(touched_, n);
   }
-  void remember_impact(const Pair& pair, std::size_t first, const std::vector<ContactPoint>& out) {
+  /// The two meet at these poses, of faces in the middle of their area.
+  void remember_impact(const Pair& pair, const Pose& at_a, const Pose& at_b, const ContactArea& area, std::size_t first, const std::vector<ContactPoint>& out) {
     if (first == out.size()) return;
     Vec3 middle = zero<Vec3>(), half = zero<Vec3>();
     for (std::size_t i = first; i < out.size(); ++i) middle += out[i].point() / double(out.size() - first), half += 0.5 * out[i].travel / double(out.size() - first);
     const double sign = pair.a.key < pair.b.key ? 1 : -1;
-    next_impacts_.push_back({pair.job.pair, {sign * out[first].normal, middle - sign * half - pair.a.pose.position, middle + sign * half - pair.b.pose.position,
-                                             out[first].feature, true}});
+    Vec3 arm_a = middle - sign * half - pair.a.pose.position, arm_b = middle + sign * half - pair.b.pose.position;
+    if (out.size() - first >= 3 && area.size > 0) arm_a = at_a.rotation * area.middle, arm_b = at_a.position + arm_a - at_b.position;
+    next_impacts_.push_back({pair.job.pair, {sign * out[first].normal, arm_a, arm_b, out[first].feature, true}});
   }
 
   Array<SurfaceContact> points_, group_;
