@@ -188,6 +188,7 @@ class BasicParticles : public inner::PointStorage<BasicParticles<T>, T> {
   }
   /// True when no spring joins anything: every particle moves by itself.
   bool is_separable() const { return springs_.is_empty(); }
+  bool is_alone(Index b) const { return !springs_.holds(b); }  ///< no spring joins this one to anything
 
   /// What a scheme that finds x and v of the end itself does with each particle; it leaves x there, and v_next.
   using Path = inner::ParticlePath<T>;

@@ -50,15 +50,18 @@ class Springs {
     DELASSUS_EXPECT(is_finite(spring.point), who + ": the spring's point is not finite");
     DELASSUS_EXPECT(spring.a != spring.b, who + ": a spring needs two different ends");
     springs_.push_back(spring);
+    hold(spring);
     analysed_blocks_ = -1;
   }
   /// Takes out every spring that holds this block.
   void remove_of(Index block) {
     erase_if(springs_, [&](const Spring& s) { return s.a == block || s.b == block; });
+    find_held();
     analysed_blocks_ = -1;
   }
 
   bool is_empty() const { return springs_.empty(); }  ///< no spring at all
+  bool holds(Index block) const { return block < Index(is_held_.size()) && is_held_[block] != 0; }  ///< a spring ends there
   /// Whether the last `factor` met a spring between two blocks that move.
   bool is_coupled() const { return is_coupled_; }
   /// f(a, b) for blocks that A couples.
@@ -146,10 +149,21 @@ class Springs {
 
   void memory(auto& archive) {
     archive(springs_);
+    find_held();
     analysed_blocks_ = -1;
   }
 
  private:
+  void hold(const Spring& s) {
+    const std::size_t blocks = std::size_t(std::max(s.a, s.b)) + 1;
+    if (is_held_.size() < blocks) is_held_.resize(blocks, 0);
+    is_held_[s.a] = 1;
+    if (s.b >= 0) is_held_[s.b] = 1;
+  }
+  void find_held() {
+    is_held_.clear();
+    for (const Spring& s : springs_) hold(s);
+  }
   Vec3 span(const Spring& s, std::span<const Velocity> x) const {
     const Vec3 end = s.b < 0 ? s.point : Vec3(converted<double>(x[s.b]));
     return converted<double>(x[s.a]) - end;
@@ -190,6 +204,7 @@ class Springs {
   }
 
   Array<Spring> springs_;
+  Array<char> is_held_;  ///< by block: whether a spring ends there
   Array<std::pair<Index, Index>> pairs_;
   Array<Block> inverse_;
   BlockCholesky<3, T> cholesky_;

@@ -78,13 +78,13 @@ class BasicContactCache {
     find_who_pushed();
     Index i = 0;
     world.each([&](const auto& set, auto s) {
-      const bool are_alone = is_separable(set);
       const Vec3 fall = h * inner::gravity_of(set);
       for (; i < Index(colliders.size()) && anchors_[i].set == Index(s); ++i) {
         Collider& c = colliders[i];
         if (!c.is_movable) continue;
-        c.goes_alone = are_alone && pushed_[i] != pushed_movable;
-        if (are_alone && pushed_[i] == pushed_nothing) c.velocity += fall;
+        const bool is_free = is_alone(set, anchors_[i].block);
+        c.goes_alone = is_free && pushed_[i] != pushed_movable;
+        if (is_free && pushed_[i] == pushed_nothing) c.velocity += fall;
       }
     });
   }
@@ -266,8 +266,10 @@ class BasicContactCache {
     const Vec3 start = converted<double>(from);
     return start + share * (end - start);
   }
-  static bool is_separable(const auto& set) {
-    if constexpr (requires { set.is_separable(); }) return set.is_separable();
+  /// Whether no force couples block b to others.
+  static bool is_alone(const auto& set, Index b) {
+    if constexpr (requires { set.is_alone(b); }) return set.is_alone(b);
+    else if constexpr (requires { set.is_separable(); }) return set.is_separable();
     else return false;
   }
   /// Of a collider that more than its own block moves, the set says so.
