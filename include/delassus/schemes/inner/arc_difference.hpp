@@ -145,8 +145,8 @@ class ArcDifference {
         const bool sticks = of_rates && (first < 0 || !slides_[first + i]);
         for (int k = 0; k < pool.rows; ++k) {
           const std::size_t row = std::size_t(i) * std::size_t(pool.rows) + std::size_t(k);
-          const bool holds = kinds[k] == RowKind::equality ? !pool.is_soft(row) : (*pool.lambda)[row] != T(0) && (sticks || kinds[k] != RowKind::friction);
-          if (holds) f(pool, i, k);
+          const bool pushes = kinds[k] == RowKind::equality || ((*pool.lambda)[row] != T(0) && (sticks || kinds[k] != RowKind::friction));
+          if (pushes && !pool.is_soft(row)) f(pool, i, k);  // a spring's motion is the body's own
         }
       }
     }
