@@ -4,7 +4,9 @@
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/collision/mesh_queries.hpp>
 
+#include <array>
 #include <random>
+#include <vector>
 
 namespace mesh_queries_tests {
 
@@ -60,15 +62,16 @@ TEST_CASE("rays and nearest points of meshed boxes are those of the boxes, from 
   CHECK(hits > 50);
 }
 
-TEST_CASE("a ball overlaps the meshed boxes that it overlaps as boxes, by as much") {
+// The edge of the ball is farther from its middle than any face of a box that has the middle inside, so that it crosses each.
+TEST_CASE("a ball overlaps the meshed boxes that it overlaps as boxes, by as much, its middle inside too") {
   const Worlds w;
   std::vector<SurfacePoint> solid, meshed;
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  std::size_t all = 0;
+  std::size_t all = 0, inside = 0;
   for (int i = 0; i < 200; ++i) {
     const Vec3 at{1.5 + 2.5 * uniform(random), 1.5 * uniform(random), 1.5 * uniform(random)};
-    if (closest_point(w.solid, at).distance < 1e-3) continue;  // its middle must be outside
+    inside += closest_point(w.solid, at).distance < 0;
     overlaps(w.solid, Sphere{0.5}, {.position = at}, solid);
     overlaps(w.meshed, w.meshes, Sphere{0.5}, {.position = at}, meshed);
     REQUIRE(solid.size() == meshed.size());
@@ -77,6 +80,25 @@ TEST_CASE("a ball overlaps the meshed boxes that it overlaps as boxes, by as muc
       CHECK(std::abs(solid[k].distance - meshed[k].distance) < 1e-12);
   }
   CHECK(all > 30);
+  CHECK(inside > 5);
+}
+
+TEST_CASE("a shape of any kind overlaps a surface that it comes upon from behind") {
+  // Its middle lies 0.1 m below the floor of two triangles, and its foot 0.3 m: the way out is that of the foot.
+  World<RigidBodies> world{RigidBodies{}};
+  WithMeshes<NativeCollision> meshes;
+  const TriangleMesh floor(std::vector<Vec3>{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
+                           std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}});
+  bodies<RigidBodies>(world).add_fixed(meshes.add(floor), {0, 0, 0});
+  std::vector<SurfacePoint> found;
+  for (const Shape& shape : {Shape(Sphere{0.2}), Shape(Box{0.3, 0.2, 0.4}), Shape(Capsule{0.1, 0.2}), Shape(Cylinder{0.1, 0.4})}) {
+    overlaps(world, meshes, shape, {.position = {0.3, 0.2, -0.1}}, found);
+    REQUIRE(found.size() == 1);
+    CHECK(std::abs(found[0].distance + 0.3) < 1e-9);
+    CHECK((found[0].normal - Vec3(0, 0, 1)).norm() < 1e-9);
+    overlaps(world, meshes, shape, {.position = {0.3, 0.2, -0.3}}, found);
+    CHECK(found.empty());
+  }
 }
 
 TEST_CASE("who asks without the backend is told so; groups leave meshes out") {

@@ -25,6 +25,11 @@ void each_surface(const World& world, const WithMeshes<Backend>& meshes, std::ui
   });
 }
 
+/// Its other side, alone: of its neighbours nothing is known there.
+inline Triangle turned_over(const Triangle& t) {
+  return {.point = {t.point[0], t.point[2], t.point[1]}, .normal = -t.normal};
+}
+
 /// The way along the unit direction d to where the ray enters a triangle from outside, m; infinite when it
 /// does not. Source: [MollerTrumbore1997].
 inline double way_to(const Triangle& t, const Vec3& origin, const Vec3& d) {
@@ -87,8 +92,8 @@ SurfacePoint closest_point(const World& world, const WithMeshes<Backend>& meshes
   return best;
 }
 
-/// As `overlaps(world, …)`; a mesh is one that has contacts with the shape, which see the solid behind its
-/// triangles.
+/// As `overlaps(world, …)`; of a mesh that the shape cuts with its middle behind the triangles, the distance is the way out
+/// across the nearest. A shape wholly behind them is not found.
 template <class World, class Backend>
 void overlaps(const World& world, const WithMeshes<Backend>& meshes, const Shape& shape, const Pose& pose,
               std::vector<SurfacePoint>& found, double margin = 0, std::uint32_t groups = ~0u) {
@@ -98,18 +103,26 @@ void overlaps(const World& world, const WithMeshes<Backend>& meshes, const Shape
       world, meshes, groups, [&](const auto& set, Index s, Index b, const auto& surface, const Pose& at) {
         const Pose relative = at.to_local(pose);
         const inner::Bounds near = inner::bounds_around(shape, relative, margin);
+        const auto is_near = [&](const inner::Bounds& box) { return box.meets(near); };
         SurfacePoint deepest;
-        surface.visit([&](const inner::Bounds& box) { return box.meets(near); },
-                      [&](Index t) {
-                        Vec3 n;
-                        const PatchTrust trust = triangle_patch(surface.triangle(t), shape, relative, margin,
-                                                                length_scale(shape), patch, n);
-                        if (trust != PatchTrust::sure) return;
-                        const PatchPoint& p = patch.point[inner::deepest(patch)];
-                        if (p.gap <= margin && (!deepest || p.gap < deepest.distance))
-                          deepest =
-                              inner::surface_point(set, s, b, at, at.to_world(p.a), at.rotation * n, p.gap);
-                      });
+        surface.visit(is_near, [&](Index t) {
+          Vec3 n;
+          const PatchTrust trust = triangle_patch(surface.triangle(t), shape, relative, margin, length_scale(shape), patch, n);
+          if (trust != PatchTrust::sure) return;
+          const PatchPoint& p = patch.point[inner::deepest(patch)];
+          if (p.gap <= margin && (!deepest || p.gap < deepest.distance))
+            deepest = inner::surface_point(set, s, b, at, at.to_world(p.a), at.rotation * n, p.gap);
+        });
+        // Who has its middle behind the triangles meets their other sides, and leaves across the nearest plane.
+        if (!deepest)
+          surface.visit(is_near, [&](Index t) {
+            Vec3 n;
+            const Triangle front = surface.triangle(t);
+            if (triangle_patch(inner::turned_over(front), shape, relative, margin, length_scale(shape), patch, n) != PatchTrust::sure) return;
+            const double gap = front.height(relative.to_world(support(shape, Vec3(-transposed_times(relative.rotation, front.normal)))));
+            const Vec3& on = patch.point[inner::deepest(patch)].a;
+            if (!deepest || gap > deepest.distance) deepest = inner::surface_point(set, s, b, at, at.to_world(on), at.rotation * front.normal, gap);
+          });
         if (deepest) found.push_back(deepest);
       });
 }
