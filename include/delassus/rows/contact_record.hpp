@@ -23,13 +23,13 @@ struct ContactRecord {
   /// From `point()` to where friction acts, across the normal, m. Zero but in patches, whose friction acts at their mean distance
   /// from the middle of the load, and their normal impulses at their corners.
   Vec3 friction_arm = zero<Vec3>();
-  /// From the point of A to the point of B that will touch within the step, m. Zero but where bodies that are apart meet elsewhere than at
-  /// their nearest points, or one of them answers to no impulse.
+  /// From the point of A to the point of B that will touch within the step, m, about `point()`: the impulse acts on each body at its own
+  /// point. Zero but where bodies that are apart meet elsewhere than at their nearest points, or one of them answers to no impulse.
   Vec3 travel = zero<Vec3>();
 
-  /// The middle of the contact. Without travel the impulse acts here on both bodies, which keeps the angular momentum exactly.
+  /// The middle of the contact. Without travel the normal impulse acts here on both bodies, which keeps the angular momentum exactly.
   Vec3 point() const { return 0.5 * (point_a + point_b); }
-  /// Where its part across the normal acts, on both.
+  /// Where the part across the normal acts, likewise.
   Vec3 friction_point() const { return point() + friction_arm; }
 };
 
