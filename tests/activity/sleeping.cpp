@@ -3,6 +3,10 @@
 #include <delassus/bodies/bounds.hpp>
 #include <delassus/io/checkpoint.hpp>
 
+#include <array>
+#include <functional>
+#include <utility>
+
 #include "catch.hpp"
 
 namespace sleeping_tests {
@@ -42,7 +46,46 @@ struct Asleep {
   }
 };
 
+/// Does `what` once, after stage S.
+template <class S>
+struct After {
+  using plays = role::Listener;
+  using listens = Listens<S>;
+  std::function<void()> what;
+  void after(S, const auto&) {
+    if (const auto once = std::exchange(what, nullptr)) once();
+  }
+};
+
+/// The speed (m/s) at which a ball falls after a step in which its joint is taken out after stage S, and after one more.
+template <class S>
+std::array<double, 2> speeds_of_let_go() {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}, Sleeping{}, After<S>{}};
+  auto& set = rigid_bodies(loop);
+  const auto ball = set.add({.mass = 1, .shape = Sphere{0.1}});
+  const auto hook = loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor(set, ball)});
+  loop.template get<After<S>>().what = [&] { loop.remove(hook); };
+  std::array<double, 2> speeds{};
+  for (double& speed : speeds) {
+    loop.step(h);
+    speed = -set.velocity(ball).z();
+  }
+  return speeds;
+}
+
 }  // namespace
+
+TEST_CASE("a joint that a listener takes out within a step lets go") {
+  // Nothing but gravity is left: g h more after each step whose impulses had not acted yet.
+  const double gh = 9.81 * h;
+  for (const auto& speeds : {speeds_of_let_go<stage::Islands>(), speeds_of_let_go<stage::Solve>()}) {
+    REQUIRE(speeds[0] == Approx(gh));
+    REQUIRE(speeds[1] == Approx(2 * gh));
+  }
+  const auto late = speeds_of_let_go<stage::Correct>();
+  REQUIRE(std::abs(late[0]) < 1e-6 * gh);
+  REQUIRE(late[1] == Approx(gh));
+}
 
 TEST_CASE("what rests for half a second sleeps: no pairs, no rows, and it stays to the bit") {
   Asleep scene;

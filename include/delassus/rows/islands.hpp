@@ -79,9 +79,10 @@ class Islands {
     each_array(*this, [count](auto& array) { array.reserve(count); });
   }
 
-  /// No islands; what they were kept in stays.
+  /// No islands, within a step too: the blocks stay, each without one.
   void clear() {
-    each_array(*this, [](auto& array) { array.clear(); });
+    for (Items& of : pools_) of.lowest.clear(), of.sorted.clear(), of.start.clear();
+    for (Index& island : island_) island = -1;
     count_ = 0;
   }
 
