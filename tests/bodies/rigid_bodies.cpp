@@ -4,6 +4,7 @@
 
 #include <numbers>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "catch.hpp"
@@ -202,6 +203,22 @@ TEST_CASE("a place used again belongs to the new body alone") {
   CHECK(set.velocity(fresh).z() == Approx(-9.81 * 0.5).epsilon(1e-15));  // no joint holds it
   CHECK_THROWS_WITH(set.apply_force(old, {1, 0, 0}),
                     "delassus: rigid body #0 was removed; its handle is stale");
+}
+
+TEST_CASE("the handle of a number is its body's, and a number that no body had is refused") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  auto& set = rigid_bodies(loop);
+  const auto old = set.add({.mass = 1.0, .shape = Sphere{1}});
+  CHECK(set.handle(0) == old);
+  for (const Index none : {-1, 1, -2000000000, 2000000000})
+    CHECK_THROWS_WITH(set.handle(none), "delassus: handle: rigid body #" + std::to_string(none) + " was never added");
+  // A free place has nobody new yet: its handle is that of the body which was there.
+  loop.remove(old);
+  CHECK(set.handle(0) == old);
+  CHECK_FALSE(set.contains(set.handle(0)));
+  const auto fresh = set.add({.mass = 5.0, .shape = Sphere{1}});
+  CHECK(set.handle(0) == fresh);
+  CHECK(fresh != old);
 }
 
 TEST_CASE("a joint taken out lets go, and its handle is refused from then on") {

@@ -22,6 +22,7 @@ class Slots {
       place = free_.back();
       free_.pop_back();
       alive_[place] = 1;
+      ++generation_[place];
     }
     list();
     return place;
@@ -30,7 +31,6 @@ class Slots {
   void release(Index place) {
     alive_[place] = 0;
     ++removals_;
-    ++generation_[place];
     free_.push_back(place);
     list();
   }
@@ -48,6 +48,7 @@ class Slots {
   }
   /// Has grown when places that were alive may not be any more, by `release` or because other slots were assigned.
   std::uint32_t removals() const { return removals_.value; }
+  /// Of a free place that of its last owner.
   std::uint32_t generation(Index place) const { return generation_[place]; }
   const Array<Index>& active() const {
     if (stale_) [[unlikely]] gather();

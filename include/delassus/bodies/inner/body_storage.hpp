@@ -33,7 +33,11 @@ class BodyStorage {
   bool contains(Handle body) const {
     return body.owner == owner_ && slots_.is_current(body.index, body.generation);
   }
-  Handle handle(Index block) const { return {block, slots_.generation(block), owner_}; }
+  /// Of the body with this number, or of the one that was there last. Throws InvalidArgument for a number that none ever had.
+  Handle handle(Index block) const {
+    DELASSUS_EXPECT(block >= 0 && block < slots_.size(), "handle: " + who(block) + " was never added");
+    return {block, slots_.generation(block), owner_};
+  }
   std::uint32_t owner() const { return owner_; }
   std::string who(Index b) const { return std::string(Set::kind) + " #" + std::to_string(b); }
 
