@@ -124,6 +124,28 @@ TEST_CASE("removed bodies leave their gaps in a checkpoint, and a new body takes
   REQUIRE(state_hash(loop) == state_hash(restored));
 }
 
+TEST_CASE("who is added after a step back has no handle that somebody had before it") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{BallJoint{}}};
+  auto& set = rigid_bodies(loop);
+  const auto kept = set.add({.mass = 1, .shape = Sphere{0.1}});
+  const auto bytes = checkpoint(loop);
+  loop.remove(kept);
+  const auto in_its_place = set.add({.mass = 2, .shape = Sphere{0.1}}), behind = set.add({.mass = 3, .shape = Sphere{0.1}});
+  const auto hook = loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor(set, behind)});
+  restore(loop, bytes);
+  // Whoever was there at the checkpoint is there again; the others are gone for good, though each place is given anew.
+  CHECK(set.mass(kept) == 1);
+  loop.remove(kept);
+  for (int k = 0; k < 2; ++k) set.add({.mass = 4, .shape = Sphere{0.1}});
+  loop.add(BallJoint::Item{world_anchor({0, 0, 0}), anchor(set, set.handle(1))});
+  for (const auto& gone : {kept, in_its_place, behind}) CHECK_FALSE(set.contains(gone));
+  CHECK_FALSE(loop.contains(hook));
+  // A second step back, to where there was nobody but the first.
+  restore(loop, bytes);
+  CHECK(set.contains(kept));
+  CHECK_FALSE(set.contains(in_its_place));
+}
+
 TEST_CASE("a checkpoint of another loop, cut short, or damaged is refused and changes nothing") {
   auto loop = stack_loop();
   add_stack(rigid_bodies(loop), 3, Box{1, 1, 1});

@@ -16,13 +16,13 @@ class Slots {
   Index take() {
     Index place = size();
     if (free_.empty()) {
-      generation_.push_back(0);
+      generation_.push_back(first_);
       alive_.push_back(1);
     } else {
       place = free_.back();
       free_.pop_back();
       alive_[place] = 1;
-      ++generation_[place];
+      generation_[place] = std::max(generation_[place] + 1, first_);
     }
     list();
     return place;
@@ -59,8 +59,10 @@ class Slots {
     f(self.generation_), f(self.alive_), f(self.free_), f(self.active_);
   }
 
-  /// What outlives a step.
+  /// What outlives a step. Whoever is given a place after it was read has a generation that nobody had before.
   void memory(auto& archive) {
+    if (archive.reads)
+      for (const std::uint32_t generation : generation_) first_ = std::max(first_, generation + 1);
     archive(generation_, alive_, free_);
     ++removals_;
     list();
@@ -90,6 +92,7 @@ class Slots {
   };
 
   Growing removals_;
+  std::uint32_t first_ = 0;  ///< the least generation that is given
   Array<std::uint32_t> generation_;
   Array<char> alive_;  ///< 0 free, 1 awake, 2 asleep
   Array<Index> free_;

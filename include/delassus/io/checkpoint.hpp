@@ -54,7 +54,8 @@ std::vector<char> checkpoint(Loop& loop) {
 /// Gives a loop of the same type the state that `checkpoint` took, whatever it holds now. Throws InvalidArgument when the bytes
 /// are of another loop or damaged; the loop is then as it was.
 ///
-/// Handles belong to who gave them out: in the restored loop `set.handle(block)` and `loop.constraint<Law>(place)` give its own.
+/// Handles belong to the loop that gave them out: there they name what has their place now. `set.handle(block)` and
+/// `loop.constraint<Law>(place)` give this loop's own.
 template <class Loop>
 void restore(Loop& loop, std::span<const char> bytes) {
   const std::string header = "delassus checkpoint 1, " + inner::shape_of(loop) + '\n';

@@ -45,7 +45,8 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
                   "delassus: an AnimationLoop is not copied silently; write `auto& loop` for the one that is there, std::move(loop) "
                   "to hand it over, or loop.clone() for a copy that is meant");
   }
-  /// A copy with its world, its policies and what they remember. Handles are good for both. Refused while a step runs.
+  /// A copy with its world, its policies and what they remember. Handles are good for both, later ones for the loop that gives them.
+  /// Refused while a step runs.
   AnimationLoop clone() const {
     DELASSUS_EXPECT(!this->is_under_way, "clone: a step runs and its state is half made; clone the loop after the step");
     return AnimationLoop(*this);
