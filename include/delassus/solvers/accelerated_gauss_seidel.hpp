@@ -118,7 +118,7 @@ struct BasicAcceleratedGaussSeidel {
       report.are_loads_decided = false;
       report.sweeps = sweeps;
     } else if (report.sweeps < max_iterations &&
-               inner::settle_loads(problem, loads, share_loads_up_to, criterion == Criterion::residual && !all_verified ? tolerance : 0, report)) {
+               inner::settle_loads(problem, loads, share_loads_up_to, options(), report)) {
       report = solve(problem, work);
       return;
     }

@@ -10,8 +10,6 @@
 #include <delassus/solvers/island.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
-#include <algorithm>
-
 namespace delassus {
 namespace inner {
 
@@ -26,16 +24,11 @@ struct NormSpace {
   }
 };
 
-/// The residual that a solver, or the one it goes around, was asked for; 0 where it stops by another measure.
-double wanted_residual(const auto& solver) {
-  if constexpr (requires { solver.solver; }) {
-    return wanted_residual(solver.solver);
-  } else if constexpr (requires { solver.options(); }) {
-    const SolveOptions options = solver.options();
-    return options.criterion == Criterion::residual && !options.all_verified ? options.tolerance : 0;
-  } else {
-    return 0;
-  }
+/// When a solver, or the one it goes around, may stop; of one that does not say so, near the residual where it did.
+SolveOptions limits_of(const auto& solver, const Measure& measure) {
+  if constexpr (requires { solver.solver; }) return limits_of(solver.solver, measure);
+  else if constexpr (requires { solver.options(); }) return solver.options();
+  else return {.tolerance = 2 * measure.residual};
 }
 
 }  // namespace inner
@@ -77,13 +70,7 @@ struct MinimumNorm {
     least.sort(report.measure);
     for (int round = 0; round < 4; ++round)
       if (!least.shrink(max_products)) break;
-    const Measure after = problem.measure();
-    // Conjugate gradients end at 1e-13, a solve may by chance have come closer.
-    if (after.residual <=
-        std::max({2 * report.measure.residual, after.floor, inner::wanted_residual(solver)}))
-      report.measure = after, report.are_loads_decided = true;
-    else
-      problem.load(work.least.solved);
+    if (least.keep(inner::limits_of(solver, report.measure), report)) report.are_loads_decided = true;
     return report;
   }
 };

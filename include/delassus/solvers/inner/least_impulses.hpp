@@ -5,6 +5,8 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/solvers/inner/anderson.hpp>
 #include <delassus/solvers/island.hpp>
+#include <delassus/solvers/solve_options.hpp>
+#include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -102,6 +104,22 @@ class LeastImpulses {
         add_if_free(span, i, row, u, small);
         row += span.pool->rows;
       }
+  }
+
+  /// Of a solve that ended with `report`: impulses that meet the tolerance, or are hidden by rounding, stay and are what it reports;
+  /// so do those of a solve that stalled which are nearly as good. Else λ* is put back: false.
+  bool keep(const SolveOptions& limits, SolveReport& report) {
+    Measure after = problem_.measure();
+    after.last_change = report.measure.last_change, after.worst_change = report.measure.worst_change;  // there was no sweep since
+    const int rows = problem_.row_count();
+    const bool stays = limits.is_done(after, rows) || (report.status == Status::stalled && after.residual <= 2 * report.measure.residual);
+    if (!stays) {
+      problem_.load(work_.solved);
+      return false;
+    }
+    report.measure = after;
+    if (report.status == Status::converged) report.status = limits.verdict(after, rows);
+    return true;
   }
 
   /// λ = argmin Σ w_i |λ_i|² with W λ unchanged, by conjugate gradients from zero on Bᵀ W B x = Bᵀ W λ*. Where a cone is in

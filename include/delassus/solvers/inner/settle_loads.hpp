@@ -3,6 +3,7 @@
 
 #include <delassus/solvers/inner/least_impulses.hpp>
 #include <delassus/solvers/island.hpp>
+#include <delassus/solvers/solve_options.hpp>
 #include <delassus/solvers/solve_report.hpp>
 
 #include <algorithm>
@@ -61,7 +62,7 @@ bool some_may_slip(const Island<T>& problem) {
 /// what its joints bear: the impulses are the least of all then. `most` is the largest number of contacts of an island that is
 /// asked. Returns whether to solve again from λ.
 template <class T>
-bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tolerance, SolveReport& report) {
+bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, const SolveOptions& limits, SolveReport& report) {
   constexpr int most_rounds = 3, most_products = 200;
   constexpr double least_way = 1e-4;  // of |λ|; what is nearer is not solved again
   if (problem.row_count() < fewest_rows_of_loads) return false;
@@ -87,11 +88,7 @@ bool settle_loads(Island<T>& problem, SettleSpace<T>& work, int most, double tol
   least.sort(report.measure);
   for (int round = 0; round < 4; ++round)
     if (!least.shrink(most_products)) break;
-  const Measure after = problem.measure();
-  if (after.residual <= std::max(std::max(2 * report.measure.residual, after.floor), tolerance))
-    report.measure = after;
-  else
-    problem.load(work.least.solved), report.are_loads_decided = false;
+  if (!least.keep(limits, report)) report.are_loads_decided = false;
   return false;
 }
 
