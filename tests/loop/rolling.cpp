@@ -44,12 +44,11 @@ struct Rocked {
   double all, late;  ///< the largest 2 |sin(θ/2)|, and that of the last tenth
 };
 
-/// An ellipsoid that is let go at 0.15 rad, for 15 s.
-Rocked rock(double h, auto... policies) {
+/// An ellipsoid with these half axes that is let go at 0.15 rad, for 15 s.
+Rocked rock(const Vec3& axes, double h, auto... policies) {
   auto loop = scene(2, policies...);
   auto& set = set_of(loop);
   set.add_fixed(HalfSpace{});
-  const Vec3 axes(0.3, 0.25, 0.2);
   const Quat turn = exponential<double>(Vec3(0, 0.15, 0));
   const double height = -(turn * lowest(axes.cwiseProduct(axes), turn)).z();
   const auto body = set.add({.position = {0, 0, height}, .orientation = turn, .mass = 1.0, .shape = Ellipsoid{axes.x(), axes.y(), axes.z()}});
@@ -66,7 +65,7 @@ Rocked rock(double h, auto... policies) {
 void check_rocking(auto... policies) {
   const double start = 2 * std::sin(0.075);
   for (const double h : {1.0 / 60, 1.0 / 240}) {
-    const Rocked rocked = rock(h, policies...);
+    const Rocked rocked = rock(Vec3(0.3, 0.25, 0.2), h, policies...);
     CAPTURE(h, start, rocked.all, rocked.late);
     CHECK(rocked.all <= 1.01 * start);
     CHECK(rocked.late >= 0.99 * start);
@@ -88,6 +87,19 @@ TEST_CASE("an ellipsoid that rocks keeps its amplitude to 1 % under every integr
   SECTION("PredictiveScheme") { check_rocking(PredictiveScheme{}); }
   SECTION("ImplicitMidpoint, PredictiveScheme") { check_rocking(ImplicitMidpoint{}, PredictiveScheme{}); }
   SECTION("CollisionsFirst") { check_rocking(CollisionsFirst{}); }
+}
+
+// ω² = g (R − b)/((a² + b²)/5 + b²) with the half axes a, b and R = a²/b at the lowest point: 18/s, of which the midpoint rule makes
+// (h ω)²/8 = 1.2 % of the amplitude, either way and at both ends of the measure: 3 %. The point at which it touched leaves it by much more than
+// 1e-4 of the size in a step; that is no impact.
+TEST_CASE("a small egg that rocks fast keeps its amplitude under the midpoint rule") {
+  const double start = 2 * std::sin(0.075);
+  for (const int looks : {1, 2, 3}) {
+    const Rocked rocked = rock(Vec3(0.05, 0.03, 0.03), 1 / 60.0, ImplicitMidpoint{.looks = looks}, PositionProjection{.rate = 1});
+    CAPTURE(looks, rocked.all / start, rocked.late / start);
+    CHECK(rocked.all <= 1.03 * start);
+    CHECK(rocked.late >= 0.97 * start);
+  }
 }
 
 namespace {
