@@ -146,19 +146,20 @@ class MidpointNewton {
   void iterate(World& world, const Laws& laws, Rows& rows, const I& integrator, double h, bool is_damped,
                int most, SolveReport& report) {
     double first = 0, last = std::numeric_limits<double>::infinity();
+    const double of_places = inner::rounding_of_places<T>(world, laws, rows) / (h * (speed_ > 0 ? speed_ : 1));
     int slow = 0;
     for (int k = 0;; ++k) {
       linearize_both(world, laws, rows, h);
       const double size = balance(world, rows, h);
       if (k == 0) first = size;
       report.measure.residual = size;
-      report.measure.floor = 64 * std::numeric_limits<T>::epsilon() * load_;
+      const double of_load = 64 * std::numeric_limits<T>::epsilon() * load_;
+      report.measure.floor = std::max(of_load, of_places);
       // What bodies and what rows miss may fall by turns: one slow step is a sign of rounding only near it.
-      slow = size > 0.5 * last && size <= 1e-7 ? slow + 1 : 0;
+      slow = size > 0.5 * last && size <= std::max(1e-7, of_places) ? slow + 1 : 0;
       if (size <= integrator.tolerance)
         report.status = Status::converged;
-      else if ((size <= report.measure.floor && std::isfinite(load_)) ||
-               slow >= (size <= 100 * report.measure.floor ? 1 : 2))
+      else if ((size <= of_load && std::isfinite(load_)) || slow >= (size <= 100 * of_load ? 1 : 2))
         report.status = Status::stalled;
       // The first step from a poor λ may throw light bodies far: by the ratio of the masses.
       const bool is_lost = !(size <= 1e12 * first) || k == std::min(most, integrator.max_iterations);

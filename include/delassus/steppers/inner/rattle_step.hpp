@@ -12,6 +12,7 @@
 #include <delassus/steppers/inner/leave_step.hpp>
 #include <delassus/steppers/inner/speed_of.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <tuple>
@@ -120,6 +121,7 @@ class RattleStep {
   void find_places(World& world, const Laws& laws, Rows& rows, const I& integrator, double h,
                    SolveReport& report) {
     const int most = report.factorizations - 1 + integrator.max_iterations;
+    const double near = std::max(1e-7, inner::rounding_of_places<T>(world, laws, rows) / (h * speed_));
     for (double last = std::numeric_limits<double>::infinity();;) {
       drift(world, h / integrator.drifts);
       linearize(world, laws, rows);
@@ -127,7 +129,7 @@ class RattleStep {
       report.measure.residual = size;
       if (size <= integrator.tolerance)
         report.status = Status::converged;
-      else if (size > 0.5 * last && size <= 1e-7)
+      else if (size > 0.5 * last && size <= near)
         report.status = Status::stalled;
       if (report.status != Status::max_iterations || report.factorizations == most) return;
       last = size;

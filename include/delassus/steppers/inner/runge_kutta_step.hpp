@@ -12,6 +12,7 @@
 #include <delassus/steppers/inner/leave_step.hpp>
 #include <delassus/steppers/inner/speed_of.hpp>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <tuple>
@@ -165,7 +166,7 @@ class RungeKuttaStep {
     if constexpr (Rows::pool_count == 0) {
       report.status = Status::converged;
     } else {
-      const double unit = h * (speed_ > 0 ? speed_ : 1);
+      const double unit = h * (speed_ > 0 ? speed_ : 1), near = std::max(1e-7, inner::rounding_of_places<T>(world, laws, rows) / unit);
       const int first = report.factorizations;
       for (double last = std::numeric_limits<double>::infinity();;) {
         linearize(world, laws, rows);
@@ -174,7 +175,7 @@ class RungeKuttaStep {
         report.measure.residual = size;
         if (size <= integrator.tolerance)
           report.status = Status::converged;
-        else if (size > 0.5 * last && size <= 1e-7)
+        else if (size > 0.5 * last && size <= near)
           report.status = Status::stalled;
         ++report.factorizations;
         if (!equalities_.factor(rows)) return;

@@ -4,8 +4,11 @@
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/index.hpp>
 #include <delassus/math/twist.hpp>
+#include <delassus/rows/anchor.hpp>
+#include <delassus/rows/row_system.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace delassus::inner {
 
@@ -20,6 +23,20 @@ double speed_of(const Set& set, Index b, const Velocity& v) {
     if (mass > 0) return std::max(along, 1e-3 * std::sqrt(sum / (2 * mass)) * double(norm(angular_part(v))));
   }
   return along;
+}
+
+/// What rounding may leave of φ, m: rows are differences of places and of arms, each of which is rounded.
+template <class T, class World, class Laws, class Rows>
+double rounding_of_places(World& world, const Laws& laws, const Rows& rows) {
+  double reach = 0;
+  world.each([&](auto& set, auto) {
+    for (const Index b : set.active()) reach = std::max(reach, double(norm(set.pose(b).position)));
+  });
+  each_pool(rows, [&](auto p, const auto& pool) {
+    for (Index i = 0; i < pool.items(); ++i)
+      each_end(laws.template pool<p>().item(i), [&](const Anchor& end) { reach = std::max(reach, norm(end.local)); });
+  });
+  return 64 * std::numeric_limits<T>::epsilon() * reach;
 }
 
 }  // namespace delassus::inner
