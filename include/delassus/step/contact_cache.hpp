@@ -112,6 +112,7 @@ class BasicContactCache {
     /// Whether it is to lose the contacts of an impact to come.
     bool misses(std::uint64_t pair, const Collider& a, const Collider& b, const auto& meets) const { return foreseen.misses(pair, a, b, meets); }
   };
+  bool pushed(std::uint64_t pair) const { return memory_.pushed(pair); }  ///< in the last solve
   Pushed who_pushed() { return {memory_, foreseen}; }  ///< the filter of a detection
   inner::ForeseenImpacts foreseen;                     ///< of this step
   /// Asks which of them pushed. Pre: the colliders have the velocities by which the contacts were found.

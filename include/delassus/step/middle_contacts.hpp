@@ -78,7 +78,7 @@ class MiddleContacts {
   /// Whether the pair whose first contact is the i-th is apart and closes in by more than what counts as touching, at each of its contacts.
   /// One that pushed in the last step has met: what rolls fast leaves the point at which it touched as fast.
   bool meet(const ContactCache& cache, std::size_t i, double h) const {
-    if (cache.who_pushed().pushed(cache.points[i].pair)) return false;
+    if (cache.pushed(cache.points[i].pair)) return false;
     for (std::size_t k = i; k < cache.points.size() && cache.points[k].pair == cache.points[i].pair; ++k) {
       const ContactPoint& p = cache.points[k];
       const Collider &a = cache.colliders[p.a], &b = cache.colliders[p.b];
