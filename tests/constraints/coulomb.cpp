@@ -159,6 +159,19 @@ TEST_CASE("a block of condition 1e8 still meets the law to 1e-6") {
   }
 }
 
+// n stands alone, so that λ_n = −b_n/W_nn = 1. It slips: λ_t lies on the cone, against u_t.
+TEST_CASE("a block that is stiff in one direction keeps the law in the others") {
+  for (const double stiff : {1e4, 1e8, 1e9, 1e12}) {
+    const Mat3 W = Vec3(1, 1, stiff).asDiagonal();
+    const Vec3 b(-1, 1, 0.3), lambda = solve_contact(W, b, 0.5), u = W * lambda + b;
+    CAPTURE(stiff);
+    CHECK(std::abs(lambda[0] - 1) < 1e-14);
+    CHECK(lambda.tail<2>().norm() == Approx(0.5).epsilon(1e-14));
+    CHECK(std::abs(u[1] * lambda[2] - u[2] * lambda[1]) < 1e-12);
+    CHECK(u.tail<2>().dot(lambda.tail<2>()) < 0);
+  }
+}
+
 TEST_CASE("a singular block gives a finite impulse inside the cone") {
   Draw draw;
   for (int n = 0; n < 5000; ++n) {

@@ -4,6 +4,7 @@
 
 #include "catch.hpp"
 
+#include <limits>
 #include <random>
 #include <set>
 #include <string>
@@ -186,6 +187,12 @@ TEST_CASE("parts that do not fit together are refused") {
   REQUIRE_THROWS_WITH(make_friction_problem({0.5}, {Vec3::Zero()}, {{0, 1, one}}),
                       Catch::Contains("block (0, 1) lies outside of 1 contacts"));
   REQUIRE_THROWS_WITH(make_friction_problem({0.5}, {Vec3::Zero()}, {}), Catch::Contains("contact 0 is missing"));
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double wrong : {-1.0, infinity, std::numeric_limits<double>::quiet_NaN()})
+    REQUIRE_THROWS_WITH(make_friction_problem({wrong}, {Vec3::Zero()}, {{0, 0, one}}),
+                        Catch::Contains("friction of contact 0") && Catch::Contains("must be finite and >= 0"));
+  REQUIRE_THROWS_WITH(make_friction_problem({0.5}, {Vec3(infinity, 0, 0)}, {{0, 0, one}}), Catch::Contains("velocity of contact 0 is not finite"));
+  REQUIRE_THROWS_WITH(make_friction_problem({0.5}, {Vec3::Zero()}, {{0, 0, infinity * one}}), Catch::Contains("block (0, 0) is not finite"));
 }
 
 // Two contacts on a W that no bodies have: each pulls on the other harder than on itself, and every sweep multiplies λ by 10⁸.

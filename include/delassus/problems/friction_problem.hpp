@@ -42,7 +42,7 @@ struct GivenBlock {
 };
 
 /// A friction problem from its parts. `blocks` in any order, one on every diagonal place and none twice; λ
-/// begins at zero.
+/// begins at zero. `first_indefinite_contact` (`definiteness.hpp`) tells a W that no bodies have.
 inline FrictionProblem make_friction_problem(const std::vector<double>& friction, const std::vector<Vec3>& q,
                                              const std::vector<GivenBlock>& blocks) {
   const Index n = Index(friction.size());
@@ -53,6 +53,8 @@ inline FrictionProblem make_friction_problem(const std::vector<double>& friction
   auto& pool = p.rows.pool<0>();
   pool.reset(n);
   for (Index i = 0; i < n; ++i) {
+    inner::expect_not_negative("friction problem: friction of contact " + std::to_string(i), friction[i]);
+    DELASSUS_EXPECT(is_finite(q[i]), "friction problem: the velocity of contact " + std::to_string(i) + " is not finite");
     pool.d[i] = q[i];
     p.laws.pool<0>().items.push_back({{friction[i]}});
   }
@@ -63,6 +65,8 @@ inline FrictionProblem make_friction_problem(const std::vector<double>& friction
     DELASSUS_EXPECT(b.row >= 0 && b.row < n && b.column >= 0 && b.column < n,
                     "friction problem: block (" + std::to_string(b.row) + ", " + std::to_string(b.column) +
                         ") lies outside of " + std::to_string(n) + " contacts");
+    DELASSUS_EXPECT(is_finite(b.block), "friction problem: block (" + std::to_string(b.row) + ", " + std::to_string(b.column) +
+                                            ") is not finite");
     if (b.row != b.column) ++W.start[b.row + 1];
   }
   for (Index i = 0; i < n; ++i) W.start[i + 1] += W.start[i];

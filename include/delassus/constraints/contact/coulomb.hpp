@@ -10,8 +10,31 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 namespace delassus {
+namespace inner {
+
+/// The least pivot of elimination that takes the largest diagonal entry first: rounding of A, or less, where A is singular, however
+/// far apart its regular directions are.
+template <class T>
+T least_pivot(Mat<3, 3, T> A) {
+  T least = std::numeric_limits<T>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    int largest = k;
+    for (int i = k + 1; i < 3; ++i)
+      if (A(i, i) > A(largest, largest)) largest = i;
+    for (int i = 0; i < 3; ++i) std::swap(A(k, i), A(largest, i));
+    for (int i = 0; i < 3; ++i) std::swap(A(i, k), A(i, largest));
+    if (!(A(k, k) > T(0))) return T(0);
+    least = std::min(least, A(k, k));
+    for (int i = k + 1; i < 3; ++i)
+      for (int j = k + 1; j < 3; ++j) A(i, j) -= A(i, k) * A(k, j) / A(k, k);
+  }
+  return least;
+}
+
+}  // namespace inner
 
 /// u = W λ + b:  0 ≤ u_n ⟂ λ_n ≥ 0,  |λ_t| ≤ μ λ_n,  and λ_t = −μ λ_n u_t/|u_t| where the contact slips.
 ///
@@ -57,7 +80,8 @@ struct Coulomb {
     // Only a block that is singular to rounding (an end that cannot turn, on a line) is lifted by rounding's share, so that
     // its inverse exists: any lift shifts the solution by as much.
     const T mean = trace(W) / T(3), rounding = T(64) * std::numeric_limits<T>::epsilon();
-    const T lift = W.determinant() > rounding * mean * mean * mean ? T(0) : rounding * mean;
+    const bool is_regular = W.determinant() > rounding * mean * mean * mean || inner::least_pivot(W) > rounding * mean;
+    const T lift = is_regular ? T(0) : rounding * mean;
     Mat<3, 3, T> lifted = W;
     for (int k = 0; k < 3; ++k) lifted(k, k) += lift;
     memory.inverse = inverse(lifted);
