@@ -106,7 +106,7 @@ class BasicContactCache {
   /// What detection asks: whether a pair pushed when it was last solved.
   struct Pushed {
     const BasicContactMemory<Scalar>& memory;
-    inner::ForeseenImpacts& foreseen;
+    inner::ForeseenImpacts& foreseen;  ///< of this step
     bool lets(std::uint64_t) const { return true; }  ///< all pairs are asked for
     bool pushed(std::uint64_t pair) const { return memory.pushed(pair); }  ///< in the last solve
     /// Whether it is to lose the contacts of an impact to come.
