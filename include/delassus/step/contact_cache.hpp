@@ -116,8 +116,8 @@ class BasicContactCache {
   Pushed who_pushed() { return {memory_, foreseen}; }  ///< the filter of a detection
   inner::ForeseenImpacts foreseen;                     ///< of this step
   /// Asks which of them pushed. Pre: the colliders have the velocities by which the contacts were found.
-  void weigh_foreseen(const auto& world, double h, double share, const auto& each_joint) {
-    foreseen.weigh(world, colliders, points, results, h, share, each_joint);
+  void weigh_foreseen(const auto& world, double h, double share, const auto& is_asked, const auto& each_joint) {
+    foreseen.weigh(world, colliders, points, results, h, share, is_asked, each_joint);
   }
 
   int solves = 0;                    ///< of the step, but the first

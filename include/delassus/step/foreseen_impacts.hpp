@@ -29,10 +29,11 @@ class ForeseenImpacts {
  public:
   void clear() { pairs_.clear(); }
 
-  /// Takes down who pushed, and who of the same bodies was to meet when. `share`: of v_next in the mean that moves the bodies.
+  /// Takes down who pushed, of those that is_asked(a, b) lets, and who of the same bodies was to meet when. `share`: of v_next in the mean
+  /// that moves the bodies.
   template <class World>
   void weigh(const World& world, Slice<const Collider> colliders, Slice<const ContactPoint> points, Slice<const ContactResult> results, double h,
-             double share, const auto& each_joint) {
+             double share, const auto& is_asked, const auto& each_joint) {
     for (Pair& p : pairs_) p.has_pushed = false;
     bool is_any = false;
     for (const ContactPoint& p : points) is_any = is_any || !is_zero(p.travel);
@@ -44,7 +45,7 @@ class ForeseenImpacts {
         is_ahead = is_ahead || !is_zero(points[i].travel);
         pushes = pushes || !is_zero(results[i].impulse);
       }
-      if (!is_ahead || !pushes) return;
+      if (!is_ahead || !pushes || !is_asked(results[first].record.a, results[first].record.b)) return;
       is_any = true;
       Pair& p = pair_of(points[first].pair);
       p.has_pushed = true;

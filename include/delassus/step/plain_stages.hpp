@@ -101,7 +101,7 @@ struct PlainStages : StagesWithoutConstraints {
     if constexpr (inner::asks_who_meets<decltype(step)>) {
       auto& book = step.contact_cache;
       constexpr double share = theta<std::remove_cvref_t<decltype(step.integrator())>>();
-      book.weigh_foreseen(std::as_const(step).world(), step.h, share, [&](const auto& f) { step.each_joint(f); });
+      inner::weigh_foreseen(step, share);
       book.take_solved_motion(std::as_const(step).world(), share);
       std::remove_reference_t<decltype(step)>::Stages::detect_missed(step);
       inner::leave_what_bounces(step);

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace delassus::inner {
@@ -33,6 +34,25 @@ Index rows_about(const Islands<T>& islands, AllRows<T> rows, const Index* first_
     if (of_b >= 0 && of_b != of_a) count += Index(islands.items(p, of_b).size()) * rows[std::size_t(p)].rows;
   }
   return count;
+}
+
+/// The number of the first block of each set, as `rows_about` wants it.
+template <class World>
+void find_first_blocks(const World& world, Index (&first)[World::set_count + 1]) {
+  first[0] = 0;
+  world.each([&](const auto& set, auto s) { first[s + 1] = first[s] + set.blocks(); });
+}
+
+/// Asks which impacts that were foreseen pushed, see `ForeseenImpacts`; none of a large island, in which a second solve for each grain that
+/// falls on others would cost as much as the first.
+void weigh_foreseen(auto& step, double share) {
+  using World = std::remove_cvref_t<decltype(step.world())>;
+  Index first[World::set_count + 1];
+  find_first_blocks(step.world(), first);
+  const auto is_asked = [&](const Anchor& a, const Anchor& b) {
+    return rows_about(step.islands, step.arrays.all(), first, a, b) <= small_island;
+  };
+  step.contact_cache.weigh_foreseen(std::as_const(step).world(), step.h, share, is_asked, [&](const auto& f) { step.each_joint(f); });
 }
 
 /// Whether some contact law has an e.
@@ -73,8 +93,8 @@ bool is_worth_solving_again(auto& step) {
   using World = std::remove_cvref_t<decltype(step.world())>;
   const bool is_found = step.summary.status < Status::max_iterations;
   const auto& book = step.contact_cache;
-  Index first[World::set_count + 1] = {};
-  step.world().each([&](const auto& set, auto s) { first[s + 1] = first[s] + set.blocks(); });
+  Index first[World::set_count + 1];
+  find_first_blocks(step.world(), first);
   for (const ContactPoint& p : Slice<const ContactPoint>(book.missed)) {
     const bool is_large = rows_about(step.islands, step.arrays.all(), first, book.anchor_of(p.a), book.anchor_of(p.b)) > small_island;
     if (is_found && !is_large) return true;
