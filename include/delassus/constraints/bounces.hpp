@@ -81,8 +81,8 @@ struct BouncingRow {
   const RowPast* past;  ///< null: it was not there
 
   /// Of joints and neighbours the free motion knows nothing, the last velocities of the bodies do. Of two accelerations the smaller
-  /// one holds: an impact elsewhere, or a host who sets a velocity, is in one of them alone. Where they differ, both may have one, and
-  /// the free motion holds if it is smaller still. Where the row pushed, this is what it
+  /// one holds: an impact elsewhere, or a host who sets a velocity, is in one of them alone. Where they differ, or one is not known,
+  /// both may have one, and the free motion holds if it is smaller still. Where the row pushed, this is what it
   /// was before.
   double acceleration() const {
     if (was_held()) return past->acceleration;
@@ -90,7 +90,7 @@ struct BouncingRow {
     const double falling = (free - velocity) / h;
     if (!std::isfinite(last)) return falling;
     const double smaller = std::abs(before) < std::abs(last) ? before : last;
-    const bool was_hit = std::abs(last - before) > 0.5 * std::max(std::abs(last), std::abs(before));
+    const bool was_hit = !std::isfinite(before) || std::abs(last - before) > 0.5 * std::max(std::abs(last), std::abs(before));
     if (was_hit && std::abs(last - falling) <= 1e-3 * std::abs(falling)) return falling;  // it falls, and was hit before
     return was_hit && std::abs(falling) < std::abs(smaller) ? falling : smaller;
   }
