@@ -537,6 +537,26 @@ TEST_CASE("who takes the place of a ball that has landed does not bounce for it"
   CHECK(landed.speed() <= 1e-9);
 }
 
+// The ball was at rest, and had no acceleration. Who comes after it falls with g: v is that of the middle of the step before, so that
+// E = ½ (v − g h/2)² + g z, and e² E is left. Rounding enters by 1e-13/h.
+TEST_CASE("who takes the place of a ball that was at rest bounces by its own fall") {
+  const double h = 1.0 / 60, e = 0.5;
+  for (const double speed : {0.5, 1.0, 3.0})
+    for (const double gap : {0.002, 0.01, 0.018}) {
+      auto loop = over_plane(e);
+      auto& set = rigid_bodies(loop);
+      auto ball = set.add({.position = {0, 0, radius}, .mass = 1.0, .shape = Sphere{radius}});
+      for (int n = 0; n < 5; ++n) loop.step(h);
+      loop.remove(ball);
+      ball = set.add({.position = {0, 0, radius + gap}, .velocity = {0, 0, -speed}, .mass = 1.0, .shape = Sphere{radius}});
+      const auto energy = [&] { return 0.5 * std::pow(set.velocity(ball).z() - g * h / 2, 2) + g * (set.position(ball).z() - radius); };
+      const double expected = e * e * energy();
+      for (int n = 0; n < 3 && !(set.velocity(ball).z() > 0); ++n) loop.step(h);
+      CAPTURE(speed, gap);
+      CHECK(energy() == Approx(expected).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("a landing is in clones and checkpoints") {
   Landed landed;
   auto clone = landed.loop.clone();

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace delassus {
 
@@ -24,6 +25,7 @@ struct Bounces {
   OwningArray<Array<T>> added;     ///< to the bias, m/s
   OwningArray<Array<T>> returned;  ///< to the bodies, of what they lost as they landed, J; empty: nothing in this pool
   RowPasts pasts;                  ///< rows of the last step
+  OwningArray<Array<std::uint32_t>> generations;  ///< of the bodies whose velocities these are, by set
   OwningArray<Array<T>> velocities[2];  ///< of the bodies by set, at the start of the last step and of the one before; NaN: not there
   Array<std::size_t> rows;  ///< of `pasts.now()`, in their pools
   Array<Index> blocks;      ///< of each island; empty: nobody asked
@@ -52,7 +54,21 @@ struct Bounces {
     for (std::size_t s = 0; s < velocities[0].size(); ++s)
       for (std::size_t k = 0; k < velocities[0][s].size(); ++k) velocities[0][s][k] = v[s][k];
   }
-  void memory(auto& archive) { archive(pasts, velocities[0], velocities[1]); }
+  /// Who took the place of a removed body was not there before. Sets come in their order.
+  void look_at(const auto& set, std::size_t s) {
+    if (s >= generations.size()) generations.resize(s + 1);
+    constexpr std::size_t width = std::remove_cvref_t<decltype(set)>::width;
+    auto& known = generations[s];
+    const std::size_t before = known.size();
+    known.resize(std::size_t(set.blocks()));
+    for (std::size_t b = 0; b < known.size(); ++b) {
+      const std::uint32_t now = set.handle(Index(b)).generation;
+      if (b < before && now != known[b])
+        for (auto& list : velocities) std::fill_n(list[s].data() + width * b, width, std::numeric_limits<T>::quiet_NaN());
+      known[b] = now;
+    }
+  }
+  void memory(auto& archive) { archive(pasts, generations, velocities[0], velocities[1]); }
   /// What the rows of the item's island do, where nothing else that moves is in it; else null.
   Together* choice_of(const Islands<T>& islands, int p, Index i) {
     if (blocks.empty()) islands.count_blocks(blocks), choices.assign(blocks.size(), Together::undecided);

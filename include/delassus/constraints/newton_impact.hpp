@@ -187,7 +187,10 @@ struct NewtonImpact {
       const inner::BodyVelocities v(std::as_const(step).world());
       using World = std::remove_cvref_t<decltype(step.world())>;
       std::size_t counts[World::set_count + 1];
-      step.world().each([&](const auto& set, auto s) { counts[s] = set.velocity().size() * (sizeof(set.velocity()[0]) / sizeof(T)); });
+      step.world().each([&](const auto& set, auto s) {
+        counts[s] = set.velocity().size() * (sizeof(set.velocity()[0]) / sizeof(T));
+        own.bounces.look_at(set, s);
+      });
       add_restitution(step.view, step.pools.all(), step.arrays.all(), step.islands, v.free, v.start, counts, World::set_count, step.h,
                       theta<std::remove_cvref_t<decltype(step.integrator())>>(), own.bounces);
     }
