@@ -195,11 +195,11 @@ class Memory {
   void part(Bounces<T>& bounces) {
     if (text_.reads() && !text_.is_next("bounces")) return;
     text_.line("bounces");
-    bounces.memory(*this);
+    (*this)(bounces.pasts, bounces.velocities[0], bounces.velocities[1]);  // of bodies that were never removed
   }
   void part(RowPast& r) {
-    text_.line("bounce"), text_(r.item), text_(r.generations), text_(r.feature), text_(r.row), text_(r.free), text_(r.acceleration),
-        text_(r.parts), text_(r.impulse);
+    text_.line("bounce"), text_(r.item), text_(r.generations), text_(r.feature), text_(r.row), text_(r.acceleration), text_(r.parts),
+        text_(r.impulse);
   }
 
   // --- what sleeps

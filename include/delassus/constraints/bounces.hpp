@@ -128,7 +128,7 @@ struct BouncingRow {
     return {.gap = gap, .velocity = now(a), .acceleration = a, .height = height(a), .least = 0.5 * fall, .h = h, .may_land = may_land};
   }
   /// The energy that its impulse took from the bodies as it landed, J.
-  double taken() const { return std::max(0.0, -0.5 * past->impulse * (past->free + velocity)); }
+  double taken() const { return std::max(0.0, -0.5 * past->impulse * (last_velocity + velocity)); }
   /// It fell into an overlap and does not bounce: it comes back to the surface, with no more than falling for a step gives.
   double comes_back(double acceleration) const {
     return !was_held() && gap < 0 ? std::min(-gap / h, -h * std::min(0.0, acceleration)) : 0;
@@ -175,7 +175,7 @@ void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Isla
                                      h,    bounces.pasts.last_h(),  bounces.pasts.earlier_h(), theta,  past};
         RowPast& now = bounces.pasts.add(name, place);
         bounces.rows.push_back(row);
-        now.free = is.free, now.acceleration = is.acceleration();
+        now.acceleration = is.acceleration();
         double leaves = 0;
         if (past && past->parts > 0) {
           leaves = past->parts + 0.5 * h * std::min(0.0, past->acceleration);

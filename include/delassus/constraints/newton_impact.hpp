@@ -6,6 +6,7 @@
 #include <delassus/core/array.hpp>
 #include <delassus/core/cmath.hpp>
 #include <delassus/core/owning_array.hpp>
+#include <delassus/rows/row_arrays.hpp>
 #include <delassus/rows/row_kind.hpp>
 #include <delassus/rows/theta.hpp>
 #include <delassus/rows/world_view.hpp>
@@ -27,12 +28,14 @@ class Island;
 template <class T>
 class EnergyGuard {
  public:
-  EnergyGuard(Island<T>& island, const Bounces<T>& bounces, Array<T>& newton, Array<T>& newton_velocity)
-      : island_(island), bounces_(bounces), newton_(newton), velocity_(newton_velocity) {}
+  EnergyGuard(Island<T>& island, const Bounces<T>& bounces, Array<T>& newton, Array<T>& newton_velocity, Array<T>& start)
+      : island_(island), bounces_(bounces), newton_(newton), velocity_(newton_velocity), start_(start) {}
 
-  /// After a solve that converged: whether to solve anew, from the λ there is, and then to `finish`.
-  bool asks_again() {
-    if (!has_bounced() || !(energy() > returned())) return false;
+  /// After a solve that converged: whether to solve anew, from the λ there is, and then to `finish`. v is that of the start of the step.
+  bool asks_again(AllRows<T> rows, const T* const* v) {
+    if (!has_bounced()) return false;
+    note_start(rows, v);
+    if (!(energy() > returned())) return false;
     take_bounce_away();
     return true;
   }
@@ -75,15 +78,28 @@ class EnergyGuard {
     return sum;
   }
 
-  /// The energy that the impulses give the bodies, J: Σ ½ λ·(u_free + u⁺), u without bias.
+  /// u⁻ = H v of all rows.
+  void note_start(AllRows<T> rows, const T* const* v) {
+    start_.resize(std::size_t(island_.row_count()));
+    T* u = start_.data();
+    for (const auto& span : island_)
+      for (const Index i : span) {
+        inner::rate(rows[std::size_t(span.pool->pool)], i, v, u);
+        u += span.pool->rows;
+      }
+  }
+
+  /// The energy that the impulses give the bodies, J: Σ ½ λ·(u⁻ + u⁺), u without bias. With u_free for u⁻ it would lack what the
+  /// bodies gain or lose in height as they move by u⁺, or by the mean, and not freely.
   double energy() const {
     double sum = 0;
     T u[most_rows];
+    const T* start = start_.data();
     for (const auto& span : island_)
       for (const Index i : span) {
         island_.velocity(span, i, u);
-        const T *lambda = island_.impulse(span, i), *d = island_.free_of_impulses(span, i), *b = bias(span, i);
-        for (int k = 0; k < span.pool->rows; ++k) sum += 0.5 * double(lambda[k]) * double(d[k] + u[k] - b[k] - b[k]);
+        const T *lambda = island_.impulse(span, i), *b = bias(span, i);
+        for (int k = 0; k < span.pool->rows; ++k) sum += 0.5 * double(lambda[k]) * double(*start++ + u[k] - b[k]);
       }
     return sum;
   }
@@ -135,7 +151,7 @@ class EnergyGuard {
       }
   }
 
-  /// s, by E(s) = E_c + b s + a s² with δ = λ_N − λ_c, a = ½ δ·Wδ, b = δ·u_c, u_c the velocity after λ_c.
+  /// s, by E(s) = E_c + b s + a s² with δ = λ_N − λ_c, a = ½ δ·Wδ, b = δ·(u_c + ½ (u⁻ − u_free)), u_c the velocity after λ_c.
   double share() const {
     double a = 0, b = 0;
     T u[most_rows];
@@ -143,11 +159,11 @@ class EnergyGuard {
     for (const auto& span : island_)
       for (const Index i : span) {
         island_.velocity(span, i, u);
-        const T* lambda = island_.impulse(span, i);
+        const T *lambda = island_.impulse(span, i), *d = island_.free_of_impulses(span, i), *bias_of = bias(span, i);
         for (int k = 0; k < span.pool->rows; ++k, ++at) {
-          const T velocity = u[k] - bias(span, i)[k], delta = newton_[at] - lambda[k];
+          const T velocity = u[k] - bias_of[k], delta = newton_[at] - lambda[k];
           a += 0.5 * double(delta * (velocity_[at] - velocity));
-          b += double(delta * velocity);
+          b += double(delta * (velocity + T(0.5) * (start_[at] - (d[k] - bias_of[k]))));
         }
       }
     const double plain = energy(), room = std::max(0.0, plain) + returned() - plain;  // a s² + b s ≤ room
@@ -159,6 +175,7 @@ class EnergyGuard {
   Island<T>& island_;
   const Bounces<T>& bounces_;
   Array<T>&newton_, &velocity_;  ///< λ_N and its velocity without bias
+  Array<T>& start_;  ///< u⁻
 };
 
 /// What laws with `restitution(item)` change: the bias, a solve that must not add energy, and what is remembered of both.
@@ -168,7 +185,7 @@ struct NewtonImpact {
     using T = typename P::Rows::Scalar;
     /// Of one island that is being solved.
     struct Solved {
-      Array<T> newton, newton_velocity;
+      Array<T> newton, newton_velocity, start;
     };
     Bounces<T> bounces;
     OwningArray<Solved> solved;  ///< by worker
@@ -183,7 +200,7 @@ struct NewtonImpact {
       auto& own = step.template state<NewtonImpact>();
       own.solved.resize(std::size_t(Base::workers(step)));
       for (auto& one : own.solved)
-        for (auto* numbers : {&one.newton, &one.newton_velocity}) numbers->reserve(std::size_t(step.rows.row_count()));
+        for (auto* numbers : {&one.newton, &one.newton_velocity, &one.start}) numbers->reserve(std::size_t(step.rows.row_count()));
       const inner::BodyVelocities v(std::as_const(step).world());
       using World = std::remove_cvref_t<decltype(step.world())>;
       std::size_t counts[World::set_count + 1];
@@ -198,9 +215,11 @@ struct NewtonImpact {
       Base::solve_island(step, island);
       auto& own = step.template state<NewtonImpact>();
       const auto report = step.reports[island.island()];
+      auto& solved = own.solved[std::size_t(island.worker)];
       EnergyGuard<typename State<typename std::remove_reference_t<decltype(step)>::Policies>::T> guard(
-          island, own.bounces, own.solved[std::size_t(island.worker)].newton, own.solved[std::size_t(island.worker)].newton_velocity);
-      if (guard.asks_again()) {
+          island, own.bounces, solved.newton, solved.newton_velocity, solved.start);
+      const inner::BodyVelocities v(std::as_const(step).world());
+      if (guard.asks_again(step.arrays.all(), v.start)) {
         Base::solve_island(step, island);
         guard.finish();
       }

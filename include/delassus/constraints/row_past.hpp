@@ -22,7 +22,6 @@ struct ItemName {
 struct RowPast {
   std::uint64_t item, generations;
   std::uint32_t feature, row;  ///< k of pool p: `most_rows` p + k
-  double free;          ///< its velocity without impulses
   double acceleration;  ///< m/s² or rad/s², without its own impulse
   double parts;           ///< > 0: it landed, and parts with this speed; see `Rebound`
   double impulse;         ///< |λ|, N·s
@@ -63,7 +62,7 @@ class RowPasts {
     return at;
   }
   RowPast& add(const ItemName& name, std::uint32_t row) {
-    now_.push_back({name.item, name.generations, name.feature, row, 0, 0, 0, 0});
+    now_.push_back({name.item, name.generations, name.feature, row, 0, 0, 0});
     return now_.back();
   }
   /// The rows of this step, in the order in which they were added.
