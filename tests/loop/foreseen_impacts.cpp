@@ -1,8 +1,10 @@
 #include "catch.hpp"
+#include "collision/mesh_scene.hpp"
 
 #include <delassus/bodies/rigid_bodies.hpp>
 #include <delassus/bodies/world.hpp>
 #include <delassus/collision/seamless.hpp>
+#include <delassus/collision/with_meshes.hpp>
 #include <delassus/constraints/contact/coulomb.hpp>
 #include <delassus/constraints/contact/restitution.hpp>
 #include <delassus/constraints/joints/planar.hpp>
@@ -141,6 +143,45 @@ TEST_CASE("a step by the midpoint rule beside a plate ends") {
       CAPTURE(i, k);
       CHECK(loop.step(h).status < Status::max_iterations);
     }
+  }
+}
+
+// |v| = 7, 7 e, 7 e²: the ball starts 1.3 steps before the right wall, meets it in the second step, and the left one in the next, way / (7 e) later.
+TEST_CASE("a ball that meets another wall right after the first is not held by the first") {
+  for (const int kind : {0, 1, 2})
+    for (const double e : {0.8, 0.9, 1.0})
+      for (const double step : {h, h / 4}) {
+        CAPTURE(kind, e, step);
+        AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0}, e}}}, WithMeshes<NativeCollision>{}};
+        auto& set = bodies<RigidBodies>(loop.world());
+        set.gravity.setZero();
+        const double way = 6 * step * e, half = 0.5 * way + 0.1;  // the wall's plane
+        for (const double side : {-1., 1.}) {
+          if (kind == 0) set.add_fixed(HalfSpace{{-side, 0, 0}, -half});
+          else if (kind == 1) set.add_fixed(Box{1, 3, 3}, {side * (half + 0.5), 0, 0});
+          else set.add_fixed(loop.get<WithMeshes<NativeCollision>>().add(scenes::fine_box(1, 3, 3, 2)), {side * (half + 0.5), 0, 0});
+        }
+        const auto ball = set.add({.position = {0.5 * way - 1.3 * 7 * step, 0.2, 0.1}, .velocity = {7, 0, 0}, .mass = 1, .shape = Sphere{0.1}});
+        for (const double expected : {7., -7 * e, 7 * e * e}) {
+          loop.step(step);
+          CHECK(std::abs(set.velocity(ball).x() - expected) < 1e-5);
+        }
+      }
+}
+
+// Four reflections at two planes with 45° between them are a turn by 180°: v becomes −v.
+TEST_CASE("a ball that is thrown into a corner of 45 degrees comes back as it came") {
+  for (int i = 0; i < 20; ++i) {
+    AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Restitution{Coulomb{.friction = 0}, 1}}}};
+    auto& set = bodies<RigidBodies>(loop.world());
+    set.gravity.setZero();
+    const double quarter = std::acos(0.0) / 4, way = 0.01 * (i - 10);
+    for (const double side : {-1., 1.}) set.add_fixed(HalfSpace{{std::sin(quarter), side * std::cos(quarter), 0}, 0});
+    const Vec3 v(-2, 0.1, 0);
+    const auto ball = set.add({.position = {0.4, 0.3 * way, 0}, .velocity = v, .mass = 1, .shape = Sphere{0.02}});
+    for (int k = 0; k < 150; ++k) loop.step(h / 4);
+    CAPTURE(i);
+    CHECK((set.velocity(ball) + v).norm() < 1e-3);
   }
 }
 

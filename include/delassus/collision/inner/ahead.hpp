@@ -94,6 +94,11 @@ inline ContactPoint impact_row(const PairJob& job, const Collider& a, const Coll
   return row_ahead(job, a, b, arm_a, arm_b, n, gap, name);
 }
 
+/// Whether the two still come nearer where they met: who has bounced has nothing left of the approach.
+inline bool goes_on(const RememberedImpact& impact, const Collider& a, const Collider& b) {
+  return dot(impact.normal, a.velocity + cross(a.angular_velocity, impact.arm_a) - b.velocity - cross(b.angular_velocity, impact.arm_b)) > 0;
+}
+
 /// Whether the contacts from `first` on are about the point of one of the bodies where they met.
 inline bool is_there(const RememberedImpact& impact, const Collider& a, const Collider& b, std::size_t first, const std::vector<ContactPoint>& out,
                      double scale) {

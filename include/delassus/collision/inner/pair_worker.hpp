@@ -209,6 +209,7 @@ class PairWorker {
   /// the approach.
   void finish_impact(const Collider& a, const Collider& b, const Job& job, const RememberedImpact& impact,
                      const RestingPair& now, std::size_t first, std::vector<ContactPoint>& out) {
+    if (!goes_on(impact, a, b)) return;
     const bool is_same = now.count > 0 && dot(now.normal, impact.normal) > same_normal;
     if (is_same &&
         is_there(impact, a, b, first, out, std::min(scene.summary[job.a].scale, scene.summary[job.b].scale)))

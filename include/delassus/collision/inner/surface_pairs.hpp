@@ -263,8 +263,9 @@ class SurfacePairs {
     for (const PairImpact* at = inner::lower_bound(impacts_.data(), impacts_.data() + impacts_.size(), pair.job.pair, less);
          at != end && at->pair == pair.job.pair; ++at) {
       const RememberedImpact& impact = at->impact;
-      const auto goes_on = [&](const ContactPoint& c) { return dot(pair.a.key < pair.b.key ? c.normal : Vec3(-c.normal), impact.normal) > same_normal; };
-      if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), goes_on) && is_there(impact, pair.a, pair.b, first, out, pair.scale)) continue;
+      if (!goes_on(impact, pair.a, pair.b)) continue;
+      const auto is_same = [&](const ContactPoint& c) { return dot(pair.a.key < pair.b.key ? c.normal : Vec3(-c.normal), impact.normal) > same_normal; };
+      if (std::any_of(out.begin() + std::ptrdiff_t(first), out.end(), is_same) && is_there(impact, pair.a, pair.b, first, out, pair.scale)) continue;
       add(pair, row_ahead(pair.job, pair.a, pair.b, impact.arm_a, impact.arm_b, impact.normal, 0, unused(impact.id, first, out)), out);
     }
   }
