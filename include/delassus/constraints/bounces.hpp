@@ -177,7 +177,7 @@ void add_restitution(const WorldView<T>& world, Laws laws, Rows rows, const Isla
         bounces.rows.push_back(row);
         now.acceleration = is.acceleration();
         double leaves = 0;
-        if (past && past->parts > 0) {
+        if (past && past->parts > 0 && is.was_held()) {
           leaves = past->parts + 0.5 * h * std::min(0.0, past->acceleration);
           if (!(leaves > 0)) continue;
           if (returned.empty()) returned.assign_zeros(pool.phi->size());

@@ -23,7 +23,7 @@ struct RowPast {
   std::uint64_t item, generations;
   std::uint32_t feature, row;  ///< k of pool p: `most_rows` p + k
   double acceleration;  ///< m/s² or rad/s², without its own impulse
-  double parts;           ///< > 0: it landed, and parts with this speed; see `Rebound`
+  double parts;           ///< > 0: it landed if it pushed, and parts with this speed; see `Rebound`
   double impulse;         ///< |λ|, N·s
 };
 
