@@ -96,4 +96,17 @@ TEST_CASE("the assembled W is symmetric and positive semidefinite") {
   }
 }
 
+// A body that does not move answers no impulse: A^-1 = 0, and its products are no blocks of W. Each sphere has its one contact.
+TEST_CASE("constraints that meet at a kinematic body alone have no block in W") {
+  AnimationLoop loop{World{RigidBodies{}}, Constraints{Contact{Coulomb{.friction = 0.4}}}};
+  auto& set = rigid_bodies(loop);
+  set.add({.shape = Box{4, 1, 1}, .motion = Motion::kinematic});
+  for (const double x : {-1., 0., 1.}) set.add({.position = {x, 0, 0.7}, .mass = 1., .shape = Sphere{0.2}});
+  loop.step(0.01);
+  const auto problem = loop.problem();
+  REQUIRE(problem.rows.template pool<0>().items() == 3);
+  CHECK(problem.W.template blocks<0, 0>().column.empty());
+  for (Index i = 0; i < 3; ++i) CHECK(problem.W.template diagonal<0>(i)(0, 0) > 0);
+}
+
 }  // namespace assembled_tests

@@ -168,4 +168,20 @@ TEST_CASE("pools are coloured one by one and a W without blocks not at all") {
   CHECK(!colours.make(both, both + 2));
 }
 
+// Who has no colour takes none: not an item outside of the span either, whatever room was there before.
+TEST_CASE("the colours of an island do not depend on what its items meet outside of it") {
+  Meetings all(60);
+  for (Index i = 0; i < 30; i += 3) all.meet(i, i + 30);
+  for (Index i = 0; i + 1 < 30; ++i) all.meet(i, i + 1);
+  all.finish();
+  const Span<double> span{&all.view, all.all.data(), 30};
+  Colouring<double> fresh, used;
+  REQUIRE(fresh.make(&span, &span + 1));
+  CHECK(fresh.spans().size() == 2);  // those of a chain
+  const Span<double> whole = all.span();
+  REQUIRE(used.make(&whole, &whole + 1));
+  REQUIRE(used.make(&span, &span + 1));
+  CHECK(list_of(used) == list_of(fresh));
+}
+
 }  // namespace colouring_tests

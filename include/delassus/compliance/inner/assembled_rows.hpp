@@ -42,8 +42,11 @@ class AssembledRows {
   /// `by`: what several workers keep of the set, and the execution.
   template <class Set, class... By>
   void prepare(const Set& set, int s, By&... by) {
-    if (coupled[std::size_t(s)] == HowCoupled::not_at_all) incidence_.find(views.data(), pools_, s, set.blocks());
-    else if constexpr (NodeCompliantSet<Set>)
+    if (coupled[std::size_t(s)] == HowCoupled::not_at_all) {
+      moves_.resize(std::size_t(set.blocks()));
+      for (Index b = 0; b < set.blocks(); ++b) moves_[std::size_t(b)] = set.moves(b);
+      incidence_.find(views.data(), pools_, s, moves_);
+    } else if constexpr (NodeCompliantSet<Set>)
       nodal_.prepare(set, views.data(), pools_, s, by...);
     else if constexpr (may_couple<Set>) columns_.prepare(set, views.data(), pools_, s);
   }
@@ -79,7 +82,7 @@ class AssembledRows {
   Array<HowCoupled> coupled;  ///< by set
 
  private:
-  /// Every entry e of item i meets all entries f on its block, and W_ij += H_e G_f.
+  /// Every entry e of item i meets all entries f on its block, if that moves, and W_ij += H_e G_f.
   template <int height>
   void add_row(BlockMatrix<T>& to, int a, int s, Index i) {
     const RowView<T>* const all = views.data();
@@ -133,6 +136,7 @@ class AssembledRows {
 
   int pools_ = 0;
   Array<SetBlocksView<T>> sets_;
+  Array<char> moves_;  ///< by block of the set that is prepared
   Incidence<T> incidence_;
   CoupledColumns<T> columns_;
   NodalRows<T> nodal_;

@@ -11,7 +11,8 @@
 
 namespace delassus::inner {
 
-/// For every set, pool and block: the entries (item, entry) that act there, in the order of insertion.
+/// For every set, pool and block that moves: the entries (item, entry) that act there, in the order of insertion. Through one that does
+/// not, constraints of several islands would meet.
 template <class T>
 class Incidence {
  public:
@@ -24,8 +25,9 @@ class Incidence {
     const Entry* end() const { return last; }
   };
 
-  /// Lists set s of all pools, which has so many blocks.
-  void find(const RowView<T>* pools, int count, int s, Index blocks) {
+  /// Lists set s of all pools; whether each of its blocks moves.
+  void find(const RowView<T>* pools, int count, int s, const Array<char>& moves) {
+    const Index blocks = Index(moves.size());
     pools_ = count;
     if (const std::size_t room = std::size_t((s + 1) * count); lists_.size() < room) lists_.resize(room);
     for (int p = 0; p < count; ++p) {
@@ -34,13 +36,13 @@ class Incidence {
       if (entries == 0) continue;  // nobody asks `at`
       List& list = lists_[std::size_t(s * count + p)];
       list.start.assign_zeros(std::size_t(blocks) + 1);
-      for (Index e = 0; e < entries; ++e) ++list.start[std::size_t(set.block[e])];
+      for (Index e = 0; e < entries; ++e) list.start[std::size_t(set.block[e])] += moves[std::size_t(set.block[e])];
       for (Index b = 0; b < blocks; ++b) list.start[std::size_t(b) + 1] += list.start[std::size_t(b)];
-      list.entries.resize(std::size_t(entries));
+      list.entries.resize(std::size_t(list.start[std::size_t(blocks)]));
       // From the ends of the blocks, and the last first: so they stand in order.
       for (Index i = pools[p].items; i-- > 0;)
         for (Index e = set.offset[i + 1]; e-- > set.offset[i];)
-          list.entries[std::size_t(--list.start[std::size_t(set.block[e])])] = {i, e};
+          if (moves[std::size_t(set.block[e])]) list.entries[std::size_t(--list.start[std::size_t(set.block[e])])] = {i, e};
     }
   }
 

@@ -72,6 +72,7 @@ class RotatedOperator<S, RowSystem<T, Widths<w...>, R...>, Origin>
     int guess;
 
     Index blocks() const { return set.blocks(); }
+    bool moves(Index b) const { return set.moves(b); }
     bool is_coupled() const { return set.is_coupled(); }
     Index body_of(Index b) const { return set.body_of(b); }
     void factor(SystemScale scale) { own.template factor<s>(set, scale); }

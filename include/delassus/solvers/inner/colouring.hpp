@@ -50,8 +50,7 @@ class Colouring {
 
   void add(const Span<T>& span) {
     const BlockRowsView<T>* const own = own_blocks(*span.pool);
-    colour_.resize(std::size_t(span.pool->items));
-    for (const Index i : span) colour_[std::size_t(i)] = none;
+    colour_.resize(std::size_t(span.pool->items), none);
     std::size_t counts[most + 1] = {};
     for (const Index i : span) {
       std::uint64_t taken = 0;
@@ -112,7 +111,7 @@ class Colouring {
   static constexpr std::uint8_t none = 255;
   Array<Span<T>> spans_;
   Array<Index> items_;
-  Array<std::uint8_t> colour_;  ///< by item of the pool
+  Array<std::uint8_t> colour_;  ///< by item of the pool; `none` between spans
 };
 
 }  // namespace delassus::inner
