@@ -20,6 +20,9 @@ auto stack_loop() {
                        AcceleratedGaussSeidel{.tolerance = 1e-6}};
 }
 
+/// A law by another name.
+struct Hinge2 : Hinge {};
+
 }  // namespace
 
 TEST_CASE("restored, a falling and tumbling box goes on bit for bit") {
@@ -161,6 +164,29 @@ TEST_CASE("a checkpoint of another loop, cut short, or damaged is refused and ch
   AnimationLoop other{World{RigidBodies{}}, Constraints{BallJoint{}}};
   REQUIRE_THROWS_WITH(restore(other, bytes), Catch::Contains("another version or another loop"));
   REQUIRE(state_hash(loop) == before);
+}
+
+// A hinge and a slider have five rows and items of one size: the names tell them apart. The type of the solver is not saved.
+TEST_CASE("a checkpoint of laws and sets of other names is refused, one of another solver is not") {
+  const auto refuses = [](const auto& bytes, auto loop) {
+    rigid_bodies(loop).add({.position = {0, 0, 5}, .mass = 1.0, .shape = Sphere{0.1}});
+    const auto before = state_hash(loop);
+    CHECK_THROWS_WITH(restore(loop, bytes), Catch::Contains("another version or another loop"));
+    CHECK(state_hash(loop) == before);
+  };
+  AnimationLoop door{World{RigidBodies{}}, Constraints{Hinge{}, Slider{}}};
+  auto& set = rigid_bodies(door);
+  door.add(Hinge::Item{world_anchor({0, 0, 0}), anchor(set, set.add({.position = {1, 0, 0}, .mass = 1.0, .shape = Box{1, 1, 1}}), {-1, 0, 0})});
+  door.step(0.01);
+  const auto bytes = checkpoint(door);
+  refuses(bytes, AnimationLoop{World{RigidBodies{}}, Constraints{Slider{}, Hinge{}}});
+  refuses(bytes, AnimationLoop{World{RigidBodies{}}, Constraints{Hinge{}, Hinge2{}}});
+  AnimationLoop other{World{RigidBodies{}}, Constraints{Hinge{}, Slider{}}, GaussSeidel{}};
+  restore(other, bytes);
+  CHECK(state_hash(other) == state_hash(door));
+  auto old = bytes;
+  old[std::string("delassus checkpoint ").size()] = '1';
+  refuses(old, AnimationLoop{World{RigidBodies{}}, Constraints{Hinge{}, Slider{}}});
 }
 
 TEST_CASE("a checkpoint file is written whole, and a path that cannot be is named") {

@@ -4,6 +4,7 @@
 #include <delassus/collision/native_engine.hpp>
 #include <delassus/core/archive.hpp>
 #include <delassus/core/expect.hpp>
+#include <delassus/core/type_text.hpp>
 #include <delassus/io/inner/text_reader.hpp>
 #include <delassus/io/state_hash.hpp>
 #include <delassus/rows/row_system.hpp>
@@ -20,13 +21,15 @@
 namespace delassus {
 namespace inner {
 
-/// Scalar, widths of the sets, rows of the pools: loops that differ in it do not understand each other.
+/// World and laws, widths of the sets, rows of the pools: loops that differ in it do not understand each other. The type of the solver
+/// may differ. Two compilers may write the names of some types in two ways.
 template <class Loop>
 std::string shape_of(const Loop& loop) {
-  std::string text = "scalar " + std::to_string(sizeof(typename Loop::Scalar)) + ", sets";
+  using Laws = typename Loop::Laws;
+  std::string text = type_text<typename Loop::WorldType>() + ", " + type_text<Laws>() + ", scalar " +
+                     std::to_string(sizeof(typename Loop::Scalar)) + ", sets";
   loop.world().each([&](const auto& set, auto) { text += ' ' + std::to_string(std::remove_cvref_t<decltype(set)>::width); });
   text += ", pools";
-  using Laws = typename Loop::Laws;
   for_each_index<Laws::pool_count>([&](auto p) {
     using Pool = std::remove_cvref_t<decltype(std::declval<Laws&>().template pool<p>())>;
     text += ' ' + std::to_string(Pool::rows) + ':' + std::to_string(sizeof(typename Pool::Item));
@@ -36,12 +39,13 @@ std::string shape_of(const Loop& loop) {
 
 }  // namespace inner
 
-/// The state of a loop as bytes, for `restore`: everything `AnimationLoop::memory` names. For this machine and this version.
+/// The state of a loop as bytes, for `restore`: everything `AnimationLoop::memory` names. For this machine, compiler
+/// and version.
 template <class Loop>
 std::vector<char> checkpoint(Loop& loop) {
   ArchiveWriter archive;
   loop.memory(archive);
-  const std::string header = "delassus checkpoint 1, " + inner::shape_of(loop) + '\n';
+  const std::string header = "delassus checkpoint 2, " + inner::shape_of(loop) + '\n';
   inner::Fingerprint sum;
   sum.bytes(archive.data.data(), archive.data.size());
   std::vector<char> all(header.begin(), header.end());
@@ -58,7 +62,7 @@ std::vector<char> checkpoint(Loop& loop) {
 /// `loop.constraint<Law>(place)` give this loop's own.
 template <class Loop>
 void restore(Loop& loop, std::span<const char> bytes) {
-  const std::string header = "delassus checkpoint 1, " + inner::shape_of(loop) + '\n';
+  const std::string header = "delassus checkpoint 2, " + inner::shape_of(loop) + '\n';
   const std::size_t most = std::min(bytes.size(), header.size());
   DELASSUS_EXPECT(std::string(bytes.data(), most) == header,
                   "checkpoint: it is of another version or another loop; this one is '" + inner::shape_of(loop) + "'");
