@@ -11,7 +11,8 @@ namespace delassus {
 /// `count` times Detect to Advance with h/count. What falls with the step falls as it would with smaller steps: the error of the
 /// method, joint drift, the mass ratio that sweeps can take. To the host they are one: loads act over the whole step, kinematic
 /// bodies arrive at its end, the sum of the parts is in `impulse` and `contacts`, and their worst status, residual, sweeps and
-/// violations in the report. Listeners hear a stage once a part. Takes every integrator; no activity.
+/// violations in the report. Listeners hear a stage once a part. Takes every integrator; no activity. Where a law throws,
+/// the parts before it stand: the clock says their end, and loads go on acting.
 struct Substeps {
   using plays = role::Scheme;
   static constexpr bool takes_whole_steps = true;  ///< read by the checks: suits integrators that make a whole step at once

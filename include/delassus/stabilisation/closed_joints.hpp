@@ -19,6 +19,7 @@ namespace delassus {
 ///
 /// and leaves velocities alone. One pass leaves the square of what was open, over r. Contacts and limits do
 /// not see w, and push back in the next step. Sets whose A couples bodies, as soft ones, are left to `rate`.
+/// Where a law throws as joints are closed the step is made, with their gaps.
 struct ClosedJoints {
   using plays = role::Stabilisation;
   double tolerance = 1e-7;  ///< m, rad, of the gaps that a step leaves

@@ -63,8 +63,8 @@ class CloseGaps {
   static constexpr int pools = Laws::pool_count, sets = Rows::set_count;
 
  public:
-  /// Leaves no gap above `tolerance` (m, rad), if `passes` do; a pass that widens the worst one is taken
-  /// back.
+  /// Leaves no gap above `tolerance` (m, rad), if `passes` do; a pass that widens the worst one, or in which a law throws, is
+  /// taken back.
   void run(auto& step, double tolerance, int passes) {
     bool is_coupled = false;
     step.world().each([&](const auto& set, auto) { is_coupled = is_coupled || inner::is_coupled(set); });
@@ -72,14 +72,30 @@ class CloseGaps {
     double before = write(step);
     for (int pass = 0; pass < passes && before > tolerance; ++pass) {
       if (!find(step)) return;
-      displace(step, 1);
+      Pass<std::remove_reference_t<decltype(step)>> trial(*this, step);
       const double after = write(step);
-      if (!(after < before)) return displace(step, -1);
+      if (!(after < before)) return;
+      trial.is_kept = true;
       before = after;
     }
   }
 
  private:
+  /// q ← q ⊕ w, and back at its end unless it is kept.
+  template <class Step>
+  struct Pass {
+    Pass(CloseGaps& own, Step& step) : own_(own), step_(step) { own_.displace(step_, 1); }
+    Pass(const Pass&) = delete;
+    ~Pass() {
+      if (!is_kept) own_.displace(step_, -1);
+    }
+    bool is_kept = false;
+
+   private:
+    CloseGaps& own_;
+    Step& step_;
+  };
+
   /// H and φ of where the bodies are; returns the largest |φ| of a rigid row.
   double write(auto& step) {
     const AllLaws<T> laws = step.pools.all();

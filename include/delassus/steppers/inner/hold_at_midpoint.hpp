@@ -35,18 +35,27 @@ class MidpointHold {
     total_.set_zero();
     for_each_index<Rows::pool_count>([&](auto p) { keep_force<p>(rows.template pool<p>().lambda, h); });
     report_ = {.ended_by = "Newton"};
-    bool is_done = false;
+    Leaving leaving{*this, world, rows};
+    bool& is_done = leaving.is_done;
     for (const Way way : {Way::exact, Way::yielding, Way::near}) {
       if (way != Way::exact) begin_again(world, laws, rows);
       is_done = go(world, laws, rows, integrator, h, integrator.max_halvings, way);
       if (is_done) break;
     }
     if (!is_done) report_.status = Status::quarantined;
-    leave(world, rows, is_done);
     return report_;
   }
 
  private:
+  /// At the end of a solve, also where a law throws.
+  struct Leaving {
+    MidpointHold& own;
+    World& world;
+    Rows& rows;
+    bool is_done = false;
+    ~Leaving() { own.leave(world, rows, is_done); }
+  };
+
   /// How a step is made: by the equations, by those of rows that yield, by the equations to `acceptable`.
   enum class Way { exact, yielding, near };
 

@@ -8,8 +8,31 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace delassus::inner {
+
+/// Where a law throws before the step is done, bodies are where it began, with the velocities they had.
+template <class World, class Paths>
+class BackUnlessDone {
+ public:
+  BackUnlessDone(World& world, Paths& paths) : world_(world), paths_(paths) {}
+  BackUnlessDone(const BackUnlessDone&) = delete;
+  ~BackUnlessDone() {
+    if (is_done) return;
+    world_.each([this](auto& set, auto s) {
+      for (const Index b : set.active()) {
+        std::get<s>(paths_).back(set.state(), b);
+        set.velocity()[b] = std::get<s>(paths_).start_velocity(b);
+      }
+    });
+  }
+  bool is_done = false;
+
+ private:
+  World& world_;
+  Paths& paths_;
+};
 
 /// The largest |φ + H G δ|, δ the impulses of H G δ = −φ that are least: what no small motion closes, m or
 /// rad. Uses v_next.

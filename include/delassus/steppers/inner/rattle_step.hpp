@@ -44,6 +44,8 @@ class RattleStep {
     begin(world, rows, integrator, h);
     const int drifts = integrator.drifts;
     if (drifts > 1) before_ = paths_;
+    auto& start = drifts > 1 ? before_ : paths_;
+    inner::BackUnlessDone back(world, start);
     for (int part = 0; part < drifts; ++part) {
       if (part > 0) begin_part(world, rows, integrator, h, report);
       report.status = Status::max_iterations;
@@ -55,8 +57,8 @@ class RattleStep {
     find_velocities(world, rows, integrator, h);
     sum_.add(second_);
     sum_.give_to(rows);
-    inner::keep_or_leave(world, laws, rows, integrator, equalities_, drifts > 1 ? before_ : paths_,
-                         h * speed_, report);
+    inner::keep_or_leave(world, laws, rows, integrator, equalities_, start, h * speed_, report);
+    back.is_done = true;
     return report;
   }
 

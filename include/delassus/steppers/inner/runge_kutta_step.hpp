@@ -37,6 +37,7 @@ class RungeKuttaStep {
   SolveReport solve(World& world, const Laws& laws, Rows& rows, const I& integrator, double h) {
     SolveReport report{.status = Status::max_iterations, .ended_by = "Newton"};
     begin(world, rows, integrator, h);
+    inner::BackUnlessDone back(world, paths_);
     constexpr std::array node{0.0, 0.5, 0.5, 1.0}, weight{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     for (int k = 0; k < 4; ++k) {
       world.each([&](auto& set, auto s) {
@@ -60,6 +61,7 @@ class RungeKuttaStep {
     project(world, laws, rows, integrator, h, report);
     lambda_.give_to(rows);
     inner::keep_or_leave(world, laws, rows, integrator, equalities_, paths_, h * speed_, report);
+    back.is_done = true;
     return report;
   }
 
