@@ -154,13 +154,36 @@ TEST_CASE("parameters are known by their text where they are numbers or words") 
   CHECK(parameters_text(0.1) == "0.1");
   CHECK(parameters_text(1. / 3) == "0.3333333333333333");
   CHECK(parameters_text(7) == "7");
-  CHECK(parameters_text(std::string("on\tice")) == "on ice");
+  CHECK(parameters_text(std::string("on ice")) == "on ice");
   CHECK(parameters_text(std::array{0.5, 2.}) == "0.5 2");
   CHECK(parameters_text(std::pair{3, "x"}) == "3 x");
-  CHECK(parameters_text(std::vector{std::tuple{1, 0.25}, std::tuple{2, 0.5}}) == "1 0.25 2 0.5");
+  CHECK(parameters_text(std::vector{std::tuple{1, 0.25}, std::tuple{2, 0.5}}) == "(1 0.25) (2 0.5)");
   CHECK(parameters_text(Named{}) == "a1.000000");
   CHECK_FALSE(parameters_text(Unnamed{}));
   CHECK_FALSE(parameters_text(std::vector{Unnamed{}}));
+}
+
+// A log takes a run for done by this text: each of a pair is another run.
+TEST_CASE("parameters that differ have texts that differ, in one line and one field") {
+  using inner::parameters_text;
+  using Lists = std::vector<std::vector<double>>;
+  using Words = std::vector<std::string>;
+  const auto differ = [](const auto& a, const auto& b) {
+    const auto one = parameters_text(a), other = parameters_text(b);
+    REQUIRE((one && other));
+    CHECK(*one != *other);
+    for (const auto& text : {*one, *other}) CHECK(text.find_first_of("\t\n\r") == text.npos);
+  };
+  differ(Lists{{1, 2}, {3}}, Lists{{1}, {2, 3}});
+  differ(Lists{{}, {1}}, Lists{{1}, {}});
+  differ(Words{"a b", "c"}, Words{"a", "b c"});
+  differ(Words{"", "1"}, Words{"1"});
+  differ(Words{""}, Words{});
+  differ(Words{"(a", "b)"}, Words{"(a b)"});
+  differ(std::string("a\tb"), std::string("a b"));
+  differ(std::string("a\tb"), std::string("\"a\\tb\""));
+  differ(std::string("1"), std::string("1\n"));
+  differ(std::pair{Words{"1"}, Words{"2", "3"}}, std::pair{Words{"1", "2"}, Words{"3"}});
 }
 
 TEST_CASE("an ensemble that cannot be run is refused in one sentence") {
