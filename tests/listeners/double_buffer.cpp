@@ -1,4 +1,5 @@
 #include <delassus/delassus.hpp>
+#include <delassus/io/checkpoint.hpp>
 
 #include "catch.hpp"
 
@@ -108,6 +109,31 @@ TEST_CASE("the channel stays where it is when its loop moves") {
   moved.step(1e-2);
   REQUIRE(channel.fetch());
   REQUIRE(&moved.template channel<DoubleBuffer>() == &channel);
+}
+
+// The reader has a reference to the loop's channel: a restore may not put another in its place, nor a clone write into it.
+TEST_CASE("a restored loop keeps its channel and a clone has one of its own") {
+  auto loop = scene(DoubleBuffer{});
+  auto& channel = loop.template channel<DoubleBuffer>();
+  loop.step(1e-2);
+  const auto bytes = checkpoint(loop);
+  loop.step(1e-2);
+  REQUIRE(channel.fetch());
+  restore(loop, bytes);
+  CHECK(&loop.template channel<DoubleBuffer>() == &channel);
+  CHECK_FALSE(channel.fetch());
+  CHECK(channel.front().sequence == 2);
+  auto other = loop.clone();
+  auto& its = other.template channel<DoubleBuffer>();
+  CHECK(&its != &channel);
+  other.step(1e-2);
+  CHECK_FALSE(channel.fetch());
+  CHECK(its.fetch());
+  loop.step(1e-2);
+  REQUIRE(channel.fetch());
+  CHECK(channel.front().sequence == 3);
+  CHECK(same_problem(channel.front().problem, its.front().problem));
+  CHECK(state_hash(other) == state_hash(loop));
 }
 
 TEST_CASE("a loop without a double buffer has no room for one") {

@@ -77,6 +77,7 @@ void restore(Loop& loop, std::span<const char> bytes) {
   ArchiveReader archive(bytes);
   next.memory(archive);
   DELASSUS_EXPECT(archive.is_at_end(), "checkpoint: it is longer than this loop can read");
+  std::swap(loop.data().channels, next.data().channels);  // other threads hold references to the loop's own
   loop = std::move(next);
 }
 

@@ -46,7 +46,7 @@ class AnimationLoop : private StepData<typename inner::loop_policies<Args...>::t
                   "to hand it over, or loop.clone() for a copy that is meant");
   }
   /// A copy with its world, its policies and what they remember. Handles are good for both, later ones for the loop that gives them.
-  /// Refused while a step runs.
+  /// Its channels are new: empty, not connected. Refused while a step runs.
   AnimationLoop clone() const {
     DELASSUS_EXPECT(!this->is_under_way, "clone: a step runs and its state is half made; clone the loop after the step");
     return AnimationLoop(*this);

@@ -31,37 +31,45 @@ struct problem_of<Policies> {
   using type = void;
 };
 
-/// A T on the heap, so that it stays where it is when its owner moves.
-template <class T>
+/// A T on the heap, so that it stays where it is when its owner moves. A copy is as new: another thread may use this one.
+template <class T, class From>
 class OnHeap {
  public:
-  explicit OnHeap(const auto& from) : at_(new T(from)) {}
+  explicit OnHeap(const From& from) : at_(new Made(from)) {}
+  OnHeap(const OnHeap& other) : OnHeap(other.at_->from) {}
   OnHeap(OnHeap&& other) noexcept : at_(other.at_) { other.at_ = nullptr; }
   OnHeap& operator=(OnHeap&& other) noexcept {
     std::swap(at_, other.at_);
     return *this;
   }
   ~OnHeap() { delete at_; }
-  T& operator*() const { return *at_; }
+  T& operator*() const { return at_->it; }
 
  private:
-  T* at_;
+  struct Made {
+    explicit Made(const From& by) : from(by), it(by) {}
+    const From from;
+    T it;
+  };
+  Made* at_;
 };
 
-/// Other threads hold references to them while the loop may move.
+/// Other threads hold references to them while the loop may move. Those of a copy are its own, and empty.
 template <class Problem, class... Publishers>
 class Channels {
  public:
   explicit Channels([[maybe_unused]] const auto& policies)
-      : channels_{{OnHeap<typename Publishers::template Channel<Problem>>(part_of_type<Publishers>(policies))}...} {}
+      : channels_{{Held<Publishers>(part_of_type<Publishers>(policies))}...} {}
 
   template <class P>
   auto& of() const {
-    return *part_of_type<OnHeap<typename P::template Channel<Problem>>>(channels_);
+    return *part_of_type<Held<P>>(channels_);
   }
 
  private:
-  Pack<OnHeap<typename Publishers::template Channel<Problem>>...> channels_;
+  template <class P>
+  using Held = OnHeap<typename P::template Channel<Problem>, P>;
+  Pack<Held<Publishers>...> channels_;
 };
 template <class Problem>
 class Channels<Problem> {
