@@ -26,12 +26,15 @@ concept HasPrepare = requires(const typename A::Law& law, const typename A::Matr
 } || requires(const typename A::Law& law, const typename A::Given& given, const typename A::Matrix& W, typename A::Memory& memory) {
   { law.prepare(given, W, 1.0, memory) } -> std::same_as<void>;
 };
+/// One that takes a temporary would change a copy.
 template <class A>
 concept HasClamp = requires(const typename A::Law& law, const typename A::Given& given, typename A::Vector& lambda) {
   { law.clamp(given, lambda) } -> std::same_as<void>;
+  requires !requires { law.clamp(given, typename A::Vector(lambda)); };
 } || (!A::is_in_contact && requires(const typename A::Law& law, const typename A::Given& given, typename A::Vector& lambda,
                                     const typename A::Memory& memory) {
   { law.clamp(given, lambda, memory) } -> std::same_as<void>;
+  requires !requires { law.clamp(given, typename A::Vector(lambda), memory); };
 });
 template <class A>
 concept HasNaturalMap = requires(const typename A::Law& law, const typename A::Given& given, const typename A::Vector& x,
