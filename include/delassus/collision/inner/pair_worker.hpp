@@ -155,8 +155,9 @@ class PairWorker {
         r = measure(a, b, b_in_a, reach, scale, last, now);
     }
     if (r.distance > margin) return;
+    // Up to the reach of the pair, as of a half-space: of two that turn, the far end closes faster than the nearest points.
     if (!is_half_space(a) && !is_half_space(b))
-      contact_patch(a.shape, b.shape, b_in_a, r, margin, scale, patch_);
+      contact_patch(a.shape, b.shape, b_in_a, r, reach, scale, patch_);
     name_points(patch_, last, b_in_a, transposed_times(a.pose.rotation, now.normal), scale,
                 scene.settings.max_points, out.size(), out, now, [&](int i, std::uint32_t id) {
                   out.push_back(contact_of(job, a.pose, patch_.point[i], now.normal,
@@ -166,7 +167,7 @@ class PairWorker {
     share_area(now.area, a.pose, now.count, out);
     sort_last(now.count, out);
     if (looks_ahead) hold_cores(a, b, job, out);  // their names are the last
-    now.keep(shapes, b_in_a, r.normal, margin);
+    now.keep(shapes, b_in_a, r.normal, reach);
   }
 
   /// Whether pairs that do not meet are left out.
