@@ -171,4 +171,26 @@ TEST_CASE("parts of compounds and triangles are left out by themselves") {
   check(mesh, mesh.collision.add(fine_box(1, 1, 1, 2)));
 }
 
+TEST_CASE("a triangle is as far from a box as the nearest corner, whichever corner that is") {
+  // A cube of 0.2 m, tilted by 0.1 rad about its middle, comes down on the inside of a triangle and slides over it. Its lowest corner is 5 mm
+  // above, and goes down by 9 mm in the step: it meets the triangle after 5/9 of it. The next corners are 0.2 sin(0.1) sin(0.3) = 5.9 mm higher,
+  // and more. Each of the four corners is the lowest in turn.
+  for (int k = 0; k < 4; ++k)
+    for (const double slide : {0.0, 1.0, 6.0}) {
+      MeshScene scene;
+      const std::vector<Vec3> v{{-2, -2, 0}, {3, -2, 0}, {-2, 3, 0}};
+      scene.add(scene.collision.add(TriangleMesh(v, std::vector<Corners>{{0, 1, 2}})), {0, 0, 0}, Mat3::Identity(), false);
+      const double head = 0.5 * 3.141592653589793 * k + 0.3;
+      const Mat3 tilt = turned(0.1, Vec3(std::cos(head), std::sin(head), 0));
+      const double deep = 0.1 * (std::abs(tilt(2, 0)) + std::abs(tilt(2, 1)) + std::abs(tilt(2, 2)));
+      scene.add(Box{0.2, 0.2, 0.2}, {0, 0, deep + 5e-3}, tilt).velocity = {slide, 0, -9e-3 / h};
+      scene.detect_ahead(h);
+      INFO("corner " << k << ", slides at " << slide << " m/s");
+      REQUIRE(scene.contacts.size() >= 1);
+      double least = 1;
+      for (const ContactPoint& p : scene.contacts) least = std::min(least, p.gap);
+      CHECK(std::abs(least - 5e-3) < 1e-12);  // sums of lengths below 1 m
+    }
+}
+
 }  // namespace ahead_tests

@@ -175,9 +175,14 @@ class SurfacePairs {
       if (p.triangle != last) {
         last = p.triangle;
         const Vec3 n = pair.a.pose.rotation * p.normal;
-        const ApartTriangle apart{pair.job.pair, p.triangle, p.point.gap - touch, n};
+        // The triangle is as far as the nearest of its points, which follow one another.
+        double least = p.point.gap;
+        bool is_any_near = is_near;
+        for (const SurfaceContact* q = &p + 1; q != points_.data() + points_.size() && q->triangle == p.triangle; ++q)
+          least = std::min(least, q->point.gap), is_any_near = is_any_near || is_within_margin(pair, q->point, q->normal);
+        const ApartTriangle apart{pair.job.pair, p.triangle, least - touch, n};
         const Impact hit = impact_on(surface, pair, apart);
-        stays = is_near && (hit.is_now || (hit.is_found && !is_fast && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
+        stays = is_any_near && (hit.is_now || (hit.is_found && !is_fast && dot(hit.a.rotation * hit.normal_in_a, n) > same_normal));
         if (!stays) apart_.push_back(apart);
         if (!stays && hit.is_found && !(hit_.is_found && hit_.time <= hit.time)) hit_ = hit;
       }
