@@ -35,29 +35,34 @@ inline double spread(const Patch& patch, const Choice& c, const Vec3& n) {
   return area2;
 }
 
-/// Adds the points farthest from all chosen ones until there are `limit`.
-inline void fill(const Patch& patch, int limit, Choice& c) {
+/// Adds the points farthest from all chosen ones until there are `limit`. Of a rim those equally far, on both sides of its lowest
+/// point, come together, or none where there is no room: on one side alone they turn it. Squares of distances are rounded by some 1e-15.
+inline void fill(const Patch& patch, int limit, bool is_of_rim, Choice& c) {
   while (c.count < limit) {
-    int best = -1;
+    Choice best;
     double best_distance = -1;
     for (int i = 0; i < patch.count; ++i) {
       if (c.has(i)) continue;
       double distance = std::numeric_limits<double>::infinity();
       for (int k = 0; k < c.count; ++k)
         distance = std::min(distance, squared_norm(patch.point[i].a - patch.point[c.index[k]].a));
-      if (distance > best_distance) best_distance = distance, best = i;
+      const bool is_equal = is_of_rim && std::abs(distance - best_distance) <= 1e-9 * best_distance;
+      if (!is_equal && !(distance > best_distance)) continue;
+      if (!is_equal) best_distance = distance, best.count = 0;
+      if (best.count <= PairMemory::capacity) best.add(i);
     }
-    if (best < 0) return;
-    c.add(best);
+    if (best.count == 0 || (best.count > 1 && c.count + best.count > limit)) return;
+    for (int k = 0; k < best.count; ++k) c.add(best.index[k]);
   }
 }
 
-/// The deepest point, the one farthest from it, and those farthest to either side of the line between them.
-inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
+/// The deepest point, the one farthest from it, and those farthest to either side of the line between them. Two of a rim that
+/// are equally far come instead.
+inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit, bool is_of_rim) {
   Choice c;
   c.add(deepest(patch));
-  fill(patch, 2, c);
-  const Vec3 &p = patch.point[c.index[0]].a, &q = patch.point[c.index[1]].a;
+  fill(patch, 2, is_of_rim, c);
+  const Vec3 &p = patch.point[c.index[0]].a, &q = patch.point[c.index[c.count - 1]].a;
   const Vec3 across = cross(n, q - p);
   for (const double side : {1.0, -1.0}) {
     int best = -1;
@@ -68,7 +73,7 @@ inline Choice choose_anew(const Patch& patch, const Vec3& n, int limit) {
     }
     if (best >= 0) c.add(best);
   }
-  fill(patch, limit, c);
+  fill(patch, limit, is_of_rim, c);
   return c;
 }
 
@@ -111,18 +116,18 @@ inline Choice reduce(const Patch& patch, const Continuation& continues, const Ve
   for (int i = 0; i < patch.count && kept.count < limit + is_besides; ++i)
     if (continues.of[i] >= 0 && !kept.has(i)) kept.add(i);
   if (is_besides) {
-    fill(patch, limit + 1, kept);
+    fill(patch, limit + 1, is_of_rim, kept);
     drop_crowded(patch, kept);
   }
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kept.count; ++k) least = std::min(least, patch.point[kept.index[k]].gap);
-  const Choice anew = choose_anew(patch, n, limit);
+  const Choice anew = choose_anew(patch, n, limit, is_of_rim);
   const bool rolls_here = is_of_rim && !is_besides;
   if (rolls_here ? !kept.has(lowest) : !(least <= patch.point[lowest].gap + 5e-5 * scale)) {
     if (kept.count == limit) drop_highest(patch, kept);
     kept.add(lowest);
   }
-  fill(patch, limit, kept);
+  fill(patch, limit, is_of_rim, kept);
   return spread(patch, kept, n) >= 0.55 * spread(patch, anew, n) ? kept : anew;
 }
 
