@@ -35,6 +35,7 @@ struct Grids {
   }
 
   Index blocks() const { return first.back(); }
+  bool moves(Index) const { return true; }
   bool is_coupled() const { return true; }
   Index body_of(Index block) const {
     return Index(std::upper_bound(first.begin(), first.end(), block) - first.begin()) - 1;

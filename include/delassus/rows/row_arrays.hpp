@@ -11,6 +11,7 @@
 #include <delassus/rows/soft.hpp>
 
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 namespace delassus {
@@ -45,12 +46,14 @@ struct BlockLoops {
   using Row = Vec<R, T>;
   using Column = Vec<w, T>;
 
+  /// `start` and `u` stand anywhere, whatever their alignment.
   static void rate(const SetArrays<T>& set, Index i, const T* v, const T* start, T* u) {
     const auto* H = reinterpret_cast<const Mat<R, w, T>*>(set.H->data());
-    Row sum = *reinterpret_cast<const Row*>(start);
+    Row sum;
+    std::memcpy(sum.data(), start, sizeof sum);
     for (Index e = (*set.offset)[i]; e < (*set.offset)[i + 1]; ++e)
       sum += H[e] * reinterpret_cast<const Column*>(v)[(*set.block)[e]];
-    assign(*reinterpret_cast<Row*>(u), sum);
+    std::memcpy(u, sum.data(), sizeof sum);
   }
   static void add_motion(const SetArrays<T>& set, Index items, const T* lambda, T* to) {
     const auto* G = reinterpret_cast<const Mat<w, R, T>*>(set.G->data());
