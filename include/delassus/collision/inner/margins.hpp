@@ -22,7 +22,7 @@ inline double limited_margin(double way, double scale) {
   return std::min(std::max(margin_share * scale, way), margin_limit * scale);
 }
 
-/// A margin that no contact of a pair exceeds whose speeds sum up to `speed`, whatever its normal.
+/// A margin that no contact of a pair exceeds that closes in at up to `speed`, m/s, whatever its normal.
 inline double widest_margin(double speed, double scale, double h, const CollisionSettings& s) {
   return s.margin >= 0 ? s.margin : limited_margin(speed * h, scale);
 }

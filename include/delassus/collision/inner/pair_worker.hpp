@@ -271,7 +271,7 @@ void PairWorker<Kernel>::collide(const Job& job, RestingPair& pair, const Filter
   const Summary &of_a = scene.summary[job.a], &of_b = scene.summary[job.b];
   const double scale = std::min(of_a.scale, of_b.scale);
   const double reach = scene.settings.contact_distance +
-                       widest_margin(of_a.speed + of_b.speed, scale, scene.h, scene.settings);
+                       widest_margin(closing_speed(a, b, of_a.radius, of_b.radius), scale, scene.h, scene.settings);
   constexpr bool is_native = std::is_same_v<Kernel, GjkEpa>;
   const bool looks_ahead = may_leave_out<Filter>();
   const bool is_round = is_native && pair.is_plain && is_round_pair(a.shape, b.shape);

@@ -3,6 +3,7 @@
 
 #include <delassus/collision/collider.hpp>
 #include <delassus/core/bits.hpp>
+#include <delassus/core/cmath.hpp>
 #include <delassus/geometry/support.hpp>
 
 #include <algorithm>
@@ -40,11 +41,6 @@ inline double turning_speed(const Collider& c, const Collider& other, double h) 
 /// The sum of both.
 inline double turning_speeds(const Collider& a, const Collider& b, double h) { return turning_speed(a, b, h) + turning_speed(b, a, h); }
 
-/// No point at which the two may meet within h s is faster than this by the motion of `c`, m/s.
-inline double top_speed(const Collider& c, const Collider& other, double h) {
-  return c.shape.kind == ShapeKind::half_space ? norm(c.velocity) + turning_speed(c, other, h) : top_speed(c);
-}
-
 /// The size that a shape brings to its pairs, m, of which the smaller one counts: a half-space leaves it to
 /// the other.
 inline double scale_in_pairs(const Shape& s) {
@@ -54,15 +50,38 @@ inline double pair_scale(const Shape& a, const Shape& b) {
   return std::min(scale_in_pairs(a), scale_in_pairs(b));
 }
 
+/// How far from its origin the turn of a shape moves what may touch, m: of a ball nothing, of a half-space any distance.
+inline double turning_radius(const Shape& s) {
+  if (s.kind == ShapeKind::half_space) return std::numeric_limits<double>::infinity();
+  return s.kind == ShapeKind::sphere ? 0 : outer_radius(s);
+}
+
+/// No two points that touch close in faster than this, m/s, for the `turning_radius` of each. Two that ride on what moves or turns
+/// are at rest for each other.
+inline double closing_speed(const Collider& a, const Collider& b, double radius_a, double radius_b) {
+  const bool is_a = radius_a < radius_b;
+  const Collider &small = is_a ? a : b, &large = is_a ? b : a;
+  const double radius = is_a ? radius_a : radius_b, far = is_a ? radius_b : radius_a;
+  const double seen_from_small = norm(Vec3(small.velocity - large.velocity_at(small.pose.position))) +
+                                 norm(Vec3(small.angular_velocity - large.angular_velocity)) * radius;
+  if (!std::isfinite(far)) return seen_from_small;
+  return std::min(seen_from_small, norm(Vec3(b.velocity - a.velocity)) + norm(small.angular_velocity) * radius +
+                                       norm(large.angular_velocity) * far);
+}
+inline double closing_speed(const Collider& a, const Collider& b) {
+  return closing_speed(a, b, turning_radius(a.shape), turning_radius(b.shape));
+}
+
 struct Summary {
   double scale = 0;         ///< `scale_in_pairs`, m
+  double radius = 0;        ///< `turning_radius`, m
   double speed = 0;         ///< `top_speed`, m/s
   std::uint64_t shape = 0;  ///< its fingerprint
   double way = 0;           ///< `longest_way` of a detection that looks ahead, m
 };
 
 inline Summary summary_of(const Collider& c) {
-  return {.scale = scale_in_pairs(c.shape), .speed = top_speed(c), .shape = fingerprint(c.shape)};
+  return {.scale = scale_in_pairs(c.shape), .radius = turning_radius(c.shape), .speed = top_speed(c), .shape = fingerprint(c.shape)};
 }
 
 }  // namespace delassus::inner

@@ -46,7 +46,7 @@ class SurfacePairs {
     const Collider &a = colliders[job.a], &b = colliders[job.b];
     const bool is_plane = b.shape.kind == ShapeKind::half_space;
     Pair pair(job, a, b, length_scale(is_plane ? a.shape : b.shape), h, settings);
-    if constexpr (KnowsWhoPushed<Filter>) pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b, a, h)));
+    if constexpr (KnowsWhoPushed<Filter>) pair.reach = std::max(pair.reach, settings.contact_distance + pair.way());
     if constexpr (KnowsWhoPushed<Filter>) is_new_ = !is_plane && a.goes_alone && b.goes_alone && !filter.pushed(job.pair);
     hit_ = {};
     points_.clear();
@@ -64,7 +64,7 @@ class SurfacePairs {
         if (patch.corners >= 3) pieces_.add(patch.corners, corner, n, patch.point[deepest(patch)].gap);
       };
       skipped_.clear();
-      const bool goes_far = KnowsWhoPushed<Filter> && h * (top_speed(a) + top_speed(b)) > margin_share * pair.scale;
+      const bool goes_far = KnowsWhoPushed<Filter> && pair.way() > margin_share * pair.scale;
       queries = doubts_.collect(surface, b.shape, pair.b_in_a, pair.reach, pair.scale, add, [&](const Triangle& triangle, Index t) {
         if (goes_far && triangle.height(pair.b_in_a.to_world(middle(b.shape))) >= 0) skipped_.push_back(t);
       });
@@ -129,7 +129,9 @@ class SurfacePairs {
     Pair(const PairJob& j, const Collider& first, const Collider& second, double size, double step,
          const CollisionSettings& s)
         : job(j), a(first), b(second), scale(size), h(step), settings(s), b_in_a(a.pose.to_local(b.pose)),
-          reach(s.contact_distance + widest_margin(top_speed(a) + top_speed(b, a, step), size, step, s)) {}
+          reach(s.contact_distance + widest_margin(closing_speed(a, b), size, step, s)) {}
+    /// How much nearer two of their points may come in the step, m.
+    double way() const { return h * (norm(Vec3(b.velocity - a.velocity)) + turning_speeds(a, b, h)); }
   };
 
   static bool is_within_margin(const Pair& pair, const PatchPoint& p, const Vec3& n) {
@@ -438,7 +440,7 @@ void SurfacePairs::collide_missed(const Surface& surface, std::span<const Collid
   const Collider &a = colliders[job.a], &b = colliders[job.b];
   if (b.shape.kind == ShapeKind::half_space) return;
   Pair pair(job, a, b, length_scale(b.shape), h, settings);
-  pair.reach = std::max(pair.reach, settings.contact_distance + h * (top_speed(a) + top_speed(b, a, h)));
+  pair.reach = std::max(pair.reach, settings.contact_distance + pair.way());
   hit_ = {};
   const auto ask = [&](const ApartTriangle& apart) {
     const Impact hit = impact_on(surface, pair, apart);
