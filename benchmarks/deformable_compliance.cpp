@@ -33,6 +33,7 @@ struct SoftBox {
   Index blocks() const { return box.nodes(); }
   bool is_coupled() const { return true; }
   Index body_of(Index) const { return 0; }
+  bool moves(Index) const { return true; }
   void node_compliance(std::span<const Index> nodes, std::span<double> C) const {
     factor.compliance(nodes, C);
   }
