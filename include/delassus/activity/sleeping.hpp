@@ -114,8 +114,9 @@ class Sleepers {
 
   /// Whether the solved motion comes near sleepers that were no obstacles.
   bool lacks_obstacles(const ContactCache& book, double h) {
-    const Aabb before = near_;
-    near_.extend(ways_of(book, h));
+    const Aabb before = near_, ways = ways_of(book, h);
+    if (before.contains(ways)) return false;
+    near_.extend(ways);
     for (const auto& body : dormant_.bodies())
       if (!body.box.is_empty() && body.box.is_apart(before) && !body.box.is_apart(near_)) return true;
     return false;
