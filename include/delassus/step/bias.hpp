@@ -57,10 +57,17 @@ void soften(const RowArrays<T>& pool, std::size_t row, double h, double theta) {
   (*pool.bias)[row] = T(soft.bias);
 }
 
-/// One item's rows from `first` on. u: H v_free, which becomes d; start: H v, where θ < 1. `turns_slip`: friction sees `rotated_slip`.
+/// A row that shall have a speed s: u⁺ − s in place of u⁺, in the soft row above as in a rigid one.
+template <class T>
+void drive(const RowArrays<T>& pool, std::size_t row, double speed, double h) {
+  if (pool.is_soft(row)) soften(pool, row, h, 1.0);
+  (*pool.bias)[row] -= T(speed);
+}
+
+/// One item's rows from `first` on. u: H v_free, which becomes d; start: H v, where θ < 1. `turns_slip`: friction sees `rotated_slip`. `speed`: see `drive`.
 template <class T, class S>
 [[gnu::always_inline]] inline void make_bias_of_item(const LawSteps<T>& law, const RowArrays<T>& pool, std::size_t first, T* u, const T* start, const S& stabilisation,
-                       double h, double theta, bool turns_slip) {
+                       double h, double theta, bool turns_slip, double speed) {
   const T before = T((1 - theta) / theta);
   if (turns_slip && law.has_slip) {
     const auto rotated = rotated_slip<T>({start[1], start[2]}, {u[1], u[2]}, theta);
@@ -72,13 +79,13 @@ template <class T, class S>
   for (int k = 0, rows = pool.rows; k < rows; ++k) {
     const RowKind kind = law.kinds[k];
     const double phi = double(all_phi[k]);
-    if (kind == RowKind::friction) continue;
-    if (inner::is_spring(stiffness[k], damping[k])) {
+    if (kind == RowKind::friction) {  // has no bias
+    } else if (inner::is_spring(stiffness[k], damping[k])) {
       soften(pool, first + std::size_t(k), h, law.has_mean_springs ? theta : 1.0);
       if (law.has_mean_springs) u[k] += before * start[k];
     } else if (kind == RowKind::equality) {
       bias[k] = T(stabilisation.equality(phi, theta * h));
-      u[k] += before * start[k];
+      if (before != 0) u[k] += before * start[k];
       compliance[k] = T(joint_compliance_of(stabilisation, h));
     } else {
       const double sign = kind == RowKind::lower ? 1 : -1;
@@ -88,15 +95,8 @@ template <class T, class S>
       if constexpr (requires { stabilisation.relative_compliance(h); })
         (*pool.relative_compliance)[first + std::size_t(k)] = T(stabilisation.relative_compliance(h));
     }
-  }
-}
-
-/// Rows that shall have a speed s: u⁺ − s in place of u⁺, in the soft row above as in a rigid one.
-template <class T>
-void drive(const RowArrays<T>& pool, std::size_t first, double speed, double h) {
-  for (std::size_t row = first; row < first + std::size_t(pool.rows); ++row) {
-    if (pool.is_soft(row)) soften(pool, row, h, 1.0);
-    (*pool.bias)[row] -= T(speed);
+    if (law.speed) drive(pool, first + std::size_t(k), speed, h);
+    u[k] += bias[k];
   }
 }
 
@@ -106,7 +106,7 @@ void make_bias(const LawPool<T>& of, const RowArrays<T>& pool, Range range, cons
                const S& stabilisation, double h, double theta, bool turns_slip) {
   const LawSteps<T>& law = *of.law;
   const int height = pool.rows, sets = pool.sets;
-  const bool sees_surfaces = moving && law.place;
+  const bool sees_surfaces = moving && law.place, sees_start = theta != 1 || sees_surfaces, is_driven = law.speed != nullptr;
   static constexpr T nothing[most_rows] = {};
   T of_start[most_rows];
   for (Index i = range.first; i < range.last; ++i) {
@@ -115,15 +115,12 @@ void make_bias(const LawPool<T>& of, const RowArrays<T>& pool, Range range, cons
     const T *u = nothing, *start = nothing;
     for (int s = 0; s < sets; ++s, u = d) {
       pool.set[s].products->rate(pool.set[s], i, v_free[s], u, d);
-      if (theta == 1 && !sees_surfaces) continue;
+      if (!sees_start) continue;
       pool.set[s].products->rate(pool.set[s], i, v[s], start, of_start);
       start = of_start;
     }
     if (sees_surfaces) see_moving_surfaces(moving, law.place(of.pool, i), height, h, theta, of_start, d);
-    make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta, turns_slip);
-    if (law.speed) drive(pool, first, law.speed(of.pool, i), h);
-    const T* const bias = pool.bias->data() + first;
-    for (int k = 0; k < height; ++k) d[k] += bias[k];
+    make_bias_of_item(law, pool, first, d, start, stabilisation, h, theta, turns_slip, is_driven ? law.speed(of.pool, i) : 0.0);
   }
 }
 

@@ -36,13 +36,19 @@ class Incidence {
       if (entries == 0) continue;  // nobody asks `at`
       List& list = lists_[std::size_t(s * count + p)];
       list.start.assign_zeros(std::size_t(blocks) + 1);
-      for (Index e = 0; e < entries; ++e) list.start[std::size_t(set.block[e])] += moves[std::size_t(set.block[e])];
-      for (Index b = 0; b < blocks; ++b) list.start[std::size_t(b) + 1] += list.start[std::size_t(b)];
-      list.entries.resize(std::size_t(list.start[std::size_t(blocks)]));
+      Index* const start = list.start.data();
+      const char* const moving = moves.data();
+      for (Index e = 0; e < entries; ++e) {
+        const Index block = set.block[e];
+        start[block] += moving[block];
+      }
+      for (Index b = 0, sum = 0; b <= blocks; ++b) sum = start[b] += sum;
+      list.entries.resize(std::size_t(start[blocks]));
+      Entry* const to = list.entries.data();
       // From the ends of the blocks, and the last first: so they stand in order.
       for (Index i = pools[p].items; i-- > 0;)
-        for (Index e = set.offset[i + 1]; e-- > set.offset[i];)
-          if (moves[std::size_t(set.block[e])]) list.entries[std::size_t(--list.start[std::size_t(set.block[e])])] = {i, e};
+        for (Index e = set.offset[i + 1], first = set.offset[i]; e-- > first;)
+          if (const Index block = set.block[e]; moving[block]) to[--start[block]] = {i, e};
     }
   }
 
