@@ -1,5 +1,6 @@
 #include <delassus/math/rotation.hpp>
 
+#include <limits>
 #include <numbers>
 
 #include "catch.hpp"
@@ -192,5 +193,18 @@ TEST_CASE("products and inverses of turns are Eigen's") {
     // Entries are sums of four products below 1.
     REQUIRE((product(a, b).coeffs() - (a * b).coeffs()).cwiseAbs().maxCoeff() <= 4 * std::numeric_limits<double>::epsilon());
     REQUIRE(conjugate(a).coeffs() == a.conjugate().coeffs());
+  }
+}
+
+TEST_CASE("a quaternion that is no number stays none, and one whose squares overflow has unit length") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 4; ++k) {
+    Eigen::Vector4d x(0.1, 0.2, 0.3, 0.4);
+    // To rounding: scaling by 1e200, the squares, their sum, the root and the quotient round once each.
+    CHECK((unit(Quat(Eigen::Vector4d(1e200 * x))).coeffs() - x.normalized()).norm() <= 8 * std::numeric_limits<double>::epsilon());
+    x[k] = nan;
+    CHECK_FALSE(unit(Quat(x)).coeffs().allFinite());
+    x[k] = infinity;
+    CHECK_FALSE(unit(Quat(x)).coeffs().allFinite());
   }
 }

@@ -8,16 +8,17 @@
 
 namespace delassus {
 
-/// q / |q|, also where the squares of q overflow.
+/// q / |q|, also where the squares of q overflow; NaN of what is no number.
 template <class T>
 inline Eigen::Quaternion<T> unit(const Eigen::Quaternion<T>& q) {
-  const T w = q.w(), x = q.x(), y = q.y(), z = q.z();
-  const T size = std::sqrt((x * x + z * z) + (y * y + w * w));
+  T w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  T size = std::sqrt((x * x + z * z) + (y * y + w * w));
   if (!(size <= std::numeric_limits<T>::max())) {
     const T largest = std::max(std::max(std::abs(w), std::abs(x)), std::max(std::abs(y), std::abs(z)));
     if (largest <= std::numeric_limits<T>::max()) {
       const T s = T(1) / largest;
-      return unit(Eigen::Quaternion<T>(s * w, s * x, s * y, s * z));
+      w *= s, x *= s, y *= s, z *= s;
+      size = std::sqrt((x * x + z * z) + (y * y + w * w));
     }
   }
   return {w / size, x / size, y / size, z / size};
