@@ -162,4 +162,26 @@ TEST_CASE("a capsule that leans is touched at its foot") {
   }
 }
 
+// A line that leaves the side beyond the base, or beyond the tip, and has not come through the base on its way, misses the solid.
+TEST_CASE("no contact of cones and cylinders deep in each other is deeper than they overlap along it") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Mat3 lying = turned(std::acos(0.0), Vec3::UnitX());
+  for (const Shape& shape : {Shape{Cone{1, 1}}, Shape{Cone{0.4, 1.5}}, Shape{Cylinder{0.5, 1}}})
+    for (int sample = 0; sample < 300; ++sample) {
+      const double x = uniform(random), y = uniform(random), z = uniform(random), aside = 0.02 * uniform(random),
+                   angle = sample % 3 ? 0.02 * uniform(random) : 0;
+      const Posed a{shape, nullptr, {Vec3::Zero(), Mat3::Identity()}},
+          b{shape, nullptr, {Vec3(aside, 0, 0), turned(angle, Vec3(x, y, z)) * (sample % 2 ? lying : Mat3::Identity())}};
+      Scene scene;
+      scene.add(shape, a.pose.position, a.pose.rotation, false);
+      scene.add(shape, b.pose.position, b.pose.rotation);
+      scene.detect();
+      CAPTURE(name(shape.kind), sample);
+      REQUIRE(!scene.contacts.empty());
+      // Rounding of numbers of about 1 m.
+      for (const ContactPoint& c : scene.contacts) CHECK(-c.gap <= a.reach(c.normal) + b.reach(-c.normal) + 1e-9);
+    }
+}
+
 }  // namespace nearly_parallel_tests

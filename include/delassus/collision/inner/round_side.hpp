@@ -43,6 +43,8 @@ inline bool leave_side(const Shape& s, const Vec3& x, const Vec3& d, double& way
     return leaves(1, dot(from, d), squared_norm(from) - s.size[0] * s.size[0], way);
   }
   if (std::abs(z - end) <= 1e-12 * half) return true;  // x is at the end, but for rounding
+  if (is_cone && z > high) return false;               // past the tip
+  if ((z < low) == (d[2] > 0)) return false;           // it left the side before it came to the base
   way = (end - x[2]) / d[2];
   return std::abs(way) <= s.size[0];
 }
