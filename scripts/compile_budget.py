@@ -138,8 +138,11 @@ def main():
         most = BUDGETS.get(name, BUDGETS["any other"]) + COMPILED_BUDGETS.get(name, (None, None))
         now = alone[1:] + (once[1:] if once else (None, None))
         units = ("MB", "functions", "MB, compiled once", "functions, compiled once")
-        grown += [f"{name} needs {n:.0f} {unit}, a tenth more than {w:.0f}"
-                  for n, w, m, unit in zip(now, was, most, units) if n and w and n > max(m or 0, 1.1 * w)]
+        for n, w, m, unit in zip(now, was, most, units):
+            # Two in a hundred, for another build of the same compiler.
+            is_held = name in BUDGETS and m and w and w <= m
+            if n and w and n > (1.02 * m if is_held else max(m or 0, 1.1 * w)):
+                grown.append(f"{name} needs {n:.0f} {unit}, " + (f"more than its {m}" if is_held else f"a tenth more than {w:.0f}"))
     for sentence in grown:
         print(f"compile_budget: {sentence}")
     return 1 if grown else 0
