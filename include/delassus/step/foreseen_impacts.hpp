@@ -60,8 +60,9 @@ class ForeseenImpacts {
     });
     each_pair(points, [&](std::size_t first, std::size_t last) {
       const std::uint64_t pair = points[first].pair;
-      const auto shares_body = [&](const Pair& p) { return p.has(std::uint32_t(pair >> 32)) || p.has(std::uint32_t(pair)); };
-      if (!std::any_of(pairs_.begin(), pairs_.end(), shares_body)) return;
+      bool shares_body = false;
+      for (const Pair& p : pairs_) shares_body = shares_body || p.has(std::uint32_t(pair >> 32)) || p.has(std::uint32_t(pair));
+      if (!shares_body) return;
       const double at = time_of(colliders, points, first, last, h);
       if (!(at < 1)) return;
       Pair& p = pair_of(pair);
@@ -88,14 +89,18 @@ class ForeseenImpacts {
 
   /// Takes the contacts of those that were just found to miss out of the points; whether there were any.
   bool drop(std::vector<ContactPoint>& points) {
+    bool is_any = false;
+    for (const Pair& p : pairs_) is_any = is_any || p.is_new;
+    if (!is_any) return false;
     const std::size_t before = points.size();
-    if (std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.is_new; }))
-      std::erase_if(points, [&](const ContactPoint& c) {
-        const Pair* const p = find(c.pair);
-        return p && p->is_new;
-      });
+    std::size_t kept = 0;
+    for (const ContactPoint& c : points) {
+      const Pair* const p = find(c.pair);
+      if (!p || !p->is_new) points[kept++] = c;
+    }
+    while (points.size() > kept) points.pop_back();
     for (Pair& p : pairs_) p.is_new = false;
-    return points.size() < before;
+    return kept < before;
   }
 
  private:
@@ -142,9 +147,9 @@ class ForeseenImpacts {
 
   /// Whether one of the two meets somebody else before: it will go another way then.
   bool is_after_another(const Pair& p) const {
-    return std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& q) {
-      return !q.is_missed && q.at < p.at - same_time && ((p.a.moves && q.has(p.key_a())) || (p.b.moves && q.has(p.key_b())));
-    });
+    for (const Pair& q : pairs_)
+      if (!q.is_missed && q.at < p.at - same_time && ((p.a.moves && q.has(p.key_a())) || (p.b.moves && q.has(p.key_b())))) return true;
+    return false;
   }
 
   Pair* find(std::uint64_t pair) {
